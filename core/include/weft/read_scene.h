@@ -1,0 +1,49 @@
+// Text -> Scene. Reads both kinds of scene file (docs/scenes.md): course scenes (`cloth`, `sphere`,
+// `plane`) and Weft scenes ("weft": 1), told apart by their keys.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "weft/scene.h"
+
+namespace weft {
+
+// One override of a scene value: `/solver/iterations=20`. The value is JSON; a bare word is a string.
+struct Override {
+  std::string pointer;
+  std::string value;
+};
+
+struct SceneFile {
+  Scene scene;                // complete only when `faults` is empty
+  std::string path;           // the file it came from; "" for text
+  std::vector<Fault> faults;  // all that is wrong, in the order of the file
+  bool found = true;          // false: no such file and no shipped scene of that name
+};
+
+struct ShippedScene {
+  std::string name;   // "pinned2"
+  std::string path;   // the file
+  std::string about;  // its one-line description
+};
+
+// Reads a scene from a path or by the name of a shipped scene. Never throws on bad input: what is
+// wrong is in `faults`.
+SceneFile read_scene(const std::string& path_or_name, const std::vector<Override>& overrides = {});
+
+// The same from text in memory.
+SceneFile read_scene_text(std::string_view json, const std::vector<Override>& overrides = {});
+
+// The scene as a Weft scene file, such that reading it gives the same scene.
+std::string write_scene_text(const Scene& scene);
+
+// The shipped scenes in alphabetical order. They are looked for in $WEFT_SCENES, then beside the
+// program as installed, then in the source tree that the library was built from.
+std::vector<ShippedScene> shipped_scenes();
+
+// The JSON Schema of Weft scenes, as text: names, ranges, defaults, units, one help line per value.
+std::string_view scene_schema();
+
+}  // namespace weft

@@ -1,0 +1,98 @@
+// What a run tells about itself: the step plan, the status, and the report of contract fields.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "weft/scene.h"
+
+namespace weft {
+
+// One stage of the step plan, in the order of execution.
+struct PlannedStage {
+  std::string name;             // "forces and integrate"
+  std::string detail;           // what it evaluates: "structural, shear, bend; leapfrog"
+  double calls_per_frame = 0;   // how often
+  std::int64_t items = 0;       // how many it touches per call
+  std::string item;             // what an item is: "particles", "constraints", "pairs"
+};
+
+// A stage that the scene does not need, and why.
+struct SkippedStage {
+  std::string name;
+  std::string why;
+};
+
+struct Plan {
+  std::vector<PlannedStage> stages;
+  std::vector<SkippedStage> skipped;
+  int substeps = 0;             // per frame
+  double dt = 0;                // s
+  double dt_limit = 0;          // s; the stability limit of explicit methods, 0 when there is none
+  std::vector<std::string> notes;  // what was chosen for the user, and why
+};
+
+// `ok`, or why the simulation stopped itself: the first frame, stage and particle at fault.
+struct Status {
+  bool ok = true;
+  std::int64_t frame = 0;
+  std::string stage;
+  int cloth = 0;
+  int i = 0, j = 0;
+  std::string text = "ok";
+};
+
+struct StageTime {
+  std::string name;
+  double ms = 0;
+  std::int64_t calls = 0;
+};
+
+struct Report {
+  std::string scene;
+  std::string version;
+  std::string compiler;
+  std::string simd;
+  std::int64_t particles = 0;
+  struct {
+    std::int64_t structural = 0, shear = 0, bend = 0;
+  } constraints;
+  std::int64_t frames = 0;
+  std::int64_t substeps = 0;  // in all
+  double dt = 0;              // s
+  double sim_seconds = 0;     // s
+  int threads = 0;
+  struct {
+    double total = 0, frame_min = 0, frame_median = 0, frame_p99 = 0, frame_max = 0;
+  } wall_ms;
+  std::vector<StageTime> stages;  // sums to wall_ms.total; one entry "step" unless profiled
+  std::vector<SkippedStage> skipped;
+  std::uint64_t hash = 0;  // of the final positions' bits
+  struct {
+    double kinetic = 0, elastic = 0, gravity = 0, total = 0;  // J
+  } energy;
+  Vec3 momentum{};          // kg m/s
+  Vec3 angular_momentum{};  // kg m²/s about the origin
+  struct {
+    double max = 0, mean = 0;
+  } strain;  // structural, length/rest - 1
+  struct {
+    double collider_max = 0;  // m; deepest particle below a collider's surface
+    std::int64_t self_pairs = 0;
+    double self_max = 0;  // m
+    std::int64_t crossings = 0;
+  } penetration;
+  std::int64_t torn = 0;
+  std::int64_t asleep = 0;
+  bool finite = true;
+  Status status;
+};
+
+// The report as the JSON of the contract, two-space indent, ending in a newline.
+std::string to_json(const Report& report);
+
+// The plan as `weft explain` prints it.
+std::string to_text(const Plan& plan);
+
+}  // namespace weft

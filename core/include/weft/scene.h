@@ -1,0 +1,183 @@
+// The scene: plain data that says what to simulate. Everything is SI (m, kg, s, N), y is up.
+// A Scene is read from JSON by read_scene() (weft/read_scene.h) or filled in by hand, checked by
+// validate(), and handed to a Simulation (weft/simulation.h), which never changes it.
+// docs/scene.schema.json states the range of every field; defaults here and there are equal.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace weft {
+
+using Vec3 = std::array<double, 3>;
+
+// One point of a path: at `time` [s] the thing is at `position` [m]; linear in between, held
+// before the first key and after the last. Times increase strictly.
+struct Key {
+  double time = 0;
+  Vec3 position{};
+};
+
+// A held particle of the grid. Without keys it stays where it starts.
+struct Pin {
+  int i = 0;  // column, 0 … nx-1
+  int j = 0;  // row, 0 … ny-1
+  std::vector<Key> keys;
+};
+
+// A rectangular sheet of nx*ny particles: particle (i,j) starts at
+// origin + u i/(nx-1) + v j/(ny-1). Rest lengths are those of the flat sheet.
+struct Grid {
+  int nx = 2;         // particles along u, 2 … 4096
+  int ny = 2;         // particles along v, 2 … 4096
+  Vec3 origin{};      // m
+  Vec3 u{1, 0, 0};    // whole side, m; u and v are not parallel
+  Vec3 v{0, 0, 1};    // whole side, m
+  double jitter = 0;  // m; each particle starts up to this far off the sheet along its normal
+};
+
+// One value for each kind of constraint: structural (1,0) (0,1), shear (1,1) (1,-1),
+// bend (2,0) (0,2), as offsets on the grid.
+struct Kinds {
+  double structural = 0;
+  double shear = 0;
+  double bend = 0;
+};
+
+enum class SelfCollisionMode { off, particles, surface };
+
+// How a pair closer than the thickness is pushed apart: `stiff` separates it at once with
+// friction, `course` averages the corrections and divides them by the substeps (seed 001).
+enum class SelfCollisionResponse { stiff, course };
+
+struct SelfCollision {
+  SelfCollisionMode mode = SelfCollisionMode::off;
+  double thickness = 0.01;  // m; the least distance between two layers
+  double friction = 0.3;    // Coulomb coefficient between layers (response stiff)
+  SelfCollisionResponse response = SelfCollisionResponse::stiff;
+};
+
+struct Cloth {
+  Grid grid;
+  double density = 0.3;       // kg/m²; total mass density*|u x v|, shared equally by all particles
+  double particle_mass = 0;   // kg; > 0 replaces density
+  std::vector<double> masses; // kg, nx*ny in row-major order; not empty: replaces both
+  Kinds stiffness{1000, 1000, 200};  // N/m; 0 = none of that kind
+  Kinds spring_damping;       // N·s/m along the spring (method spring_friction)
+  int level = 0;              // n >= 1: constraints to distance 1..n along rows, columns and both
+                              // diagonals, all with stiffness.structural (seed 000)
+  double stiffness_gradient = 0;  // 0 … 1: relative drop of stiffness from first row to last (seed 003)
+  double positional_k = 0.5;  // 0 … 0.5: share of the error each end takes (method positional)
+  double drag = 0;            // 1/s; velocity is multiplied by 1 - dt*drag each substep
+  double bending = 0;         // N·m; flexural rigidity of a curvature energy
+  double strain_limit = 0;    // 0.1 = structural and shear constraints never beyond 110 %; 0 = off
+  double tear_strain = 0;     // 0.5 = a constraint beyond 150 % is cut; 0 = cannot tear
+  SelfCollision self_collision;
+  std::vector<Pin> pins;
+};
+
+struct Sphere {
+  Vec3 center{};
+  double radius = 0.1;  // m
+};
+
+struct Plane {
+  Vec3 point{};
+  Vec3 normal{0, 1, 0};  // need not be a unit vector; the cloth stays on its side
+};
+
+struct Capsule {
+  Vec3 a{}, b{0, 1, 0};  // ends of the axis
+  double radius = 0.1;   // m
+};
+
+// A box of half-sizes `half` about `center`, turned by `rotation` [degrees, about x then y then z],
+// its edges rounded by `rounding` [m] (0 <= rounding <= the smallest half-size).
+struct Box {
+  Vec3 center{};
+  Vec3 half{0.1, 0.1, 0.1};
+  Vec3 rotation{};
+  double rounding = 0;
+};
+
+// `coulomb`: a particle in contact sticks while the tangential motion is within `statik` times the
+// normal correction, else slides with `dynamic`. `course`: the whole correction from the previous
+// position is multiplied by 1 - dynamic (seeds 001 and 004).
+enum class FrictionModel { coulomb, course };
+
+struct Friction {
+  FrictionModel model = FrictionModel::coulomb;
+  double statik = 0;   // >= dynamic
+  double dynamic = 0;  // >= 0; course: 0 … 1
+};
+
+using Shape = std::variant<Sphere, Plane, Capsule, Box>;
+
+struct Collider {
+  Shape shape;
+  Friction friction;
+  double offset = 0;      // m; the cloth is kept this far off the surface
+  std::vector<Key> keys;  // path of the sphere's or box's center, the plane's point, the capsule's a
+  bool cuts = false;      // cuts the constraints that pass through it instead of pushing
+};
+
+struct Wind {
+  Vec3 velocity{};        // m/s
+  double drag = 0;        // kg/m³; force per area and speed² along the normal
+  double lift = 0;        // kg/m³; the same across the flow
+  double turbulence = 0;  // 0 … 1; relative size of random gusts
+};
+
+enum class Method { positional, spring, spring_friction, compliant };
+enum class Sweep { gauss_seidel, jacobi, line };
+
+struct Solver {
+  Method method = Method::spring;
+  Sweep sweep = Sweep::gauss_seidel;  // positional and compliant
+  bool tethers = false;               // one-sided distance to the pins (positional, compliant)
+  int order = 1;                      // 2: second-order substep (compliant)
+  int iterations = 1;                 // constraint sweeps per substep, 1 … 1000
+  int collision_iterations = 1;       // passes over the colliders per substep, 1 … 100
+};
+
+inline constexpr int kAutoSubsteps = 0;
+
+struct Time {
+  double frame = 1.0 / 60;       // s; one frame, 1e-5 … 1
+  int substeps = kAutoSubsteps;  // per frame, 1 … 100000; kAutoSubsteps: from the stability limit
+  double seconds = 5;            // s; how long a run lasts unless told otherwise
+};
+
+struct Scene {
+  std::string name;
+  std::string about;  // one line for `weft scenes`
+  Vec3 gravity{0, -9.81, 0};  // m/s²
+  Time time;
+  Solver solver;
+  std::vector<Cloth> cloths;
+  std::vector<Collider> colliders;
+  Wind wind;
+};
+
+// One thing wrong with a scene: where (a JSON pointer, "" for the whole), what is wrong, and what
+// would be allowed ("" when `what` already says it).
+struct Fault {
+  std::string place;
+  std::string what;
+  std::string allowed;
+};
+
+// Every fault of a scene, empty when it can be simulated. A Simulation refuses any other.
+std::vector<Fault> validate(const Scene& scene);
+
+// Spacing of the grid along u and v [m].
+double spacing_u(const Grid& grid);
+double spacing_v(const Grid& grid);
+
+// Mass of particle (i,j) [kg] by the cloth's masses, particle_mass or density.
+double particle_mass(const Cloth& cloth, int i, int j);
+
+}  // namespace weft

@@ -1,0 +1,92 @@
+// Scene -> motion. A Simulation owns the state of one scene and advances it frame by frame:
+//
+//   weft::Simulation simulation(weft::read_scene("swing").scene);
+//   while (simulation.time() < 5) simulation.advance_frame();
+//
+// The result is the same, bit for bit, for any number of threads and any instruction set.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "weft/report.h"
+#include "weft/scene.h"
+#include "weft/view.h"
+
+namespace weft {
+
+// Instruction sets that the kernels are built for; `best` is the widest this machine runs.
+enum class Simd { scalar, sse2, avx2, avx512, best };
+
+// The name of an instruction set as reports and --simd write it.
+const char* simd_name(Simd simd);
+
+// Whether this machine can run it (`best`: always).
+bool simd_available(Simd simd);
+
+struct Options {
+  int threads = 0;         // worker threads, 0 = all cores, up to 256; never changes the result
+  Simd simd = Simd::best;  // never changes the result
+  std::uint64_t seed = 1;  // seeds every random choice (jitter, turbulence)
+  bool profile = false;    // measure each stage (costs a few percent)
+};
+
+// Thrown by the constructor for a scene that validate() faults.
+struct SceneError : std::invalid_argument {
+  explicit SceneError(std::vector<Fault> found);
+  std::vector<Fault> faults;
+};
+
+class Simulation {
+ public:
+  // Builds the state and the step plan. Throws SceneError when validate(scene) is not empty and
+  // std::invalid_argument when options ask for an instruction set this machine lacks.
+  explicit Simulation(Scene scene, Options options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  // Advances one frame: `substeps()` substeps of `dt()`. Does nothing once status() is not ok.
+  // No allocation after the first frame.
+  void advance_frame();
+
+  const Scene& scene() const;
+  const Options& options() const;
+  int threads() const;        // as resolved from the options
+  Simd simd() const;          // as resolved from the options
+  std::int64_t frame() const; // frames advanced so far
+  double time() const;        // s, frame() * scene().time.frame
+  double dt() const;          // s, the substep now in use
+  int substeps() const;       // per frame, now in use
+  const Plan& plan() const;   // what a frame does, in order, and what it leaves out
+  const Status& status() const;
+
+  View view() const;
+
+  // Positions of all particles as x,y,z in scene order (row-major j*nx+i, cloth after cloth).
+  std::vector<double> positions() const;
+  // Velocities at time() in the same order [m/s].
+  std::vector<double> velocities() const;
+  // Replaces all positions and velocities (same order, 3 values per particle); throws
+  // std::invalid_argument when the sizes differ or a value is not finite.
+  void set_state(std::span<const double> positions, std::span<const double> velocities);
+
+  // Everything measured so far (weft/report.h). Evaluates energies and strains now.
+  Report report() const;
+
+  // FNV-1a hash of the bits of all positions and velocities, in scene order.
+  std::uint64_t hash() const;
+
+  // Bytes of state per particle, padding included.
+  double bytes_per_particle() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace weft

@@ -1,0 +1,20 @@
+# Every kernel source is built once for each instruction set; the step plan picks one at run time
+# (physics/kernels/kernels.h). The scalar build keeps the compiler from vectorising on its own, so
+# that it is an honest reference.
+file(GLOB kernel_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/physics/kernels/*.cpp)
+set(flags_scalar -fno-tree-vectorize)
+set(flags_sse2 "")
+set(flags_avx2 -mavx2)
+set(flags_avx512 -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512)
+foreach(simd scalar sse2 avx2 avx512)
+  add_library(weft_kernels_${simd} OBJECT ${kernel_sources})
+  set_target_properties(weft_kernels_${simd} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(weft_kernels_${simd} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}
+    ${CMAKE_CURRENT_SOURCE_DIR}/include)
+  target_compile_definitions(weft_kernels_${simd} PRIVATE WEFT_SIMD=${simd})
+  # -Wno-psabi: wide values are passed inside one instruction set only, never across.
+  target_compile_options(weft_kernels_${simd} PRIVATE ${flags_${simd}} -fno-math-errno
+    -fno-trapping-math -Wno-psabi)
+  target_link_libraries(weft_kernels_${simd} PRIVATE weft_options)
+  target_sources(weft_core PRIVATE $<TARGET_OBJECTS:weft_kernels_${simd}>)
+endforeach()
