@@ -92,7 +92,7 @@ Cloth cloth_of(const CourseCloth& from) {
       from.density * from.width * from.height / from.num_width_points / from.num_height_points;
   cloth.stiffness = {from.enable_structural ? from.ks : 0, from.enable_shearing ? from.ks : 0,
                      from.enable_bending ? kBendingShare * from.ks : 0};
-  cloth.drag = from.damping / 100 * kFramesPerSecond * kSteps;
+  cloth.drag = from.damping * (kFramesPerSecond * kSteps / 100.0);
   cloth.strain_limit = kStrainLimit;
   cloth.self_collision.mode = SelfCollisionMode::particles;
   cloth.self_collision.thickness = 2 * from.thickness;
