@@ -2,6 +2,8 @@
 // (structure of arrays), each 64-byte aligned, each row padded by at least 16 lanes.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -57,6 +59,14 @@ class Rows {
     return data_[axis * plane_ + static_cast<std::size_t>(j) * stride_ + i];
   }
   std::size_t bytes() const { return data_.size() * sizeof(float); }
+  // Takes over the values of rows of the same shape.
+  void copy(const Rows& from) { std::copy_n(from.data_.data(), data_.size(), data_.data()); }
+  // Whether every value is a number of size below `bound`.
+  bool all_within(float bound) const {
+    bool within = true;
+    for (std::size_t i = 0; i < data_.size(); ++i) within &= std::fabs(data_[i]) < bound;
+    return within;
+  }
 
  private:
   int rows_ = 0, stride_ = 0;

@@ -78,14 +78,15 @@ class Simulation {
   // Everything measured so far (weft/report.h). Evaluates energies and strains now.
   Report report() const;
 
-  // FNV-1a hash of the bits of all positions and velocities, in scene order.
+  // FNV-1a hash of the bits of all positions, in scene order.
   std::uint64_t hash() const;
 
   // Bytes of state per particle, padding included.
   double bytes_per_particle() const;
 
+  struct State;  // the library's own
+
  private:
-  struct State;
   std::unique_ptr<State> state_;
 };
 

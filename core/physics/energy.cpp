@@ -1,0 +1,90 @@
+// Energies, forces and strains in double precision (energy.h).
+#include "physics/energy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::physics {
+namespace {
+
+Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+}  // namespace
+
+std::vector<Vec3> gather(const Lattice& l, const Rows& rows) {
+  std::vector<Vec3> all;
+  all.reserve(std::size_t(l.columns) * l.rows);
+  for (int j = 0; j < l.rows; ++j)
+    for (int i = 0; i < l.columns; ++i)
+      all.push_back({rows.at(0, j, i), rows.at(1, j, i), rows.at(2, j, i)});
+  return all;
+}
+
+double elastic_energy(const Cloth& cloth, const std::vector<Family>& families,
+                      const std::vector<Vec3>& x) {
+  double energy = 0;
+  for (const Family& f : families)
+    for_each_constraint(cloth, f, [&](int a, int b, double k) {
+      const Vec3 e = minus(x[b], x[a]);
+      const double stretch = std::sqrt(dot(e, e)) - f.rest;
+      energy += 0.5 * k * stretch * stretch;
+    });
+  return energy;
+}
+
+std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Family>& families,
+                                const std::vector<Vec3>& x, const std::vector<Vec3>* v) {
+  std::vector<Vec3> force(x.size(), Vec3{});
+  for (const Family& f : families)
+    for_each_constraint(cloth, f, [&](int a, int b, double k) {
+      const Vec3 e = minus(x[b], x[a]);
+      const double length = std::sqrt(dot(e, e));
+      if (length == 0) return;
+      double scale = k * (1 - f.rest / length);
+      if (v) {
+        const double damping = f.damping * (f.stiffness > 0 ? k / f.stiffness : 1);
+        scale += damping * dot(e, minus((*v)[b], (*v)[a])) / (length * length);
+      }
+      for (int c = 0; c < 3; ++c) {
+        force[a][c] += scale * e[c];
+        force[b][c] -= scale * e[c];
+      }
+    });
+  return force;
+}
+
+std::vector<Vec3> accelerations(const Scene& scene, const Cloth& cloth,
+                                const std::vector<Family>& families, const Lattice& l,
+                                bool damped) {
+  const std::vector<Vec3> x = gather(l, l.x);
+  const std::vector<Vec3> v = damped ? gather(l, l.v) : std::vector<Vec3>{};
+  std::vector<Vec3> a = spring_forces(cloth, families, x, damped ? &v : nullptr);
+  for (int j = 0; j < l.rows; ++j)
+    for (int i = 0; i < l.columns; ++i) {
+      const double w = l.w(j, i);
+      Vec3& f = a[std::size_t(j) * l.columns + i];
+      for (int c = 0; c < 3; ++c) f[c] = w > 0 ? f[c] * w + scene.gravity[c] : 0;
+    }
+  return a;
+}
+
+Strain structural_strain(const Cloth& cloth, const std::vector<Family>& families,
+                         const std::vector<Vec3>& x) {
+  Strain strain;
+  std::int64_t n = 0;
+  for (const Family& f : families) {
+    if (f.kind != Kind::structural) continue;
+    for_each_constraint(cloth, f, [&](int a, int b, double) {
+      const Vec3 e = minus(x[b], x[a]);
+      const double s = std::sqrt(dot(e, e)) / f.rest - 1;
+      strain.max = n == 0 ? s : std::max(strain.max, s);
+      strain.mean += s;
+      ++n;
+    });
+  }
+  if (n > 0) strain.mean /= double(n);
+  return strain;
+}
+
+}  // namespace weft::physics

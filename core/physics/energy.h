@@ -1,0 +1,47 @@
+// The physics in double precision, straight from the equations: energies, forces and strains of a
+// lattice. Everything that measures or prepares a run uses this; the kernels are what is measured.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "physics/family.h"
+#include "physics/lattice.h"
+
+namespace weft::physics {
+
+// Calls visit(j, a, b, k) for every constraint of a family: particle indices a and b (row-major
+// j*columns + i) and stiffness k [N/m].
+template <class Visit>
+void for_each_constraint(const Cloth& cloth, const Family& f, Visit&& visit) {
+  const int columns = cloth.grid.nx, rows = cloth.grid.ny;
+  for (int j = 0; j + f.dj < rows; ++j) {
+    const double k = f.stiffness * gradient_factor(cloth, j, f.dj);
+    for (int n = 0; n < f.per_row(columns); ++n)
+      visit(j * columns + n + f.near(), (j + f.dj) * columns + n + f.far(), k);
+  }
+}
+
+// Positions or velocities of a lattice in double, particle after particle.
+std::vector<Vec3> gather(const Lattice& lattice, const Rows& rows);
+
+// E = Σ ½ k (|e| - l)² [J].
+double elastic_energy(const Cloth& cloth, const std::vector<Family>& families,
+                      const std::vector<Vec3>& x);
+
+// f = -∂E/∂x [N], plus damping along the springs when velocities are given.
+std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Family>& families,
+                                const std::vector<Vec3>& x, const std::vector<Vec3>* v);
+
+// Accelerations by springs and gravity, zero for pinned particles [m/s²].
+std::vector<Vec3> accelerations(const Scene& scene, const Cloth& cloth,
+                                const std::vector<Family>& families, const Lattice& lattice,
+                                bool damped);
+
+struct Strain {
+  double max = 0, mean = 0;  // |e|/l - 1
+};
+Strain structural_strain(const Cloth& cloth, const std::vector<Family>& families,
+                         const std::vector<Vec3>& x);
+
+}  // namespace weft::physics

@@ -1,0 +1,190 @@
+// Measures a simulation (measure.h). Nothing here touches the state.
+#include "physics/measure.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "physics/energy.h"
+#include "physics/path.h"
+
+namespace weft::physics {
+namespace {
+
+void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
+  const ClothStep& step = *s.cloths[index];
+  const Lattice& l = step.lattice();
+  const std::vector<Vec3> x = gather(l, l.x), v = velocities_now(s, index);
+  r.energy.elastic += elastic_energy(step.cloth(), step.families(), x);
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    const int i = int(p) % l.columns, j = int(p) / l.columns;
+    if (l.w(j, i) == 0) continue;
+    const double m = particle_mass(step.cloth(), i, j);
+    const Vec3& a = x[p];
+    const Vec3& b = v[p];
+    for (int k = 0; k < 3; ++k) {
+      r.energy.kinetic += 0.5 * m * b[k] * b[k];
+      r.energy.gravity -= m * s.scene.gravity[k] * a[k];
+      r.momentum[k] += m * b[k];
+      const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      r.angular_momentum[k] += m * (a[k1] * b[k2] - a[k2] * b[k1]);
+    }
+  }
+}
+
+void add_constraints(const ClothStep& step, Report& r) {
+  for (const Family& f : step.families()) {
+    const std::int64_t n =
+        std::int64_t(f.per_row(step.lattice().columns)) * (step.lattice().rows - f.dj);
+    (f.kind == Kind::structural ? r.constraints.structural
+     : f.kind == Kind::shear    ? r.constraints.shear
+                                : r.constraints.bend) += n;
+  }
+}
+
+// How deep a point lies below a collider's surface [m], negative above it.
+double depth_below(const Collider& c, double time, const Vec3& x) {
+  const auto from = [&](const Vec3& start) {
+    const Vec3 p = c.keys.empty() ? start : position_at(c.keys, time);
+    return Vec3{x[0] - p[0], x[1] - p[1], x[2] - p[2]};
+  };
+  if (const auto* sphere = std::get_if<Sphere>(&c.shape)) {
+    const Vec3 d = from(sphere->center);
+    return sphere->radius - std::hypot(d[0], d[1], d[2]);
+  }
+  if (const auto* plane = std::get_if<Plane>(&c.shape)) {
+    const Vec3 d = from(plane->point);
+    const Vec3& n = plane->normal;
+    return -(d[0] * n[0] + d[1] * n[1] + d[2] * n[2]) / std::hypot(n[0], n[1], n[2]);
+  }
+  return 0;
+}
+
+void add_penetration(const Simulation::State& s, const ClothStep& step, Report& r) {
+  const double time = double(s.frame) * s.scene.time.frame;
+  for (const Vec3& x : gather(step.lattice(), step.lattice().x))
+    for (const Collider& c : s.scene.colliders)
+      r.penetration.collider_max = std::max(r.penetration.collider_max, depth_below(c, time, x));
+}
+
+// Strain over all cloths: the largest, and the mean weighted by constraints.
+void add_strain(const Simulation::State& s, Report& r) {
+  double sum = 0, count = 0, largest = 0;
+  bool any = false;
+  for (const auto& step : s.cloths) {
+    std::int64_t n = 0;
+    for (const Family& f : step->families())
+      if (f.kind == Kind::structural)
+        n += std::int64_t(f.per_row(step->lattice().columns)) * (step->lattice().rows - f.dj);
+    if (n == 0) continue;
+    const Strain strain = structural_strain(step->cloth(), step->families(),
+                                            gather(step->lattice(), step->lattice().x));
+    largest = any ? std::max(largest, strain.max) : strain.max;
+    any = true;
+    sum += strain.mean * double(n);
+    count += double(n);
+  }
+  r.strain.max = largest;
+  r.strain.mean = count > 0 ? sum / count : 0;
+}
+
+void add_wall_time(const Simulation::State& s, Report& r) {
+  std::vector<float> ms = s.frame_ms;
+  std::sort(ms.begin(), ms.end());
+  r.wall_ms.total = s.total_ms;
+  if (ms.empty()) return;
+  const auto quantile = [&](double q) { return double(ms[std::size_t(q * double(ms.size() - 1))]); };
+  r.wall_ms.frame_min = ms.front();
+  r.wall_ms.frame_median = quantile(0.5);
+  r.wall_ms.frame_p99 = quantile(0.99);
+  r.wall_ms.frame_max = ms.back();
+}
+
+// Stages of one name together, plus what the frame spends outside them; sums to the total.
+void add_stages(const Simulation::State& s, Report& r) {
+  if (!s.options.profile) {
+    r.stages.push_back({"step", s.total_ms, s.total_substeps});
+    return;
+  }
+  double sum = 0;
+  for (std::size_t c = 0; c < s.cloths.size(); ++c) {
+    const auto& stages = s.cloths[c]->stages();
+    for (std::size_t q = 0; q < stages.size(); ++q) {
+      const double ms = double(s.stage_ns[c][q].load()) * 1e-6;
+      auto at = std::find_if(r.stages.begin(), r.stages.end(),
+                             [&](const StageTime& t) { return t.name == stages[q]->name; });
+      if (at == r.stages.end()) at = r.stages.insert(at, {stages[q]->name, 0, 0});
+      at->ms += ms;
+      at->calls += s.total_substeps;
+      sum += ms;
+    }
+  }
+  // Several threads spend more than passes on the clock: shares of the work, not of the wall.
+  const double scale = sum > s.total_ms ? s.total_ms / sum : 1;
+  for (StageTime& t : r.stages) t.ms *= scale;
+  r.stages.push_back({"frame", std::max(0.0, s.total_ms - sum * scale), s.frame});
+}
+
+}  // namespace
+
+std::vector<Vec3> velocities_now(const Simulation::State& s, std::size_t index) {
+  const ClothStep& step = *s.cloths[index];
+  std::vector<Vec3> v = gather(step.lattice(), step.lattice().v);
+  if (!is_explicit(s.method)) return v;
+  const std::vector<Vec3> a =
+      accelerations(s.scene, step.cloth(), step.families(), step.lattice(),
+                    s.method == Method::spring_friction);
+  for (std::size_t p = 0; p < v.size(); ++p)
+    for (int k = 0; k < 3; ++k) v[p][k] += a[p][k] * s.dt / 2;
+  return v;
+}
+
+std::uint64_t state_hash(const Simulation::State& s) {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+  const auto add = [&](float value) {
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
+    for (int b = 0; b < 4; ++b) hash = (hash ^ (bits >> (8 * b) & 0xff)) * 0x100000001b3u;
+  };
+  for (const auto& step : s.cloths) {
+    const Lattice& l = step->lattice();
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i)
+        for (int k = 0; k < 3; ++k) add(l.x.at(k, j, i));
+  }
+  return hash;
+}
+
+Report measure(const Simulation::State& s) {
+  Report r;
+  r.scene = s.scene.name;
+  r.version = WEFT_VERSION;
+#if defined(__clang__)
+  r.compiler = "clang++ " __clang_version__;
+#else
+  r.compiler = "g++ " __VERSION__;
+#endif
+  r.simd = simd_name(s.simd);
+  r.frames = s.frame;
+  r.substeps = s.total_substeps;
+  r.dt = s.dt;
+  r.sim_seconds = double(s.frame) * s.scene.time.frame;
+  r.threads = s.threads.count();
+  r.skipped = s.plan.skipped;
+  r.status = s.status;
+  r.finite = s.status.ok;
+  for (std::size_t c = 0; c < s.cloths.size(); ++c) {
+    const ClothStep& step = *s.cloths[c];
+    r.particles += std::int64_t(step.lattice().columns) * step.lattice().rows;
+    add_constraints(step, r);
+    add_energy(s, c, r);
+    add_penetration(s, step, r);
+  }
+  r.energy.total = r.energy.kinetic + r.energy.elastic + r.energy.gravity;
+  add_strain(s, r);
+  add_wall_time(s, r);
+  add_stages(s, r);
+  r.hash = state_hash(s);
+  return r;
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,110 @@
+// Builds the step plan (plan.h).
+#include "physics/plan.h"
+
+#include <algorithm>
+
+namespace weft::physics {
+namespace {
+
+// Rough cost of a row, for sizing tasks only: nanoseconds per constraint and per particle.
+constexpr double kConstraintNs = 0.5, kParticleNs = 0.5;
+
+double row_nanoseconds(const std::vector<std::unique_ptr<RowStage>>& stages, int rows) {
+  double ns = 0;
+  for (const auto& s : stages)
+    ns += double(s->items) * (s->item == "constraints" ? kConstraintNs : kParticleNs);
+  return ns / rows;
+}
+
+}  // namespace
+
+ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::uint64_t seed,
+                     const KernelTable& kernels)
+    : cloth_(scene.cloths[cloth_index]),
+      families_(families_of(cloth_)),
+      lattice_(make_lattice(cloth_, cloth_index, seed, !is_explicit(method))) {
+  choose_stages({scene, cloth_, lattice_, families_, kernels}, method);
+  std::vector<RowStage*> stages;
+  for (const auto& s : stages_) stages.push_back(s.get());
+  wavefront_ = std::make_unique<Wavefront>(stages, lattice_.rows, lattice_.bytes() / lattice_.rows,
+                                           row_nanoseconds(stages_, lattice_.rows));
+}
+
+void ClothStep::choose_stages(const ClothParts& parts, Method method) {
+  const Solver& solver = parts.scene.solver;
+  if (is_explicit(method)) {
+    stages_.push_back(make_springs(parts, method == Method::spring_friction));
+    if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
+  } else {
+    SweepOptions sweep;
+    sweep.compliant = method == Method::compliant;
+    if (sweep.compliant && solver.iterations > 1)
+      multipliers_ = std::make_unique<Multipliers>(lattice_, families_.size());
+    sweep.multipliers = multipliers_.get();
+    stages_.push_back(make_predict(parts, multipliers_.get()));
+    if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
+    for (int n = 0; n < solver.iterations && !families_.empty(); ++n) {
+      if (solver.sweep == Sweep::jacobi)
+        stages_.push_back(make_jacobi(parts, sweep));
+      else
+        append_gauss_seidel(parts, sweep, stages_);
+    }
+    stages_.push_back(make_velocity(parts));
+  }
+  for (int n = 0; n < solver.collision_iterations; ++n)
+    for (const Collider& c : parts.scene.colliders)
+      if (auto stage = make_collider(parts, c)) stages_.push_back(std::move(stage));
+  if (cloth_.strain_limit > 0) {
+    SweepOptions limit;
+    limit.limit = cloth_.strain_limit;
+    append_gauss_seidel(parts, limit, stages_);
+  }
+}
+
+std::size_t ClothStep::bytes() const {
+  std::size_t bytes = lattice_.bytes() + (multipliers_ ? multipliers_->bytes() : 0);
+  for (const auto& s : stages_) bytes += s->bytes();
+  return bytes;
+}
+
+namespace {
+
+void describe_skipped(const Scene& scene, Method method, Plan& plan) {
+  const auto skip = [&](const char* name, const std::string& why) {
+    plan.skipped.push_back({name, why});
+  };
+  const auto any = [&](auto&& has) {
+    return std::any_of(scene.cloths.begin(), scene.cloths.end(), has);
+  };
+  if (is_explicit(method)) skip("predict, sweeps, velocity", "springs are forces with this method");
+  else skip("springs", "constraints are projected with this method");
+  if (!any([](const Cloth& c) {
+        return std::any_of(c.pins.begin(), c.pins.end(), [](const Pin& p) { return !p.keys.empty(); });
+      }))
+    skip("keyed_pins", "no pin moves");
+  if (scene.colliders.empty()) skip("collider", "the scene has none");
+  if (!any([](const Cloth& c) { return c.strain_limit > 0; }))
+    skip("strain_limit", "strain_limit is 0");
+  if (!any([](const Cloth& c) { return c.self_collision.mode != SelfCollisionMode::off; }))
+    skip("self_collision", "off in the scene");
+  if (!any([](const Cloth& c) { return c.tear_strain > 0; })) skip("tear", "tear_strain is 0");
+  if (scene.wind.drag == 0 && scene.wind.lift == 0) skip("wind", "drag and lift are 0");
+}
+
+}  // namespace
+
+Plan describe(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths,
+              int substeps) {
+  Plan plan;
+  plan.substeps = substeps;
+  plan.dt = scene.time.frame / substeps;
+  for (std::size_t c = 0; c < cloths.size(); ++c)
+    for (const auto& s : cloths[c]->stages()) {
+      const std::string which = cloths.size() > 1 ? "cloth " + std::to_string(c) + ": " : "";
+      plan.stages.push_back({s->name, which + s->detail, double(substeps), s->items, s->item});
+    }
+  describe_skipped(scene, scene.solver.method, plan);
+  return plan;
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,55 @@
+// The step plan: from a scene, the stages that it needs, each an instance of exactly the features in
+// use. What a scene does not need is not in the plan, holds no memory and costs nothing.
+//
+// A frame is `substeps` substeps; a substep of one cloth is, in this order,
+//
+//   spring, spring_friction:  springs (x, v -> forces -> v, x) - keyed_pins - colliders - strain_limit
+//   positional, compliant:    predict (previous <- x; v, x by gravity) - keyed_pins - sweeps (x)
+//                             - velocity (v <- (x - previous)/dt) - colliders - strain_limit
+//
+// After every stage from springs or velocity on, x - dt v is the position before the substep:
+// contact and the strain limit change x and v together.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "physics/stages/stages.h"
+#include "physics/wavefront.h"
+#include "weft/report.h"
+
+namespace weft::physics {
+
+// One cloth's share of the plan.
+class ClothStep {
+ public:
+  ClothStep(const Scene& scene, int cloth_index, Method method, std::uint64_t seed,
+            const KernelTable& kernels);
+
+  const Cloth& cloth() const { return cloth_; }
+  Lattice& lattice() { return lattice_; }
+  const Lattice& lattice() const { return lattice_; }
+  const std::vector<Family>& families() const { return families_; }
+  const std::vector<std::unique_ptr<RowStage>>& stages() const { return stages_; }
+  Wavefront& wavefront() { return *wavefront_; }
+  std::size_t bytes() const;
+
+ private:
+  void choose_stages(const ClothParts& parts, Method method);
+
+  const Cloth& cloth_;
+  std::vector<Family> families_;
+  Lattice lattice_;
+  std::unique_ptr<Multipliers> multipliers_;
+  std::vector<std::unique_ptr<RowStage>> stages_;
+  std::unique_ptr<Wavefront> wavefront_;
+};
+
+// Whether a method integrates springs as forces, and so has a stability limit.
+inline bool is_explicit(Method m) { return m == Method::spring || m == Method::spring_friction; }
+
+// The description that `weft explain` prints.
+Plan describe(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths,
+              int substeps);
+
+}  // namespace weft::physics

@@ -1,0 +1,112 @@
+// The simulation: builds the state and the plan of a scene, and advances it frame by frame.
+#include "weft/simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "physics/energy.h"
+#include "physics/measure.h"
+#include "physics/plan.h"
+#include "physics/stability.h"
+#include "physics/state.h"
+
+namespace weft {
+
+using namespace physics;
+
+namespace {
+
+std::string fault_text(const std::vector<Fault>& faults) {
+  std::string text = "the scene cannot be simulated";
+  for (const Fault& f : faults) {
+    text += "\n  " + f.place + ": " + f.what;
+    if (!f.allowed.empty()) text += " (" + f.allowed + ")";
+  }
+  return text;
+}
+
+}  // namespace
+
+SceneError::SceneError(std::vector<Fault> found)
+    : std::invalid_argument(fault_text(found)), faults(std::move(found)) {}
+
+Simulation::Simulation(Scene scene, Options options) {
+  if (auto faults = validate(scene); !faults.empty()) throw SceneError(std::move(faults));
+  if (!simd_available(options.simd))
+    throw std::invalid_argument(std::string("this machine has no ") + simd_name(options.simd));
+  if (options.threads < 0 || options.threads > 256)
+    throw std::invalid_argument("threads is " + std::to_string(options.threads) + " (0 to 256)");
+  state_ = std::make_unique<State>(std::move(scene), options);
+}
+
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+void Simulation::advance_frame() { state_->advance_frame(); }
+const Scene& Simulation::scene() const { return state_->scene; }
+const Options& Simulation::options() const { return state_->options; }
+int Simulation::threads() const { return state_->threads.count(); }
+Simd Simulation::simd() const { return state_->simd; }
+std::int64_t Simulation::frame() const { return state_->frame; }
+double Simulation::time() const { return double(state_->frame) * state_->scene.time.frame; }
+double Simulation::dt() const { return state_->dt; }
+int Simulation::substeps() const { return state_->substeps; }
+const Plan& Simulation::plan() const { return state_->plan; }
+const Status& Simulation::status() const { return state_->status; }
+
+View Simulation::view() const {
+  View view;
+  view.version = std::uint64_t(state_->frame) + state_->changes;
+  view.time = time();
+  for (const auto& step : state_->cloths) {
+    const Lattice& l = step->lattice();
+    ClothView c;
+    c.columns = l.columns;
+    c.rows = l.rows;
+    c.stride = l.stride;
+    c.x = l.x.component(0);
+    c.y = l.x.component(1);
+    c.z = l.x.component(2);
+    c.vx = l.v.component(0);
+    c.vy = l.v.component(1);
+    c.vz = l.v.component(2);
+    c.inverse_mass = l.inverse_mass.span();
+    view.cloths.push_back(c);
+  }
+  return view;
+}
+
+std::vector<double> Simulation::positions() const {
+  std::vector<double> all;
+  for (const auto& step : state_->cloths)
+    for (const Vec3& x : gather(step->lattice(), step->lattice().x))
+      all.insert(all.end(), x.begin(), x.end());
+  return all;
+}
+
+std::vector<double> Simulation::velocities() const {
+  std::vector<double> all;
+  for (std::size_t c = 0; c < state_->cloths.size(); ++c)
+    for (const Vec3& v : velocities_now(*state_, c)) all.insert(all.end(), v.begin(), v.end());
+  return all;
+}
+
+void Simulation::set_state(std::span<const double> positions, std::span<const double> velocities) {
+  state_->set(positions, velocities);
+}
+
+Report Simulation::report() const { return measure(*state_); }
+std::uint64_t Simulation::hash() const { return state_hash(*state_); }
+
+double Simulation::bytes_per_particle() const {
+  std::size_t bytes = 0, particles = 0;
+  for (const auto& step : state_->cloths) {
+    bytes += step->bytes();
+    particles += std::size_t(step->lattice().columns) * step->lattice().rows;
+  }
+  return double(bytes + state_->backup_bytes()) / double(particles);
+}
+
+}  // namespace weft

@@ -1,0 +1,29 @@
+// How large a substep explicit springs allow.
+//
+// Leapfrog is stable while dt ω_max < 2, where ω_max² is the largest eigenvalue of M⁻¹K, K the
+// tangent stiffness: Σ k [n nᵀ + max(0, 1 - l/|e|)(I - n nᵀ)] over the springs. Damping along the
+// springs, evaluated at the velocity half a substep behind, asks for dt² ω²/4 + dt c/2 < 1 with c
+// the largest eigenvalue of M⁻¹D.
+#pragma once
+
+#include <vector>
+
+#include "physics/family.h"
+#include "physics/lattice.h"
+
+namespace weft::physics {
+
+struct Spectrum {
+  double omega_squared = 0;  // 1/s², ω_max²
+  double damping = 0;        // 1/s, c
+
+  // The largest stable substep [s], infinite when nothing can vibrate.
+  double largest_substep() const;
+};
+
+// Estimates the spectrum of the lattice as it lies now by a Lanczos iteration, from above: the
+// substep it allows is never larger than the true limit, and at most about 3 % smaller.
+Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Family>& families,
+                               const Lattice& lattice, bool damped);
+
+}  // namespace weft::physics

@@ -1,0 +1,267 @@
+// The frame: substeps through the plan, the substep kept inside the stability limit, and a stop with
+// the place of the fault when the state turns non-finite.
+#include "physics/state.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "physics/energy.h"
+#include "physics/stability.h"
+
+namespace weft {
+
+using namespace physics;
+
+namespace {
+
+constexpr double kLimitShare = 0.9;      // of the stability limit that an automatic substep takes
+constexpr int kMostSubsteps = 100000;    // per frame
+constexpr double kProjectionRate = 960;  // automatic substeps a second of the projecting methods
+constexpr int kSmallCloth = 4096;        // particles up to which one thread is faster
+constexpr float kFarAway = 1e7f;         // m; nothing in a sane scene gets there
+
+Simd resolve(Simd simd) {
+  if (simd != Simd::best) return simd;
+  for (Simd s : {Simd::avx512, Simd::avx2})
+    if (simd_available(s)) return s;
+  return Simd::sse2;
+}
+
+std::string number(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", v);
+  return text;
+}
+
+}  // namespace
+
+Simulation::State::State(Scene given, const Options& given_options)
+    : scene(std::move(given)),
+      options(given_options),
+      simd(resolve(options.simd)),
+      threads(options.threads),
+      one_thread(1),
+      method(scene.solver.method) {
+  build_cloths();
+  choose_method_and_substeps();
+  frame_ms.reserve(std::size_t(std::clamp(scene.time.seconds / scene.time.frame, 1.0, 1e6)) + 1);
+}
+
+void Simulation::State::build_cloths() {
+  cloths.clear();
+  backups_.clear();
+  stage_ns.clear();
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    cloths.push_back(std::make_unique<ClothStep>(scene, int(c), method, options.seed,
+                                                 kernel_table(simd)));
+    const Lattice& l = cloths.back()->lattice();
+    backups_.push_back({Rows(l.rows, l.stride), Rows(l.rows, l.stride)});
+    stage_ns.emplace_back(cloths.back()->stages().size());
+    if (options.profile) cloths.back()->wavefront().profile(stage_ns.back());
+  }
+}
+
+// Explicit springs: the substep from the stability limit, or the user's if it is inside; beyond it,
+// the compliant method in their place, which is stable at any substep.
+void Simulation::State::choose_method_and_substeps() {
+  std::vector<std::string> notes;
+  int count = scene.time.substeps;
+  double limit = 0;
+  if (is_explicit(method)) {
+    limit = std::numeric_limits<double>::infinity();
+    for (const auto& c : cloths) {
+      spectra.push_back(estimate_spectrum(c->cloth(), c->families(), c->lattice(),
+                                          method == Method::spring_friction));
+      limit = std::min(limit, spectra.back().largest_substep());
+    }
+    const double needed = std::ceil(scene.time.frame / (kLimitShare * limit));
+    if (count == kAutoSubsteps && needed <= kMostSubsteps) {
+      count = std::max(1, int(needed));
+      notes.push_back("substeps from the stability limit of " + number(limit) + " s");
+    } else if (count == kAutoSubsteps || scene.time.frame / count > limit) {
+      notes.push_back("springs need substeps below " + number(limit) + " s, " +
+                      number(needed) + " a frame at " + number(kLimitShare) +
+                      " of the limit; the compliant method runs in their place");
+      method = Method::compliant;
+      build_cloths();
+    }
+  }
+  if (count == kAutoSubsteps) count = std::max(1, int(std::lround(scene.time.frame * kProjectionRate)));
+  Scene as_run = scene;
+  as_run.solver.method = method;
+  plan = describe(as_run, cloths, count);
+  plan.dt_limit = std::isfinite(limit) ? limit : 0;
+  plan.notes = std::move(notes);
+  substeps = count;
+  dt = scene.time.frame / count;
+  if (is_explicit(method)) shift_velocities(-dt / 2);
+}
+
+// v <- v + a·by: velocities of explicit springs lie half a substep behind the positions.
+void Simulation::State::shift_velocities(double by) {
+  for (auto& step : cloths) {
+    Lattice& l = step->lattice();
+    const std::vector<Vec3> a = accelerations(scene, step->cloth(), step->families(), l,
+                                              method == Method::spring_friction);
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i)
+        for (int c = 0; c < 3; ++c)
+          l.v.at(c, j, i) += float(a[std::size_t(j) * l.columns + i][c] * by);
+  }
+}
+
+void Simulation::State::set_substeps(int count) {
+  const double before = dt;
+  substeps = std::min(count, kMostSubsteps);
+  dt = scene.time.frame / substeps;
+  shift_velocities((before - dt) / 2);
+  plan.substeps = substeps;
+  plan.dt = dt;
+  for (PlannedStage& s : plan.stages) s.calls_per_frame = substeps;
+}
+
+void Simulation::State::advance_frame() {
+  if (!status.ok) return;
+  const auto start = std::chrono::steady_clock::now();
+  save();
+  run_frame();
+  if (!finite()) {
+    find_fault();
+    restore();
+    return;
+  }
+  ++frame;
+  total_substeps += substeps;
+  if (is_explicit(method) && scene.time.substeps == kAutoSubsteps) follow_stretch();
+  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+  total_ms += spent.count();
+  frame_ms.push_back(float(spent.count()));
+}
+
+void Simulation::State::run_frame() {
+  const double time = double(frame) * scene.time.frame;
+  for (auto& step : cloths) {
+    const Lattice& l = step->lattice();
+    const bool small = l.columns * l.rows <= kSmallCloth;
+    step->wavefront().run(time, dt, substeps, small ? one_thread : threads);
+  }
+}
+
+// Stretched springs resist sideways too, which raises the largest frequency:
+// ω² <= ω²_flat + t (ω²_all - ω²_flat), t = max (1 - l/|e|). Every fourth row is looked at.
+void Simulation::State::follow_stretch() {
+  double limit = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const ClothStep& step = *cloths[c];
+    const Lattice& l = step.lattice();
+    float most = 0;
+    for (const Family& f : step.families()) {
+      if (f.kind != Kind::structural) continue;
+      for (int j = 0; j + f.dj < l.rows; j += 4)
+        for (int n = 0; n < f.per_row(l.columns); ++n) {
+          float squared = 0;
+          for (int k = 0; k < 3; ++k) {
+            const float e = l.x.at(k, j + f.dj, n + f.far()) - l.x.at(k, j, n + f.near());
+            squared += e * e;
+          }
+          most = std::max(most, squared / float(f.rest * f.rest));
+        }
+    }
+    const double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
+    // Springs in all directions: never more than twice the flat sheet's ω² for the families here.
+    Spectrum stretched = spectra[c];
+    stretched.omega_squared *= 1 + t;
+    limit = std::min(limit, stretched.largest_substep());
+  }
+  const int count = int(std::ceil(scene.time.frame / (kLimitShare * limit)));
+  // A few percent of slack either way keeps the substep from changing every frame.
+  if (count > substeps || count < substeps - substeps / 12) set_substeps(std::max(1, count));
+}
+
+void Simulation::State::set(std::span<const double> positions, std::span<const double> velocities) {
+  std::size_t particles = 0;
+  for (const auto& step : cloths)
+    particles += std::size_t(step->lattice().columns) * step->lattice().rows;
+  if (positions.size() != 3 * particles || velocities.size() != 3 * particles)
+    throw std::invalid_argument("a state needs " + std::to_string(3 * particles) +
+                                " positions and as many velocities");
+  const auto bad = [](double v) { return !std::isfinite(v); };
+  if (std::any_of(positions.begin(), positions.end(), bad) ||
+      std::any_of(velocities.begin(), velocities.end(), bad))
+    throw std::invalid_argument("a state holds a value that is not finite");
+  std::size_t p = 0;
+  for (auto& step : cloths) {
+    Lattice& l = step->lattice();
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i, ++p)
+        for (int c = 0; c < 3; ++c) {
+          l.x.at(c, j, i) = float(positions[3 * p + c]);
+          l.v.at(c, j, i) = l.w(j, i) > 0 ? float(velocities[3 * p + c]) : 0;
+        }
+  }
+  if (is_explicit(method)) shift_velocities(-dt / 2);
+  ++changes;
+}
+
+void Simulation::State::save() {
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    backups_[c].x.copy(cloths[c]->lattice().x);
+    backups_[c].v.copy(cloths[c]->lattice().v);
+  }
+}
+
+void Simulation::State::restore() {
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    cloths[c]->lattice().x.copy(backups_[c].x);
+    cloths[c]->lattice().v.copy(backups_[c].v);
+  }
+}
+
+std::size_t Simulation::State::backup_bytes() const {
+  std::size_t bytes = 0;
+  for (const Backup& b : backups_) bytes += b.x.bytes() + b.v.bytes();
+  return bytes;
+}
+
+bool Simulation::State::finite() const {
+  for (const auto& step : cloths)
+    if (!step->lattice().x.all_within(kFarAway) ) return false;
+  return true;
+}
+
+// Runs the frame again, stage by stage, to the first that leaves a particle non-finite.
+void Simulation::State::find_fault() {
+  restore();
+  status.ok = false;
+  status.frame = frame + 1;
+  status.stage = "step";
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    Lattice& l = cloths[c]->lattice();
+    for (const auto& stage : cloths[c]->stages()) stage->reserve_slots(1);
+    for (int s = 0; s < substeps; ++s) {
+      const Substep substep{dt, double(frame) * scene.time.frame + (s + 1) * dt, 0};
+      for (const auto& stage : cloths[c]->stages()) {
+        for (int j = 0; j < l.rows; ++j) stage->run(j, substep);
+        for (int j = 0; j < l.rows && status.text == "ok"; ++j)
+          for (int i = 0; i < l.columns && status.text == "ok"; ++i)
+            for (int k = 0; k < 3; ++k)
+              if (!(std::abs(l.x.at(k, j, i)) < kFarAway) || !std::isfinite(l.v.at(k, j, i))) {
+                status.stage = stage->name;
+                status.cloth = int(c);
+                status.i = i;
+                status.j = j;
+                status.text = "not finite in frame " + std::to_string(status.frame) + ", substep " +
+                              std::to_string(s + 1) + ", stage " + stage->name + ", cloth " +
+                              std::to_string(c) + ", particle [" + std::to_string(i) + "," +
+                              std::to_string(j) + "]";
+                break;
+              }
+        if (status.text != "ok") return;
+      }
+    }
+  }
+}
+
+}  // namespace weft

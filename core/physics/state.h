@@ -1,0 +1,59 @@
+// Everything a simulation holds, and the frame.
+#pragma once
+
+#include <atomic>
+#include <deque>
+
+#include "physics/plan.h"
+#include "physics/stability.h"
+#include "physics/threads.h"
+#include "weft/simulation.h"
+
+namespace weft {
+
+struct Simulation::State {
+  State(Scene given, const Options& given_options);
+
+  void advance_frame();
+  void set(std::span<const double> positions, std::span<const double> velocities);
+  std::size_t backup_bytes() const;
+
+  Scene scene;  // as simulated; never changes
+  Options options;
+  Simd simd;
+  physics::Threads threads;
+  physics::Threads one_thread;  // for cloths too small to share out
+  Method method;                // the scene's, or the stable one put in its place
+  std::vector<std::unique_ptr<physics::ClothStep>> cloths;
+  Plan plan;
+  Status status;
+  std::int64_t frame = 0, total_substeps = 0;
+  std::uint64_t changes = 0;  // state set from outside
+  int substeps = 1;
+  double dt = 0;
+  std::vector<physics::Spectrum> spectra;  // of every cloth at the start (explicit springs)
+
+  // Wall time of every frame [ms]; reserved ahead for the scene's own length.
+  std::vector<float> frame_ms;
+  double total_ms = 0;
+  std::deque<std::vector<std::atomic<std::int64_t>>> stage_ns;  // per cloth, per stage (profile)
+
+ private:
+  struct Backup {
+    physics::Rows x, v;
+  };
+  std::vector<Backup> backups_;
+
+  void choose_method_and_substeps();
+  void build_cloths();
+  void set_substeps(int count);
+  void shift_velocities(double by_dt);
+  void follow_stretch();
+  void run_frame();
+  void save();
+  void restore();
+  bool finite() const;
+  void find_fault();
+};
+
+}  // namespace weft
