@@ -1,0 +1,24 @@
+# What `cmake --install` gives: the program, the headers, the library with its kernels inside, and
+# the package by which find_package(weft CONFIG) finds weft::core; the shipped scenes and the schema.
+include(CMakePackageConfigHelpers)
+
+set(weft_package ${CMAKE_INSTALL_LIBDIR}/cmake/weft)
+install(TARGETS weft_core EXPORT weftTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY include/weft DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT weftTargets NAMESPACE weft:: DESTINATION ${weft_package})
+
+# The library is static: whoever links it links what it uses inside, oneTBB, but sees none of it.
+file(CONFIGURE OUTPUT weftConfig.cmake @ONLY CONTENT [[
+include(CMakeFindDependencyMacro)
+find_dependency(TBB)
+include("${CMAKE_CURRENT_LIST_DIR}/weftTargets.cmake")
+]])
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/weftConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/weftConfig.cmake
+  ${CMAKE_CURRENT_BINARY_DIR}/weftConfigVersion.cmake DESTINATION ${weft_package})
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/weft/scenes
+  FILES_MATCHING PATTERN "*.json")
+install(FILES ${PROJECT_SOURCE_DIR}/docs/scene.schema.json
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)

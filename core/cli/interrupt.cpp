@@ -21,6 +21,9 @@ void catch_interrupts() {
   action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
+  // A file that meets its size limit is a write that fails, not the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 int interrupted() {

@@ -3,7 +3,7 @@
 
 namespace weft::cli {
 
-// From now on the first SIGINT or SIGTERM only makes interrupted() answer; a second one ends the
+// From now on the first SIGINT, SIGTERM or SIGHUP only makes interrupted() answer; a second one ends the
 // process at once.
 void catch_interrupts();
 

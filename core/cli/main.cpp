@@ -1,4 +1,7 @@
 // The program `weft`: its commands, and how whatever goes wrong becomes a line and an exit code.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
 #include <iostream>
 #include <new>
 
@@ -69,13 +72,13 @@ Fault usage_fault(const CLI::App& program, const CLI::ParseError& error) {
   return {text.substr(0, colon), text.substr(colon + 2), says_allowed ? "" : help};
 }
 
-int main(int argument_count, char** arguments) {
+int run_program(int argument_count, char** arguments) {
   int exit_code = kDone;
   CLI::App program{"Weft: fast and accurate cloth simulation on the CPU", "weft"};
   program.set_version_flag("--version", "weft " WEFT_VERSION, "Print the version");
-  program.footer(kFooter);
   program.require_subcommand(1);
   add_commands(program, exit_code);
+  program.footer(kFooter);  // after the commands, which would show it, too
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::Success& asked) {  // --help, --version
@@ -90,9 +93,6 @@ int main(int argument_count, char** arguments) {
   } catch (const WriteError& error) {
     print({{error.path, error.what(), ""}});
     return kNotWritten;
-  } catch (const std::bad_alloc&) {
-    print({{"memory", "this scene needs more than there is", ""}});
-    return kStopped;
   }
   if (!std::cout.flush()) {
     print({{"standard output", "writing failed", ""}});
@@ -106,5 +106,12 @@ int main(int argument_count, char** arguments) {
 }  // namespace weft::cli
 
 int main(int argument_count, char** arguments) {
-  return weft::cli::main(argument_count, arguments);
+  try {
+    return weft::cli::run_program(argument_count, arguments);
+  } catch (const std::bad_alloc&) {
+    std::fputs("weft: error: memory: this scene needs more than there is\n", stderr);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "weft: error: internal: %s\n", error.what());
+  }
+  return weft::cli::kStopped;
 }

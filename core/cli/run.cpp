@@ -82,7 +82,6 @@ class Files {
     refuse_same({arguments.report, arguments.dump, arguments.animation});
     if (!arguments.animation.empty()) {
       animation_ = open_animation(arguments.animation, simulation.view());
-      written_.push_back(arguments.animation);
     }
     if (!arguments.dump.empty()) dump_.emplace(arguments.dump);
     if (!arguments.report.empty()) report_.emplace(arguments.report);
@@ -95,7 +94,10 @@ class Files {
 
   // A simulation that stopped itself has no final positions: it leaves no dump.
   void finish(const Simulation& simulation, const Report& report) {
-    if (animation_) animation_->finish();
+    if (animation_) {
+      animation_->finish();
+      written_.push_back(animation_->written());
+    }
     if (dump_ && simulation.status().ok) commit(*dump_, dump_bytes(simulation.positions()));
     if (report_) commit(*report_, to_json(report));
   }

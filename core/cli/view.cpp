@@ -20,7 +20,7 @@ fs::path find_viewer() {
   std::error_code error;
   const fs::path here = fs::read_symlink("/proc/self/exe", error).parent_path();
   for (const fs::path& place : {here, here.parent_path() / "viewer"}) {
-    const fs::path viewer = place / "weft-viewer";
+    fs::path viewer = place / "weft-viewer";
     if (!here.empty() && ::access(viewer.c_str(), X_OK) == 0) return viewer;
   }
   throw Failure{kBadCommandLine,
@@ -32,6 +32,7 @@ int view(std::vector<std::string> arguments) {
   const fs::path viewer = find_viewer();
   arguments.insert(arguments.begin(), viewer.string());
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
   ::execv(viewer.c_str(), pointers.data());

@@ -24,6 +24,7 @@ constexpr std::array<Format, 2> kFormats{{
 
 std::vector<std::string> animation_extensions() {
   std::vector<std::string> extensions;
+  extensions.reserve(kFormats.size());
   for (const Format& format : kFormats) extensions.emplace_back(format.extension);
   return extensions;
 }

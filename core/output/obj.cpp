@@ -75,6 +75,8 @@ class ObjSequence final : public Animation {
 
   void finish() override {}
 
+  std::string written() const override { return name(0) + " … " + name(samples_ - 1); }
+
  private:
   // run.obj -> run_0012.obj; beyond 9999 the number grows a digit.
   std::string name(std::int64_t sample) const {

@@ -49,6 +49,8 @@ class Pc2 final : public Animation {
     file_.commit();
   }
 
+  std::string written() const override { return file_.path(); }
+
  private:
   void append_row(const ClothView& cloth, int j) {
     row_.clear();

@@ -39,8 +39,9 @@ std::string stages_text(const std::vector<PlannedStage>& stages) {
   int order = 0;
   for (const PlannedStage& stage : stages) {
     text += right(std::to_string(++order), 3) + "  " + padded(stage.name, name_width) + "  " +
-            right(number(stage.calls_per_frame), 13) + "  " + padded(items(stage), item_width) +
-            (stage.detail.empty() ? "" : "  " + stage.detail) + "\n";
+            right(number(stage.calls_per_frame), 13) + "  ";
+    text += stage.detail.empty() ? items(stage) : padded(items(stage), item_width) + "  ";
+    text += stage.detail + "\n";
   }
   return text;
 }

@@ -67,6 +67,8 @@ class Animation {
   virtual void append(const View& view) = 0;
   // Makes what was appended so far valid under its real name.
   virtual void finish() = 0;
+  // What finish() leaves: "run.pc2", "run_0000.obj … run_0300.obj".
+  virtual std::string written() const = 0;
 };
 
 // The animation formats, by file extension:
