@@ -1,0 +1,11 @@
+# What the library carries inside it: the schemas as text, and where the shipped scenes lie.
+set(weft_docs ${PROJECT_SOURCE_DIR}/docs)
+foreach(schema scene course)
+  file(READ ${weft_docs}/${schema}.schema.json weft_${schema}_schema)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${weft_docs}/${schema}.schema.json)
+endforeach()
+set(weft_source_scenes ${PROJECT_SOURCE_DIR}/scenes)
+configure_file(scene/assets.cpp.in ${CMAKE_CURRENT_BINARY_DIR}/assets.cpp @ONLY)
+target_sources(weft_core PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/assets.cpp)
+install(DIRECTORY ${weft_source_scenes} DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)
+install(FILES ${weft_docs}/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)

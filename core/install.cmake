@@ -1,5 +1,5 @@
 # What `cmake --install` gives: the program, the headers, the library with its kernels inside, and
-# the package by which find_package(weft CONFIG) finds weft::core; the shipped scenes and the schema.
+# the package by which find_package(weft CONFIG) finds weft::core. (Scenes and schema: assets.cmake.)
 include(CMakePackageConfigHelpers)
 
 set(weft_package ${CMAKE_INSTALL_LIBDIR}/cmake/weft)
@@ -17,8 +17,3 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/weftConfigVersion.c
   COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/weftConfig.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/weftConfigVersion.cmake DESTINATION ${weft_package})
-
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes/ DESTINATION ${CMAKE_INSTALL_DATADIR}/weft/scenes
-  FILES_MATCHING PATTERN "*.json")
-install(FILES ${PROJECT_SOURCE_DIR}/docs/scene.schema.json
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)

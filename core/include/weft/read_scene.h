@@ -11,6 +11,9 @@
 namespace weft {
 
 // One override of a scene value: `/solver/iterations=20`. The value is JSON; a bare word is a string.
+// What the file leaves out on the way there is filled in with its defaults; an index one past the
+// end of a list appends. In a course scene, pointers below /cloth, /sphere and /plane change the
+// file's own values, all others the Weft scene that it means.
 struct Override {
   std::string pointer;
   std::string value;
@@ -19,7 +22,8 @@ struct Override {
 struct SceneFile {
   Scene scene;                // complete only when `faults` is empty
   std::string path;           // the file it came from; "" for text
-  std::vector<Fault> faults;  // all that is wrong, in the order of the file
+  std::vector<Fault> faults;  // all that is wrong (the first 100): values in the order of the file,
+                              // then what does not fit together
   bool found = true;          // false: no such file and no shipped scene of that name
 };
 

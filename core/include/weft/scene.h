@@ -19,6 +19,7 @@ using Vec3 = std::array<double, 3>;
 struct Key {
   double time = 0;
   Vec3 position{};
+  friend bool operator==(const Key&, const Key&) = default;
 };
 
 // A held particle of the grid. Without keys it stays where it starts.
@@ -26,6 +27,7 @@ struct Pin {
   int i = 0;  // column, 0 … nx-1
   int j = 0;  // row, 0 … ny-1
   std::vector<Key> keys;
+  friend bool operator==(const Pin&, const Pin&) = default;
 };
 
 // A rectangular sheet of nx*ny particles: particle (i,j) starts at
@@ -37,6 +39,7 @@ struct Grid {
   Vec3 u{1, 0, 0};    // whole side, m; u and v are not parallel
   Vec3 v{0, 0, 1};    // whole side, m
   double jitter = 0;  // m; each particle starts up to this far off the sheet along its normal
+  friend bool operator==(const Grid&, const Grid&) = default;
 };
 
 // One value for each kind of constraint: structural (1,0) (0,1), shear (1,1) (1,-1),
@@ -45,6 +48,7 @@ struct Kinds {
   double structural = 0;
   double shear = 0;
   double bend = 0;
+  friend bool operator==(const Kinds&, const Kinds&) = default;
 };
 
 enum class SelfCollisionMode { off, particles, surface };
@@ -58,6 +62,7 @@ struct SelfCollision {
   double thickness = 0.01;  // m; the least distance between two layers
   double friction = 0.3;    // Coulomb coefficient between layers (response stiff)
   SelfCollisionResponse response = SelfCollisionResponse::stiff;
+  friend bool operator==(const SelfCollision&, const SelfCollision&) = default;
 };
 
 struct Cloth {
@@ -77,21 +82,25 @@ struct Cloth {
   double tear_strain = 0;     // 0.5 = a constraint beyond 150 % is cut; 0 = cannot tear
   SelfCollision self_collision;
   std::vector<Pin> pins;
+  friend bool operator==(const Cloth&, const Cloth&) = default;
 };
 
 struct Sphere {
   Vec3 center{};
   double radius = 0.1;  // m
+  friend bool operator==(const Sphere&, const Sphere&) = default;
 };
 
 struct Plane {
   Vec3 point{};
   Vec3 normal{0, 1, 0};  // need not be a unit vector; the cloth stays on its side
+  friend bool operator==(const Plane&, const Plane&) = default;
 };
 
 struct Capsule {
   Vec3 a{}, b{0, 1, 0};  // ends of the axis
   double radius = 0.1;   // m
+  friend bool operator==(const Capsule&, const Capsule&) = default;
 };
 
 // A box of half-sizes `half` about `center`, turned by `rotation` [degrees, about x then y then z],
@@ -101,6 +110,7 @@ struct Box {
   Vec3 half{0.1, 0.1, 0.1};
   Vec3 rotation{};
   double rounding = 0;
+  friend bool operator==(const Box&, const Box&) = default;
 };
 
 // `coulomb`: a particle in contact sticks while the tangential motion is within `statik` times the
@@ -112,6 +122,7 @@ struct Friction {
   FrictionModel model = FrictionModel::coulomb;
   double statik = 0;   // >= dynamic
   double dynamic = 0;  // >= 0; course: 0 … 1
+  friend bool operator==(const Friction&, const Friction&) = default;
 };
 
 using Shape = std::variant<Sphere, Plane, Capsule, Box>;
@@ -122,6 +133,7 @@ struct Collider {
   double offset = 0;      // m; the cloth is kept this far off the surface
   std::vector<Key> keys;  // path of the sphere's or box's center, the plane's point, the capsule's a
   bool cuts = false;      // cuts the constraints that pass through it instead of pushing
+  friend bool operator==(const Collider&, const Collider&) = default;
 };
 
 struct Wind {
@@ -129,6 +141,7 @@ struct Wind {
   double drag = 0;        // kg/m³; force per area and speed² along the normal
   double lift = 0;        // kg/m³; the same across the flow
   double turbulence = 0;  // 0 … 1; relative size of random gusts
+  friend bool operator==(const Wind&, const Wind&) = default;
 };
 
 enum class Method { positional, spring, spring_friction, compliant };
@@ -141,6 +154,7 @@ struct Solver {
   int order = 1;                      // 2: second-order substep (compliant)
   int iterations = 1;                 // constraint sweeps per substep, 1 … 1000
   int collision_iterations = 1;       // passes over the colliders per substep, 1 … 100
+  friend bool operator==(const Solver&, const Solver&) = default;
 };
 
 inline constexpr int kAutoSubsteps = 0;
@@ -149,6 +163,7 @@ struct Time {
   double frame = 1.0 / 60;       // s; one frame, 1e-5 … 1
   int substeps = kAutoSubsteps;  // per frame, 1 … 100000; kAutoSubsteps: from the stability limit
   double seconds = 5;            // s; how long a run lasts unless told otherwise
+  friend bool operator==(const Time&, const Time&) = default;
 };
 
 struct Scene {
@@ -160,6 +175,7 @@ struct Scene {
   std::vector<Cloth> cloths;
   std::vector<Collider> colliders;
   Wind wind;
+  friend bool operator==(const Scene&, const Scene&) = default;
 };
 
 // One thing wrong with a scene: where (a JSON pointer, "" for the whole), what is wrong, and what

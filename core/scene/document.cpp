@@ -1,0 +1,133 @@
+#include "scene/document.h"
+
+#include <cmath>
+#include <utility>
+
+#include "scene/read_fields.h"
+#include "scene/schema.h"
+
+namespace weft::text {
+namespace {
+
+// Fields -> JSON, the mirror image of FieldReader.
+class FieldWriter {
+ public:
+  template <class T>
+  void operator()(const char* key, T&& field) {
+    object_[key] = write(field);
+  }
+
+  void operator()(Shape& shape) {
+    std::visit([&](auto& one) { object_[kShapeKeys[shape.index()]] = write(one); }, shape);
+  }
+
+  // Whole numbers without a fraction; the sign of zero is kept.
+  static Json write(double field) {
+    const bool whole = std::trunc(field) == field && std::abs(field) < 1e15;
+    if (whole && !(field == 0 && std::signbit(field))) return static_cast<std::int64_t>(field);
+    return field;
+  }
+
+  static Json write(int field) { return field; }
+  static Json write(bool field) { return field; }
+  static Json write(const std::string& field) { return field; }
+
+  static Json write(const Vec3& field) {
+    return Json::array({write(field[0]), write(field[1]), write(field[2])});
+  }
+
+  static Json write(Substeps field) {
+    if (field.value == kAutoSubsteps) return "auto";
+    return field.value;
+  }
+
+  static Json write(Points field) { return Json::array({field.nx, field.ny}); }
+
+  static Json write(const Key& key) {
+    const Vec3& p = key.position;
+    return Json::array({write(key.time), write(p[0]), write(p[1]), write(p[2])});
+  }
+
+  static Json write(Pin& pin) {
+    Json at = write(Points{pin.i, pin.j});
+    if (pin.keys.empty()) return at;
+    Json object = Json::object();
+    object["at"] = std::move(at);
+    object["keys"] = write(pin.keys);
+    return object;
+  }
+
+  static Json write(const Friction& friction) {
+    Json object = Json::object();
+    if (friction.model == FrictionModel::course) {
+      object["course"] = write(friction.dynamic);
+    } else {
+      if (friction.statik == friction.dynamic) return write(friction.dynamic);
+      object["static"] = write(friction.statik);
+      object["dynamic"] = write(friction.dynamic);
+    }
+    return object;
+  }
+
+  template <class T>
+  static Json write(std::vector<T>& list) {
+    Json array = Json::array();
+    for (T& item : list) array.push_back(write(item));
+    return array;
+  }
+
+  template <class T>
+  requires std::is_enum_v<T>
+  static Json write(T field) {
+    const auto names = words(T{});
+    const auto k = static_cast<std::size_t>(field);
+    if (k < names.size()) return names[k];
+    return static_cast<int>(field);  // a value outside of the enum: the schema faults the number
+  }
+
+  template <class T>
+  requires requires(FieldWriter& walk, T& field) { fields(walk, field); }
+  static Json write(T& field) {
+    FieldWriter walk;
+    fields(walk, field);
+    return std::move(walk.object_);
+  }
+
+ private:
+  Json object_ = Json::object();
+};
+
+}  // namespace
+
+Scene scene_of(const Json& document) {
+  Scene scene;
+  FieldReader::read(document, scene);
+  return scene;
+}
+
+Json document_of(Scene scene) {
+  Json document = Json::object();
+  document["weft"] = 1;
+  document.update(FieldWriter::write(scene));
+  return document;
+}
+
+void drop_defaults(const Json& schema, Json& value) {
+  const Json* chosen = alternative(schema, value);
+  if (!chosen || !value.is_structured()) return;
+  if (value.is_array()) {
+    if (const Json* items = member(*chosen, "items"))
+      for (Json& item : value) drop_defaults(*items, item);
+    return;
+  }
+  Json kept = Json::object();
+  for (auto it = value.begin(); it != value.end(); ++it) {
+    const Json* property = descend(*chosen, nullptr, it.key());
+    if (property) drop_defaults(*property, *it);
+    const Json* standard = property ? member(*property, "default") : nullptr;
+    if (!standard || *standard != *it) kept[it.key()] = std::move(*it);
+  }
+  value = std::move(kept);
+}
+
+}  // namespace weft::text

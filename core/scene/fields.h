@@ -1,0 +1,153 @@
+// Which key of a Weft scene names which field of Scene: stated once, and walked by the reader and
+// the writer alike (document.cpp). Order is that of written files.
+#pragma once
+
+#include <array>
+
+#include "weft/scene.h"
+
+namespace weft::text {
+
+// Values whose JSON form differs from their fields.
+struct Substeps {  // an integer, or "auto" for kAutoSubsteps
+  int& value;
+};
+struct Points {  // [nx, ny]
+  int& nx;
+  int& ny;
+};
+
+// The words for the values of each enum, in their order.
+constexpr std::array<const char*, 4> words(Method) {
+  return {"positional", "spring", "spring_friction", "compliant"};
+}
+constexpr std::array<const char*, 3> words(Sweep) {
+  return {"gauss_seidel", "jacobi", "line"};
+}
+constexpr std::array<const char*, 3> words(SelfCollisionMode) {
+  return {"off", "particles", "surface"};
+}
+constexpr std::array<const char*, 2> words(SelfCollisionResponse) {
+  return {"stiff", "course"};
+}
+
+template <class Walk>
+void fields(Walk& walk, Time& time) {
+  walk("frame", time.frame);
+  walk("substeps", Substeps{time.substeps});
+  walk("seconds", time.seconds);
+}
+
+template <class Walk>
+void fields(Walk& walk, Solver& solver) {
+  walk("method", solver.method);
+  walk("sweep", solver.sweep);
+  walk("tethers", solver.tethers);
+  walk("order", solver.order);
+  walk("iterations", solver.iterations);
+  walk("collision_iterations", solver.collision_iterations);
+}
+
+template <class Walk>
+void fields(Walk& walk, Grid& grid) {
+  walk("points", Points{grid.nx, grid.ny});
+  walk("origin", grid.origin);
+  walk("u", grid.u);
+  walk("v", grid.v);
+  walk("jitter", grid.jitter);
+}
+
+template <class Walk>
+void fields(Walk& walk, Kinds& kinds) {
+  walk("structural", kinds.structural);
+  walk("shear", kinds.shear);
+  walk("bend", kinds.bend);
+}
+
+template <class Walk>
+void fields(Walk& walk, SelfCollision& self) {
+  walk("mode", self.mode);
+  walk("thickness", self.thickness);
+  walk("friction", self.friction);
+  walk("response", self.response);
+}
+
+template <class Walk>
+void fields(Walk& walk, Cloth& cloth) {
+  walk("grid", cloth.grid);
+  walk("density", cloth.density);
+  walk("particle_mass", cloth.particle_mass);
+  walk("masses", cloth.masses);
+  walk("stiffness", cloth.stiffness);
+  walk("spring_damping", cloth.spring_damping);
+  walk("level", cloth.level);
+  walk("stiffness_gradient", cloth.stiffness_gradient);
+  walk("positional_k", cloth.positional_k);
+  walk("drag", cloth.drag);
+  walk("bending", cloth.bending);
+  walk("strain_limit", cloth.strain_limit);
+  walk("tear_strain", cloth.tear_strain);
+  walk("self_collision", cloth.self_collision);
+  walk("pins", cloth.pins);
+}
+
+template <class Walk>
+void fields(Walk& walk, Sphere& sphere) {
+  walk("center", sphere.center);
+  walk("radius", sphere.radius);
+}
+
+template <class Walk>
+void fields(Walk& walk, Plane& plane) {
+  walk("point", plane.point);
+  walk("normal", plane.normal);
+}
+
+template <class Walk>
+void fields(Walk& walk, Capsule& capsule) {
+  walk("a", capsule.a);
+  walk("b", capsule.b);
+  walk("radius", capsule.radius);
+}
+
+template <class Walk>
+void fields(Walk& walk, Box& box) {
+  walk("center", box.center);
+  walk("half", box.half);
+  walk("rotation", box.rotation);
+  walk("rounding", box.rounding);
+}
+
+template <class Walk>
+void fields(Walk& walk, Collider& collider) {
+  walk(collider.shape);  // under the key of its kind
+  walk("friction", collider.friction);
+  walk("offset", collider.offset);
+  walk("keys", collider.keys);
+  walk("cuts", collider.cuts);
+}
+
+template <class Walk>
+void fields(Walk& walk, Wind& wind) {
+  walk("velocity", wind.velocity);
+  walk("drag", wind.drag);
+  walk("lift", wind.lift);
+  walk("turbulence", wind.turbulence);
+}
+
+template <class Walk>
+void fields(Walk& walk, Scene& scene) {
+  walk("name", scene.name);
+  walk("about", scene.about);
+  walk("gravity", scene.gravity);
+  walk("time", scene.time);
+  walk("solver", scene.solver);
+  walk("cloths", scene.cloths);
+  walk("colliders", scene.colliders);
+  walk("wind", scene.wind);
+}
+
+// The key of a collider for each alternative of Shape.
+constexpr std::array<const char*, 4> kShapeKeys{"sphere", "plane", "capsule", "box"};
+
+}  // namespace weft::text

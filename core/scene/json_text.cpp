@@ -1,0 +1,209 @@
+#include "scene/json_text.h"
+
+#include <algorithm>
+
+namespace weft::text {
+namespace {
+
+// Builds the document event by event; stops at the first fault.
+class Builder : public nlohmann::json_sax<Json> {
+ public:
+  Builder(std::string_view text, Json& root, std::vector<Fault>& faults)
+      : text_(text), root_(root), faults_(faults) {}
+
+  bool null() override { return add(nullptr); }
+  bool boolean(bool value) override { return add(value); }
+  bool number_integer(number_integer_t value) override { return add(value); }
+  bool number_unsigned(number_unsigned_t value) override { return add(value); }
+  bool number_float(number_float_t value, const string_t&) override { return add(value); }
+  bool string(string_t& value) override { return add(std::move(value)); }
+  bool binary(binary_t&) override { return false; }
+  bool start_object(std::size_t) override { return open(Json::object()); }
+  bool start_array(std::size_t) override { return open(Json::array()); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+
+  bool key(string_t& name) override {
+    Json& object = *open_.back().value;
+    const std::string place = join(open_.back().place, name);
+    if (object.contains(name)) return fail(place, "the key is given twice", "each key once");
+    if (object.size() == kMaxKeys)
+      return fail(open_.back().place, "the object has more than 1000 keys", "at most 1000");
+    key_ = name;
+    return true;
+  }
+
+  bool parse_error(std::size_t position, const std::string&,
+                   const nlohmann::detail::exception& error) override {
+    const std::string_view before = text_.substr(0, position > 0 ? position - 1 : 0);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const auto column = before.size() - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+    return fail("",
+                "line " + std::to_string(line) + ", column " + std::to_string(column) + ": " +
+                    reason(error.what()),
+                "plain JSON");
+  }
+
+ private:
+  struct Open {
+    Json* value;
+    std::string place;
+  };
+
+  // What the parser says, without its prefix and without the text that it quotes.
+  static std::string reason(std::string what) {
+    const auto start = what.find("column ");
+    const auto from =
+        what.find(start == std::string::npos ? "] " : ": ", start == std::string::npos ? 0 : start);
+    if (from != std::string::npos) what.erase(0, from + 2);
+    if (what.starts_with("number overflow")) return "the number is too large";
+    const auto quote = what.find("; last read: ");
+    if (quote == std::string::npos) return what;
+    const auto rest = what.rfind("; expected ");
+    return what.substr(0, quote) +
+           (rest != std::string::npos && rest > quote ? what.substr(rest) : "");
+  }
+
+  bool fail(std::string place, std::string what, std::string allowed) {
+    faults_.push_back({std::move(place), std::move(what), std::move(allowed)});
+    return false;
+  }
+
+  Json* place_value(Json&& value) {
+    if (open_.empty()) return &(root_ = std::move(value));
+    Json& parent = *open_.back().value;
+    if (parent.is_array()) return &parent.emplace_back(std::move(value));
+    return &(parent[key_] = std::move(value));
+  }
+
+  bool add(Json&& value) {
+    place_value(std::move(value));
+    return true;
+  }
+
+  bool open(Json&& value) {
+    if (open_.size() == kMaxDepth)
+      return fail("", "lists and objects are nested deeper than 32", "at most 32");
+    std::string place;
+    if (!open_.empty()) {
+      const Open& parent = open_.back();
+      const bool list = parent.value->is_array();
+      place = join(parent.place, list ? std::to_string(parent.value->size()) : key_);
+    }
+    Json* placed = place_value(std::move(value));
+    open_.push_back({placed, std::move(place)});
+    return true;
+  }
+
+  bool close() {
+    open_.pop_back();
+    return true;
+  }
+
+  std::string_view text_;
+  Json& root_;
+  std::vector<Fault>& faults_;
+  std::vector<Open> open_;  // from the root to the list or object being read
+  std::string key_;
+};
+
+constexpr std::size_t kLineWidth = 90;
+
+// Whether the value reads well on one line: no member of it is itself nested more than once.
+bool is_flat(const Json& value, int depth) {
+  if (!value.is_structured()) return true;
+  if (depth == 0 || value.size() > 32) return false;
+  return std::all_of(value.begin(), value.end(),
+                     [&](const Json& item) { return is_flat(item, depth - 1); });
+}
+
+std::string one_line(const Json& value) {
+  if (!value.is_structured()) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = value.is_array() ? "[" : "{";
+  for (auto it = value.begin(); it != value.end(); ++it) {
+    if (it != value.begin()) text += ", ";
+    if (value.is_object()) text += one_line(Json(it.key())) + ": ";
+    text += one_line(*it);
+  }
+  return text + (value.is_array() ? "]" : "}");
+}
+
+void print(const Json& value, std::size_t indent, std::string& text) {
+  if (is_flat(value, 3)) {
+    const std::string line = one_line(value);
+    if (indent + line.size() <= kLineWidth || !value.is_structured()) {
+      text += line;
+      return;
+    }
+  }
+  text += value.is_array() ? "[" : "{";
+  for (auto it = value.begin(); it != value.end(); ++it) {
+    text += it == value.begin() ? "\n" : ",\n";
+    text.append(indent + 2, ' ');
+    if (value.is_object()) text += one_line(Json(it.key())) + ": ";
+    print(*it, indent + 2, text);
+  }
+  text += "\n" + std::string(indent, ' ') + (value.is_array() ? "]" : "}");
+}
+
+}  // namespace
+
+Json parse(std::string_view text, std::vector<Fault>& faults) {
+  Json root;
+  if (text.size() > kMaxTextBytes) {
+    faults.push_back({"", "the text is longer than 64 MiB", "at most 64 MiB"});
+    return root;
+  }
+  const std::size_t known = faults.size();
+  Builder builder(text, root, faults);
+  Json::sax_parse(text.begin(), text.end(), &builder);
+  return faults.size() == known ? root : Json();
+}
+
+std::string print(const Json& value) {
+  std::string text;
+  print(value, 0, text);
+  return text + "\n";
+}
+
+std::string brief(const Json& value) {
+  constexpr std::size_t kMost = 40;
+  if (value.is_object()) return "an object";
+  if (value.is_array()) {
+    if (!is_flat(value, 1) || value.size() > 4) return "a list of " + std::to_string(value.size());
+  }
+  if (value.is_number_float()) {  // JSON has no word for these
+    if (std::isnan(value.get<double>())) return "not a number (NaN)";
+    if (std::isinf(value.get<double>())) return "infinite";
+  }
+  std::string text;
+  if (value.is_string() && value.get_ref<const std::string&>().size() > kMost) {
+    text = one_line(Json(value.get_ref<const std::string&>().substr(0, kMost)));
+    return text.substr(0, text.size() - 1) + "…\"";
+  }
+  text = one_line(value);
+  return text.size() > 4 * kMost ? "a list of " + std::to_string(value.size()) : text;
+}
+
+const Json* member(const Json& object, std::string_view key) {
+  if (!object.is_object()) return nullptr;
+  for (auto it = object.begin(); it != object.end(); ++it)
+    if (it.key() == key) return &*it;
+  return nullptr;
+}
+
+std::string join(std::string_view place, std::string_view token) {
+  std::string joined(place);
+  joined += '/';
+  for (const char c : token) {
+    if (c == '~')
+      joined += "~0";
+    else if (c == '/')
+      joined += "~1";
+    else
+      joined += c;
+  }
+  return joined;
+}
+
+}  // namespace weft::text

@@ -1,0 +1,109 @@
+#include "scene/overrides.h"
+
+#include <charconv>
+
+namespace weft::text {
+namespace {
+
+// The value as JSON; what does not begin like JSON is a string.
+bool parse_value(const Override& change, Json& value, Check& result) {
+  std::vector<Fault> faults;
+  value = parse(change.value, faults);
+  if (faults.empty()) return true;
+  const bool word = !change.value.empty() &&
+                    std::string_view("{[\"-0123456789").find(change.value[0]) == std::string::npos;
+  if (word) {
+    value = change.value;
+    return true;
+  }
+  const bool empty = change.value.empty();
+  result.fault(change.pointer, empty ? "the value is empty" : "the value is " + faults[0].what,
+               "JSON, or a bare word");
+  return false;
+}
+
+// What a missing value starts from: its default, else an empty list or object.
+Json starting_value(const Json& schema) {
+  const Json* standard = member(schema, "default");
+  if (standard && standard->is_structured()) return *standard;
+  const bool list = member(schema, "items") || member(schema, "prefixItems");
+  return list ? Json::array() : Json::object();
+}
+
+// The element of a list that a token names; one past the end appends. Null: no such element.
+Json* element(Json& list, const std::string& token) {
+  std::size_t k = 0;
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), k);
+  if (token == "-")
+    k = list.size();
+  else if (error != std::errc() || end != token.data() + token.size())
+    return nullptr;
+  if (k > list.size()) return nullptr;
+  if (k == list.size()) list.push_back(nullptr);
+  return &list[k];
+}
+
+}  // namespace
+
+bool split_pointer(const std::string& pointer, std::vector<std::string>& tokens) {
+  if (pointer.size() < 2 || pointer[0] != '/') return false;
+  tokens.clear();
+  for (std::size_t k = 0; k < pointer.size(); ++k) {
+    if (pointer[k] == '/') {
+      tokens.emplace_back();
+    } else if (pointer[k] != '~') {
+      tokens.back() += pointer[k];
+    } else {
+      ++k;
+      if (k == pointer.size() || (pointer[k] != '0' && pointer[k] != '1')) return false;
+      tokens.back() += pointer[k] == '0' ? '~' : '/';
+    }
+  }
+  return tokens.size() <= kMaxDepth;
+}
+
+void apply_override(const Json& schema, const Override& change, Json& document, Check& result) {
+  std::vector<std::string> tokens;
+  Json value;
+  if (!split_pointer(change.pointer, tokens)) {
+    result.fault(change.pointer,
+                 "the override " + brief(Json(change.pointer)) + " is no JSON pointer to a value",
+                 "such as /solver/iterations");
+    return;
+  }
+  if (!parse_value(change, value, result)) return;
+  Json changed = document;  // so that a pointer that fails halfway leaves nothing behind
+  const Json* rule = &schema;
+  Json* here = &changed;
+  for (const std::string& token : tokens) {
+    const Json* below = descend(*rule, here, token);
+    if (!below) {
+      const std::string near = nearest(keys_of(*rule), token);
+      result.fault(
+          change.pointer, "there is no " + brief(Json(token)) + " to override",
+          near.empty() ? "a value of the scene" : "the nearest known key is \"" + near + "\"");
+      return;
+    }
+    if (here->is_null()) *here = starting_value(*rule);
+    if (here->is_object()) {
+      here = &(*here)[token];
+    } else if (here->is_array()) {
+      const std::size_t count = here->size();
+      here = element(*here, token);
+      if (!here) {
+        result.fault(change.pointer, "the list has no element " + token,
+                     count ? "0 to " + std::to_string(count) + ", the last of which appends"
+                           : "0, which appends");
+        return;
+      }
+    } else {
+      *here = Json::object();  // a number that has an object form (friction)
+      here = &(*here)[token];
+    }
+    rule = below;
+  }
+  *here = std::move(value);
+  document = std::move(changed);
+}
+
+}  // namespace weft::text

@@ -1,0 +1,129 @@
+// JSON -> fields. Reads what has the right form and leaves the rest as it is: whether all is right
+// is the schema's business (schema.h), and what is well is read even beside what is not.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "scene/fields.h"
+#include "scene/json_text.h"
+
+namespace weft::text {
+
+class FieldReader {
+ public:
+  explicit FieldReader(const Json& object) : object_(object) {}
+
+  template <class T>
+  void operator()(const char* key, T&& field) {
+    if (const Json* value = member(object_, key)) read(*value, field);
+  }
+
+  void operator()(Shape& shape) {
+    read_shape<Sphere>(kShapeKeys[0], shape);
+    read_shape<Plane>(kShapeKeys[1], shape);
+    read_shape<Capsule>(kShapeKeys[2], shape);
+    read_shape<Box>(kShapeKeys[3], shape);
+  }
+
+  static void read(const Json& value, double& field) {
+    if (value.is_number()) field = value.get<double>();
+  }
+
+  static void read(const Json& value, int& field) {
+    double number = field;
+    read(value, number);
+    if (number >= INT32_MIN && number <= INT32_MAX) field = static_cast<int>(number);
+  }
+
+  static void read(const Json& value, bool& field) {
+    if (value.is_boolean()) field = value.get<bool>();
+  }
+
+  static void read(const Json& value, std::string& field) {
+    if (value.is_string()) field = value.get<std::string>();
+  }
+
+  static void read(const Json& value, Vec3& field) {
+    if (value.is_array() && value.size() == 3)
+      for (std::size_t k = 0; k < 3; ++k) read(value[k], field[k]);
+  }
+
+  static void read(const Json& value, Substeps field) {
+    if (value == "auto")
+      field.value = kAutoSubsteps;
+    else
+      read(value, field.value);
+  }
+
+  static void read(const Json& value, Points field) {
+    if (!value.is_array() || value.size() != 2) return;
+    read(value[0], field.nx);
+    read(value[1], field.ny);
+  }
+
+  static void read(const Json& value, Key& field) {
+    if (!value.is_array() || value.size() != 4) return;
+    read(value[0], field.time);
+    for (std::size_t k = 0; k < 3; ++k) read(value[k + 1], field.position[k]);
+  }
+
+  static void read(const Json& value, Pin& field) {
+    if (const Json* at = member(value, "at")) {
+      read(*at, Points{field.i, field.j});
+      FieldReader walk(value);
+      walk("keys", field.keys);
+    } else {
+      read(value, Points{field.i, field.j});
+    }
+  }
+
+  static void read(const Json& value, Friction& field) {
+    if (const Json* course = member(value, "course")) {
+      field.model = FrictionModel::course;
+      read(*course, field.dynamic);
+      field.statik = field.dynamic;
+      return;
+    }
+    read(value, field.dynamic);
+    field.statik = field.dynamic;
+    FieldReader walk(value);
+    walk("static", field.statik);
+    walk("dynamic", field.dynamic);
+  }
+
+  template <class T>
+  static void read(const Json& value, std::vector<T>& list) {
+    if (!value.is_array()) return;
+    list.assign(value.size(), T{});
+    for (std::size_t k = 0; k < list.size(); ++k) read(value[k], list[k]);
+  }
+
+  template <class T>
+  requires std::is_enum_v<T>
+  static void read(const Json& value, T& field) {
+    const auto names = words(T{});
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (value == names[k]) field = static_cast<T>(k);
+  }
+
+  template <class T>
+  requires requires(FieldReader& walk, T& field) { fields(walk, field); }
+  static void read(const Json& value, T& field) {
+    FieldReader walk(value);
+    fields(walk, field);
+  }
+
+ private:
+  template <class T>
+  void read_shape(const char* key, Shape& shape) {
+    if (const Json* value = member(object_, key)) read(*value, shape.emplace<T>());
+  }
+
+  const Json& object_;
+};
+
+}  // namespace weft::text

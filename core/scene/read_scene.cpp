@@ -1,0 +1,140 @@
+// Text -> Scene, step by step: parse, override, check each value, read, check what must fit
+// together.
+#include "weft/read_scene.h"
+
+#include <filesystem>
+#include <fstream>
+
+#include "scene/assets.h"
+#include "scene/course.h"
+#include "scene/document.h"
+#include "scene/overrides.h"
+#include "scene/shipped.h"
+#include "scene/validate.h"
+
+namespace weft {
+namespace {
+
+using namespace text;
+
+// Reads a Weft document after overriding it.
+Scene read_weft(Json& document, const std::vector<Override>& overrides, Check& result) {
+  for (const Override& change : overrides)
+    apply_override(scene_schema_json(), change, document, result);
+  check(scene_schema_json(), document, result);
+  const Scene scene = scene_of(document);
+  check_together(scene, result);
+  return scene;
+}
+
+// Whether an override means the course file's own values rather than the scene that it stands for.
+bool in_course(const Override& change) {
+  std::vector<std::string> tokens;
+  return split_pointer(change.pointer, tokens) && descend(course_schema_json(), nullptr, tokens[0]);
+}
+
+Scene read_course(Json& document, const std::vector<Override>& overrides, Check& result) {
+  std::vector<Override> of_scene;
+  for (const Override& change : overrides) {
+    if (in_course(change))
+      apply_override(course_schema_json(), change, document, result);
+    else
+      of_scene.push_back(change);
+  }
+  Check course = std::move(result);
+  check(course_schema_json(), document, course);
+  const Scene scene = scene_of_course(document);
+
+  Check together;  // in places of the scene
+  for (const std::string& place : course.unsound)
+    together.unsound.push_back(scene_place(document, place));
+  check_together(scene, together);
+  for (Fault& fault : together.faults)
+    course.fault(course_place(document, fault.place), fault.what, fault.allowed);
+  result = std::move(course);
+  if (of_scene.empty()) return scene;
+  Json meant = document_of(scene);
+  if (!result.faults.empty()) {  // then only what is wrong with the overrides themselves
+    for (const Override& change : of_scene)
+      apply_override(scene_schema_json(), change, meant, result);
+    return scene;
+  }
+  return read_weft(meant, of_scene, result);
+}
+
+bool is_neither(const Json& document) {
+  return !document.is_object() || (!document.contains("weft") && !document.contains("cloths"));
+}
+
+std::string nearest_scene(const std::string& name) {
+  std::vector<std::string> names;
+  for (const ShippedScene& scene : shipped_scenes()) names.push_back(scene.name);
+  const std::string near = nearest(names, name);
+  return near.empty() ? "a path" : "a path, or a shipped scene; the nearest is \"" + near + "\"";
+}
+
+// The file's bytes, up to one more than any scene may have.
+bool read_bytes(const std::string& path, std::string& bytes) {
+  std::ifstream file(path, std::ios::binary);
+  char block[1 << 16];
+  while (file && bytes.size() <= kMaxTextBytes) {
+    file.read(block, sizeof block);
+    bytes.append(block, static_cast<std::size_t>(file.gcount()));
+  }
+  return !file.bad() && (file.eof() || bytes.size() > kMaxTextBytes);
+}
+
+}  // namespace
+
+SceneFile read_scene_text(std::string_view json, const std::vector<Override>& overrides) {
+  SceneFile file;
+  Json document = parse(json, file.faults);
+  if (!file.faults.empty()) return file;
+  Check result;
+  if (is_course(document)) {
+    file.scene = read_course(document, overrides, result);
+  } else if (is_neither(document)) {
+    result.fault("",
+                 document.is_object() ? "this is neither a Weft scene nor a course scene"
+                                      : "the scene is " + brief(document),
+                 "an object with \"weft\": 1 and cloths, or with cloth, sphere and plane");
+  } else {
+    file.scene = read_weft(document, overrides, result);
+  }
+  file.faults = std::move(result.faults);
+  return file;
+}
+
+SceneFile read_scene(const std::string& path_or_name, const std::vector<Override>& overrides) {
+  const bool path_like = path_or_name.find_first_of("/.") != std::string::npos;
+  std::string path = path_like ? "" : shipped_path(path_or_name);
+  if (path.empty()) path = path_or_name;
+  SceneFile file;
+  std::error_code error;
+  std::string bytes;
+  if (path.empty() || !std::filesystem::exists(path, error)) {
+    file.found = false;
+    file.faults.push_back({"", "there is no such scene", nearest_scene(path_or_name)});
+  } else if (std::filesystem::is_directory(path, error)) {
+    file.faults.push_back({"", "this is a folder", "a scene file"});
+  } else if (!read_bytes(path, bytes)) {
+    file.faults.push_back({"", "the file cannot be read", "a readable file"});
+  } else {
+    file = read_scene_text(bytes, overrides);
+    if (file.scene.name.empty()) file.scene.name = std::filesystem::path(path).stem().string();
+  }
+  file.path = path;
+  return file;
+}
+
+std::string write_scene_text(const Scene& scene) {
+  Json document = document_of(scene);
+  drop_defaults(scene_schema_json(), document);
+  return print(document);
+}
+
+std::string_view scene_schema() {
+  return kSceneSchema;
+}
+
+}  // namespace weft

@@ -1,0 +1,246 @@
+// validate(): the ranges come from the schema, by way of the scene's document; what must fit
+// together is checked here.
+#include "scene/validate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "scene/document.h"
+#include "scene/fields.h"
+
+namespace weft {
+namespace text {
+namespace {
+
+constexpr std::int64_t kMaxParticles = std::int64_t{1} << 24;  // of all cloths together
+constexpr double kMinSpacing = 1e-6;  // m; float positions resolve no finer grid
+constexpr double kMaxThickness = 4;   // spacings; a particle has some 50 neighbours within it
+constexpr double kMinSine = 1e-3;     // between u and v
+
+double length(const Vec3& a) {
+  return std::hypot(a[0], a[1], a[2]);
+}
+
+Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+std::string number(double x) {
+  return brief(Json(x));
+}
+
+std::string at(int i, int j) {
+  return "[" + std::to_string(i) + ", " + std::to_string(j) + "]";
+}
+
+class Together {
+ public:
+  Together(const Scene& scene, Check& result) : scene_(scene), result_(result) {}
+
+  void run() {
+    solver();
+    std::int64_t particles = 0;
+    for (std::size_t c = 0; c < scene_.cloths.size() && !result_.full(); ++c) {
+      const Cloth& one = scene_.cloths[c];
+      const std::string place = "/cloths/" + std::to_string(c);
+      if (sound({place + "/grid"})) particles += std::int64_t{one.grid.nx} * one.grid.ny;
+      cloth(one, place);
+    }
+    if (particles > kMaxParticles)
+      fault("/cloths", "the cloths have " + std::to_string(particles) + " particles",
+            "at most 16777216 in all");
+    for (std::size_t c = 0; c < scene_.colliders.size() && !result_.full(); ++c)
+      collider(scene_.colliders[c], "/colliders/" + std::to_string(c));
+  }
+
+ private:
+  bool sound(std::initializer_list<std::string> places) const {
+    return std::all_of(places.begin(), places.end(),
+                       [&](const std::string& place) { return result_.sound(place); });
+  }
+
+  void fault(const std::string& place, std::string what, std::string allowed) {
+    result_.fault(place, std::move(what), std::move(allowed));
+  }
+
+  void solver() {
+    const Solver& solver = scene_.solver;
+    if (!sound({"/solver/method"})) return;
+    const std::string method = words(Method{})[static_cast<std::size_t>(solver.method)];
+    const bool projects = solver.method == Method::positional || solver.method == Method::compliant;
+    const std::string sweeping = "method positional or compliant; the method is " + method;
+    if (solver.sweep != Sweep::gauss_seidel && !projects && sound({"/solver/sweep"}))
+      fault("/solver/sweep",
+            std::string("sweep is ") + words(Sweep{})[static_cast<std::size_t>(solver.sweep)],
+            "only with " + sweeping);
+    if (solver.tethers && !projects && sound({"/solver/tethers"}))
+      fault("/solver/tethers", "tethers are on", "only with " + sweeping);
+    if (solver.order == 2 && solver.method != Method::compliant && sound({"/solver/order"}))
+      fault("/solver/order", "order is 2", "only with method compliant; the method is " + method);
+  }
+
+  void cloth(const Cloth& cloth, const std::string& place) {
+    if (sound({place + "/grid"}) && grid(cloth.grid, place + "/grid")) {
+      masses(cloth, place);
+      self_collision(cloth, place);
+      level(cloth, place + "/level");
+    }
+    if (sound({place + "/grid/points", place + "/pins"})) pins(cloth, place + "/pins");
+    const bool timed = sound({"/time", place + "/drag"}) && scene_.time.substeps > 0;
+    const double loss = cloth.drag * scene_.time.frame / std::max(scene_.time.substeps, 1);
+    if (timed && loss > 1 + 1e-9)
+      fault(place + "/drag", "drag takes " + number(loss) + " of the velocity in one substep",
+            "at most 1: less drag or more substeps");
+  }
+
+  bool grid(const Grid& grid, const std::string& place) {
+    const std::size_t before = result_.faults.size();
+    const auto side = [&](const char* key, const Vec3& vector, double spacing) {
+      if (length(vector) == 0)
+        fault(place + "/" + key, std::string(key) + " is zero", "a side with a length");
+      else if (spacing < kMinSpacing)
+        fault(place + "/" + key, "the particles are " + number(spacing) + " m apart along " + key,
+              "at least 1e-6 m");
+    };
+    side("u", grid.u, spacing_u(grid));
+    side("v", grid.v, spacing_v(grid));
+    if (result_.faults.size() > before) return false;
+    if (length(cross(grid.u, grid.v)) < kMinSine * length(grid.u) * length(grid.v)) {
+      fault(place, "u and v are parallel", "two directions");
+      return false;
+    }
+    return true;
+  }
+
+  void masses(const Cloth& cloth, const std::string& place) {
+    const auto expected =
+        static_cast<std::size_t>(cloth.grid.nx) * static_cast<std::size_t>(cloth.grid.ny);
+    if (!cloth.masses.empty()) {
+      if (cloth.masses.size() != expected && sound({place + "/masses"}))
+        fault(place + "/masses", "masses has " + std::to_string(cloth.masses.size()) + " values",
+              std::to_string(expected) + ", one for each particle, or none");
+      return;
+    }
+    if (!sound({place + "/density", place + "/particle_mass", place + "/masses"})) return;
+    const bool given = cloth.particle_mass > 0;
+    const Json& one =
+        scene_schema_json()["properties"]["cloths"]["items"]["properties"]["masses"]["items"];
+    const double mass = particle_mass(cloth, 0, 0);
+    if (mass < one["minimum"].get<double>() || mass > one["maximum"].get<double>())
+      fault(place + (given ? "/particle_mass" : "/density"),
+            "each particle weighs " + number(mass) + " kg", range_words(one));
+  }
+
+  void self_collision(const Cloth& cloth, const std::string& place) {
+    const SelfCollision& self = cloth.self_collision;
+    const std::string key = place + "/self_collision/thickness";
+    if (self.mode == SelfCollisionMode::off || !sound({place + "/self_collision"})) return;
+    const double most = kMaxThickness * std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
+    if (self.thickness > most)
+      fault(key, "thickness is " + number(self.thickness),
+            "at most " + number(most) + " m, 4 times the spacing of the grid");
+  }
+
+  void level(const Cloth& cloth, const std::string& place) {
+    const int most = std::max(cloth.grid.nx, cloth.grid.ny) - 1;
+    if (sound({place}) && cloth.level > most)
+      fault(place, "level is " + std::to_string(cloth.level),
+            "at most " + std::to_string(most) + " on this grid");
+  }
+
+  void pins(const Cloth& cloth, const std::string& place) {
+    const Grid& grid = cloth.grid;
+    std::set<std::pair<int, int>> held;
+    for (std::size_t k = 0; k < cloth.pins.size() && !result_.full(); ++k) {
+      const Pin& pin = cloth.pins[k];
+      const std::string here = place + "/" + std::to_string(k);
+      if (pin.i < 0 || pin.j < 0 || pin.i >= grid.nx || pin.j >= grid.ny)
+        fault(here, "the pin " + at(pin.i, pin.j) + " is outside of the grid",
+              "[0, 0] to " + at(grid.nx - 1, grid.ny - 1));
+      else if (!held.insert({pin.i, pin.j}).second)
+        fault(here, "the particle " + at(pin.i, pin.j) + " is pinned twice", "once");
+      keys(pin.keys, here + "/keys");
+    }
+  }
+
+  void keys(const std::vector<Key>& keys, const std::string& place) {
+    for (std::size_t k = 1; k < keys.size() && !result_.full(); ++k)
+      if (keys[k].time <= keys[k - 1].time)
+        fault(place + "/" + std::to_string(k),
+              "time " + number(keys[k].time) + " comes after " + number(keys[k - 1].time),
+              "times that increase");
+  }
+
+  void collider(const Collider& collider, const std::string& place) {
+    const Friction& friction = collider.friction;
+    if (sound({place + "/friction"}) && friction.model == FrictionModel::coulomb &&
+        friction.dynamic > friction.statik)
+      fault(place + "/friction",
+            "dynamic friction " + number(friction.dynamic) + " is above static friction " +
+                number(friction.statik),
+            "dynamic at most static");
+    if (sound({place + "/keys"})) keys(collider.keys, place + "/keys");
+    std::visit([&](const auto& shape) { this->shape(shape, place); }, collider.shape);
+  }
+
+  void shape(const Sphere&, const std::string&) {}
+
+  void shape(const Plane& plane, const std::string& place) {
+    if (sound({place + "/plane/normal"}) && length(plane.normal) < kMinSpacing)
+      fault(place + "/plane/normal", "normal is zero", "a direction at least 1e-6 long");
+  }
+
+  void shape(const Capsule& capsule, const std::string& place) {
+    const Vec3 axis{capsule.b[0] - capsule.a[0], capsule.b[1] - capsule.a[1],
+                    capsule.b[2] - capsule.a[2]};
+    if (sound({place + "/capsule/a", place + "/capsule/b"}) && length(axis) < kMinSpacing)
+      fault(place + "/capsule", "a and b are the same point",
+            "an axis at least 1e-6 m long, or a sphere");
+  }
+
+  void shape(const Box& box, const std::string& place) {
+    const double most = std::min({box.half[0], box.half[1], box.half[2]});
+    if (sound({place + "/box/half", place + "/box/rounding"}) && box.rounding > most)
+      fault(place + "/box/rounding", "rounding is " + number(box.rounding),
+            "at most " + number(most) + " m, the smallest half side");
+  }
+
+  const Scene& scene_;
+  Check& result_;
+};
+
+}  // namespace
+
+void check_together(const Scene& scene, Check& result) {
+  if (!result.full()) Together(scene, result).run();
+}
+
+}  // namespace text
+
+std::vector<Fault> validate(const Scene& scene) {
+  text::Check result;
+  text::check(text::scene_schema_json(), text::document_of(scene), result);
+  text::check_together(scene, result);
+  return std::move(result.faults);
+}
+
+double spacing_u(const Grid& grid) {
+  return text::length(grid.u) / (grid.nx - 1);
+}
+
+double spacing_v(const Grid& grid) {
+  return text::length(grid.v) / (grid.ny - 1);
+}
+
+double particle_mass(const Cloth& cloth, int i, int j) {
+  const Grid& grid = cloth.grid;
+  if (!cloth.masses.empty())
+    return cloth.masses[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.nx) +
+                        static_cast<std::size_t>(i)];
+  if (cloth.particle_mass > 0) return cloth.particle_mass;
+  return cloth.density * text::length(text::cross(grid.u, grid.v)) / grid.nx / grid.ny;
+}
+
+}  // namespace weft
