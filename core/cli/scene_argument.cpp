@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "failure.h"
-#include "nearest.h"
 #include "weft/read_scene.h"
 
 namespace weft::cli {
@@ -17,16 +16,6 @@ std::string fault_of_set(const std::string& text) {
     return "'" + text + "' is not POINTER=VALUE (such as /solver/iterations=20)";
   }
   return "";
-}
-
-[[noreturn]] void fail_not_found(const std::string& name) {
-  std::vector<std::string> names;
-  for (const ShippedScene& shipped : shipped_scenes()) names.push_back(shipped.name);
-  const std::vector<std::string> near = nearest(name, names);
-  throw Failure{
-      kBadScene,
-      {{name, "no such file, and no shipped scene of this name",
-        (near.empty() ? "" : "nearest: " + list(near) + "; ") + "`weft scenes` lists all"}}};
 }
 
 // A fault's place within the scene becomes a place that names the file, too.
@@ -56,11 +45,8 @@ LoadedScene load(const SceneArgument& argument) {
     overrides.push_back({set.substr(0, equals), set.substr(equals + 1)});
   }
   SceneFile file = read_scene(argument.scene, overrides);
-  if (!file.found) fail_not_found(argument.scene);
   const std::string path = file.path.empty() ? argument.scene : file.path;
-  std::vector<Fault> faults = std::move(file.faults);
-  if (faults.empty()) faults = validate(file.scene);
-  if (!faults.empty()) throw Failure{kBadScene, in_file(path, std::move(faults))};
+  if (!file.faults.empty()) throw Failure{kBadScene, in_file(path, std::move(file.faults))};
   return {std::move(file.scene), path};
 }
 
