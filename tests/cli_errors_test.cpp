@@ -89,9 +89,9 @@ TEST(CliErrors, APathThatCannotBeWrittenIsFoundBeforeSimulating) {
   for (const std::string option : {"--report no/r.json", "--dump no/d.f64", "--export no/a.pc2",
                                    "--export no/a.obj", "--dump ."}) {
     // So long a run would not end within the test; a second output shows that nothing is left.
-    const std::string other = option.starts_with("--dump") ? " --report ok" : " --dump ok";
-    const Outcome outcome =
-        run_weft(folder, "run small.json --frames 1000000000 " + option + other, "timeout 20");
+    std::string arguments = "run small.json --frames 1000000000 " + option;
+    arguments += option.starts_with("--dump") ? " --report ok" : " --dump ok";
+    const Outcome outcome = run_weft(folder, arguments, "timeout 20");
     EXPECT_EQ(outcome.exit_code, 5) << option;
     EXPECT_NE(outcome.err.find("cannot write"), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.out, "");
