@@ -3,8 +3,8 @@
 
 namespace weft::cli {
 
-// From now on the first SIGINT, SIGTERM or SIGHUP only makes interrupted() answer; a second one ends the
-// process at once.
+// From now on the first SIGINT, SIGTERM or SIGHUP only makes interrupted() answer; one that comes
+// a second or more later ends the process at once.
 void catch_interrupts();
 
 // The signal that came, or 0.

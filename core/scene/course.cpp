@@ -92,7 +92,7 @@ Cloth cloth_of(const CourseCloth& from) {
       from.density * from.width * from.height / from.num_width_points / from.num_height_points;
   cloth.stiffness = {from.enable_structural ? from.ks : 0, from.enable_shearing ? from.ks : 0,
                      from.enable_bending ? kBendingShare * from.ks : 0};
-  cloth.drag = from.damping / 100 * kFramesPerSecond * kSteps;
+  cloth.drag = from.damping * (kFramesPerSecond * kSteps / 100.0);
   cloth.strain_limit = kStrainLimit;
   cloth.self_collision.mode = SelfCollisionMode::particles;
   cloth.self_collision.thickness = 2 * from.thickness;
@@ -111,22 +111,24 @@ Collider collider_of(Shape shape, double friction, double offset) {
 
 // Which place of a course document became which place of the scene, the more special first.
 std::vector<std::pair<std::string, std::string>> places(const Json& document) {
-  const std::string sphere = "/colliders/0";
-  const std::string plane = document.contains("sphere") ? "/colliders/1" : "/colliders/0";
-  return {{"/cloth/pinned", "/cloths/0/pins"},
-          {"/cloth/num_width_points", "/cloths/0/grid/points/0"},
-          {"/cloth/num_height_points", "/cloths/0/grid/points/1"},
-          {"/cloth/width", "/cloths/0/grid/u"},
-          {"/cloth/height", "/cloths/0/grid/v"},
-          {"/cloth/orientation", "/cloths/0/grid/origin"},
-          {"/cloth/thickness", "/cloths/0/self_collision/thickness"},
-          {"/cloth/damping", "/cloths/0/drag"},
-          {"/cloth/density", "/cloths/0/particle_mass"},
-          {"/cloth/ks", "/cloths/0/stiffness"},
-          {"/cloth", "/cloths/0"},
-          {"/sphere", sphere},
-          {"/plane/normal", plane + "/plane/normal"},
-          {"/plane", plane}};
+  std::vector<std::pair<std::string, std::string>> pairs = {
+      {"/cloth/pinned", "/cloths/0/pins"},
+      {"/cloth/num_width_points", "/cloths/0/grid/points/0"},
+      {"/cloth/num_height_points", "/cloths/0/grid/points/1"},
+      {"/cloth/width", "/cloths/0/grid/u"},
+      {"/cloth/height", "/cloths/0/grid/v"},
+      {"/cloth/orientation", "/cloths/0/grid/origin"},
+      {"/cloth/thickness", "/cloths/0/self_collision/thickness"},
+      {"/cloth/damping", "/cloths/0/drag"},
+      {"/cloth/density", "/cloths/0/particle_mass"},
+      {"/cloth/ks", "/cloths/0/stiffness"},
+      {"/cloth", "/cloths/0"}};
+  const bool sphere = document.contains("sphere");
+  const std::string plane = sphere ? "/colliders/1" : "/colliders/0";
+  if (sphere) pairs.push_back({"/sphere", "/colliders/0"});
+  pairs.push_back({"/plane/normal", plane + "/plane/normal"});
+  pairs.push_back({"/plane", plane});
+  return pairs;
 }
 
 bool starts(const std::string& place, const std::string& prefix) {

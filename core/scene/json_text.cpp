@@ -172,10 +172,7 @@ std::string brief(const Json& value) {
   if (value.is_array()) {
     if (!is_flat(value, 1) || value.size() > 4) return "a list of " + std::to_string(value.size());
   }
-  if (value.is_number_float()) {  // JSON has no word for these
-    if (std::isnan(value.get<double>())) return "not a number (NaN)";
-    if (std::isinf(value.get<double>())) return "infinite";
-  }
+  if (value.is_number_float()) return number_words(value.get<double>());
   std::string text;
   if (value.is_string() && value.get_ref<const std::string&>().size() > kMost) {
     text = one_line(Json(value.get_ref<const std::string&>().substr(0, kMost)));

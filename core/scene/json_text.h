@@ -27,6 +27,9 @@ std::string print(const Json& value);
 // The value on one line, cut off when it is long: for messages.
 std::string brief(const Json& value);
 
+// 1e9, 0.5, 4096: a number as a person writes it.
+std::string number_words(double x);
+
 // The member of an object, or null when there is none or it is no object.
 const Json* member(const Json& object, std::string_view key);
 

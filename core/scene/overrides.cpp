@@ -30,17 +30,48 @@ Json starting_value(const Json& schema) {
   return list ? Json::array() : Json::object();
 }
 
-// The element of a list that a token names; one past the end appends. Null: no such element.
-Json* element(Json& list, const std::string& token) {
+// How many elements of the list a token may name: those there are and, where the pointer ends and
+// the list may grow, one more.
+std::size_t reach(const Json& rule, const Json& list, bool last) {
+  const Json* most = member(rule, "maxItems");
+  const bool grows = last && (!most || list.size() < most->get<std::size_t>());
+  return list.size() + (grows ? 1 : 0);
+}
+
+// The element of a list that a token names, null when there is none; "-" appends.
+Json* element(Json& list, const std::string& token, std::size_t reach) {
   std::size_t k = 0;
-  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), k);
+  const char* const end = token.data() + token.size();
+  const auto [stop, error] = std::from_chars(token.data(), end, k);
   if (token == "-")
     k = list.size();
-  else if (error != std::errc() || end != token.data() + token.size())
+  else if (error != std::errc() || stop != end)
     return nullptr;
-  if (k > list.size()) return nullptr;
+  if (k >= reach) return nullptr;
   if (k == list.size()) list.push_back(nullptr);
   return &list[k];
+}
+
+// One token further into the document; null, with a fault, where the schema knows no such value.
+Json* step(const Json& rule, const Override& change, const std::string& token, bool last,
+           Json& here, Check& result) {
+  if (here.is_null()) here = starting_value(rule);
+  if (here.is_array()) {
+    const std::size_t count = reach(rule, here, last);
+    if (Json* found = element(here, token, count)) return found;
+    result.fault(change.pointer, "the list has no element " + brief(Json(token)),
+                 count ? "0 to " + std::to_string(count - 1) : "none: it is empty");
+    return nullptr;
+  }
+  if (!descend(rule, &here, token)) {
+    const std::string near = nearest(keys_of(rule), token);
+    result.fault(
+        change.pointer, "there is no " + brief(Json(token)) + " to override",
+        near.empty() ? "a value of the scene" : "the nearest known key is \"" + near + "\"");
+    return nullptr;
+  }
+  if (!here.is_object()) here = Json::object();  // a number that has an object form (friction)
+  return &here[token];
 }
 
 }  // namespace
@@ -75,32 +106,12 @@ void apply_override(const Json& schema, const Override& change, Json& document, 
   Json changed = document;  // so that a pointer that fails halfway leaves nothing behind
   const Json* rule = &schema;
   Json* here = &changed;
-  for (const std::string& token : tokens) {
-    const Json* below = descend(*rule, here, token);
-    if (!below) {
-      const std::string near = nearest(keys_of(*rule), token);
-      result.fault(
-          change.pointer, "there is no " + brief(Json(token)) + " to override",
-          near.empty() ? "a value of the scene" : "the nearest known key is \"" + near + "\"");
-      return;
-    }
-    if (here->is_null()) *here = starting_value(*rule);
-    if (here->is_object()) {
-      here = &(*here)[token];
-    } else if (here->is_array()) {
-      const std::size_t count = here->size();
-      here = element(*here, token);
-      if (!here) {
-        result.fault(change.pointer, "the list has no element " + token,
-                     count ? "0 to " + std::to_string(count) + ", the last of which appends"
-                           : "0, which appends");
-        return;
-      }
-    } else {
-      *here = Json::object();  // a number that has an object form (friction)
-      here = &(*here)[token];
-    }
-    rule = below;
+  for (std::size_t k = 0; k < tokens.size(); ++k) {
+    Json* const above = here;
+    here = step(*rule, change, tokens[k], k + 1 == tokens.size(), *above, result);
+    if (!here) return;
+    rule = descend(*rule, above, tokens[k]);
+    if (!rule) return;
   }
   *here = std::move(value);
   document = std::move(changed);

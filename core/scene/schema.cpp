@@ -22,6 +22,8 @@ Json resolve(const Json& schema, const Json& definitions) {
   }
   for (auto it = schema.begin(); it != schema.end(); ++it)
     if (it.key() != "$ref" && it.key() != "$defs") whole[it.key()] = resolve(*it, definitions);
+  if (whole.contains("x-unit") && whole.contains("items"))  // the unit of a vector is its values'
+    whole["items"]["x-unit"] = whole["x-unit"];
   return whole;
 }
 
@@ -158,13 +160,17 @@ class Walk {
     if (!alternatives) return;
     std::string found, all;
     std::size_t count = 0;
+    bool misspelt = false;  // already told
     for (const Json& option : *alternatives) {
       const std::string key = option.at("required").at(0).get<std::string>();
       all += (all.empty() ? "" : ", ") + key;
-      if (!value.contains(key)) continue;
+      if (!value.contains(key)) {
+        misspelt = misspelt || !result_.sound(join(place_, key));
+        continue;
+      }
       found += (count++ ? " and " : "") + key;
     }
-    if (count == 1) return;
+    if (count == 1 || (count == 0 && misspelt)) return;
     fault(name_of(place_) + " has " + (count ? found : "no shape"), "exactly one of " + all);
   }
 

@@ -7,12 +7,13 @@
 #include "scene/schema.h"
 
 namespace weft::text {
-namespace {
 
 // 1e9, 0.5, 4096: as a person writes it.
 std::string number_words(double x) {
+  if (std::isnan(x)) return "not a number (NaN)";
+  if (std::isinf(x)) return "infinite";
   char digits[32];
-  const bool plain = std::abs(x) < 1e5 && std::trunc(x) == x;
+  const bool plain = std::abs(x) < 1e6 && std::trunc(x) == x;
   const auto end = plain ? std::to_chars(digits, digits + 32, static_cast<long>(x)).ptr
                          : std::to_chars(digits, digits + 32, x).ptr;
   std::string text(digits, end);
@@ -23,6 +24,8 @@ std::string number_words(double x) {
   }
   return text;
 }
+
+namespace {
 
 std::string list_words(const Json& schema) {
   const Json* least = member(schema, "minItems");
@@ -54,8 +57,10 @@ std::string range_words(const Json& schema) {
   const Json* high = member(schema, "maximum");
   if (!low || !high) return "";
   const Json* unit = member(schema, "x-unit");
-  return number_words(low->get<double>()) + " to " + number_words(high->get<double>()) +
-         (unit ? " " + unit->get<std::string>() : "");
+  const bool pair =
+      *member(schema, "type") == "integer" && high->get<double>() - low->get<double>() == 1;
+  return number_words(low->get<double>()) + (pair ? " or " : " to ") +
+         number_words(high->get<double>()) + (unit ? " " + unit->get<std::string>() : "");
 }
 
 std::string kind_words(const Json& schema) {

@@ -13,14 +13,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The first folder that is there: the user's, beside the program, as installed, in the source tree.
+// The first folder that is there: the user's, beside the program as installed, in the source tree,
+// where the library was installed. The source tree first, so that what is being worked on is not
+// hidden by an older version on the same machine.
 fs::path scene_folder() {
   std::error_code ignored;  // a folder that cannot be looked at is not there
   if (const char* chosen = std::getenv("WEFT_SCENES"))
     if (fs::is_directory(chosen, ignored)) return chosen;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   for (const fs::path& folder : {program.parent_path().parent_path() / "share/weft/scenes",
-                                 fs::path(kInstalledScenes), fs::path(kSourceScenes)})
+                                 fs::path(kSourceScenes), fs::path(kInstalledScenes)})
     if (fs::is_directory(folder, ignored)) return folder;
   return {};
 }

@@ -27,7 +27,7 @@ Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-std::string number(double x) {
+std::string number_words(double x) {
   return brief(Json(x));
 }
 
@@ -87,11 +87,11 @@ class Together {
       self_collision(cloth, place);
       level(cloth, place + "/level");
     }
-    if (sound({place + "/grid/points", place + "/pins"})) pins(cloth, place + "/pins");
+    if (sound({place + "/grid/points"})) pins(cloth, place + "/pins");
     const bool timed = sound({"/time", place + "/drag"}) && scene_.time.substeps > 0;
     const double loss = cloth.drag * scene_.time.frame / std::max(scene_.time.substeps, 1);
     if (timed && loss > 1 + 1e-9)
-      fault(place + "/drag", "drag takes " + number(loss) + " of the velocity in one substep",
+      fault(place + "/drag", "drag takes " + number_words(loss) + " of the velocity in one substep",
             "at most 1: less drag or more substeps");
   }
 
@@ -101,7 +101,8 @@ class Together {
       if (length(vector) == 0)
         fault(place + "/" + key, std::string(key) + " is zero", "a side with a length");
       else if (spacing < kMinSpacing)
-        fault(place + "/" + key, "the particles are " + number(spacing) + " m apart along " + key,
+        fault(place + "/" + key,
+              "the particles are " + number_words(spacing) + " m apart along " + key,
               "at least 1e-6 m");
     };
     side("u", grid.u, spacing_u(grid));
@@ -130,7 +131,7 @@ class Together {
     const double mass = particle_mass(cloth, 0, 0);
     if (mass < one["minimum"].get<double>() || mass > one["maximum"].get<double>())
       fault(place + (given ? "/particle_mass" : "/density"),
-            "each particle weighs " + number(mass) + " kg", range_words(one));
+            "each particle weighs " + number_words(mass) + " kg", range_words(one));
   }
 
   void self_collision(const Cloth& cloth, const std::string& place) {
@@ -139,8 +140,8 @@ class Together {
     if (self.mode == SelfCollisionMode::off || !sound({place + "/self_collision"})) return;
     const double most = kMaxThickness * std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
     if (self.thickness > most)
-      fault(key, "thickness is " + number(self.thickness),
-            "at most " + number(most) + " m, 4 times the spacing of the grid");
+      fault(key, "thickness is " + number_words(self.thickness),
+            "at most " + number_words(most) + " m, 4 times the spacing of the grid");
   }
 
   void level(const Cloth& cloth, const std::string& place) {
@@ -156,6 +157,7 @@ class Together {
     for (std::size_t k = 0; k < cloth.pins.size() && !result_.full(); ++k) {
       const Pin& pin = cloth.pins[k];
       const std::string here = place + "/" + std::to_string(k);
+      if (!sound({here})) continue;
       if (pin.i < 0 || pin.j < 0 || pin.i >= grid.nx || pin.j >= grid.ny)
         fault(here, "the pin " + at(pin.i, pin.j) + " is outside of the grid",
               "[0, 0] to " + at(grid.nx - 1, grid.ny - 1));
@@ -168,9 +170,10 @@ class Together {
   void keys(const std::vector<Key>& keys, const std::string& place) {
     for (std::size_t k = 1; k < keys.size() && !result_.full(); ++k)
       if (keys[k].time <= keys[k - 1].time)
-        fault(place + "/" + std::to_string(k),
-              "time " + number(keys[k].time) + " comes after " + number(keys[k - 1].time),
-              "times that increase");
+        fault(
+            place + "/" + std::to_string(k),
+            "time " + number_words(keys[k].time) + " comes after " + number_words(keys[k - 1].time),
+            "times that increase");
   }
 
   void collider(const Collider& collider, const std::string& place) {
@@ -178,8 +181,8 @@ class Together {
     if (sound({place + "/friction"}) && friction.model == FrictionModel::coulomb &&
         friction.dynamic > friction.statik)
       fault(place + "/friction",
-            "dynamic friction " + number(friction.dynamic) + " is above static friction " +
-                number(friction.statik),
+            "dynamic friction " + number_words(friction.dynamic) + " is above static friction " +
+                number_words(friction.statik),
             "dynamic at most static");
     if (sound({place + "/keys"})) keys(collider.keys, place + "/keys");
     std::visit([&](const auto& shape) { this->shape(shape, place); }, collider.shape);
@@ -203,8 +206,8 @@ class Together {
   void shape(const Box& box, const std::string& place) {
     const double most = std::min({box.half[0], box.half[1], box.half[2]});
     if (sound({place + "/box/half", place + "/box/rounding"}) && box.rounding > most)
-      fault(place + "/box/rounding", "rounding is " + number(box.rounding),
-            "at most " + number(most) + " m, the smallest half side");
+      fault(place + "/box/rounding", "rounding is " + number_words(box.rounding),
+            "at most " + number_words(most) + " m, the smallest half side");
   }
 
   const Scene& scene_;

@@ -44,7 +44,8 @@ SceneFile read_scene_text(std::string_view json, const std::vector<Override>& ov
 std::string write_scene_text(const Scene& scene);
 
 // The shipped scenes in alphabetical order. They are looked for in $WEFT_SCENES, then beside the
-// program as installed, then in the source tree that the library was built from.
+// program as installed, then in the source tree that the library was built from, then where the
+// library was installed.
 std::vector<ShippedScene> shipped_scenes();
 
 // The JSON Schema of Weft scenes, as text: names, ranges, defaults, units, one help line per value.

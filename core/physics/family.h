@@ -1,0 +1,41 @@
+// Constraint families: all constraints of a cloth that share one offset on the grid, one rest length
+// and one stiffness. A family needs no index lists: constraint a of row j joins (a+near, j) and
+// (a+far, j+dj).
+#pragma once
+
+#include <vector>
+
+#include "physics/kernels/kernels.h"
+#include "physics/lattice.h"
+#include "weft/scene.h"
+
+namespace weft::physics {
+
+enum class Kind { structural, shear, bend };
+
+struct Family {
+  int di = 0, dj = 0;  // dj >= 0; di > 0 when dj = 0
+  Kind kind = Kind::structural;
+  double rest = 0;       // m, on the flat sheet
+  double stiffness = 0;  // N/m, in the first row
+  double damping = 0;    // N·s/m
+
+  int near() const { return di < 0 ? -di : 0; }
+  int far() const { return di > 0 ? di : 0; }
+  int per_row(int columns) const { return columns - (di < 0 ? -di : di); }
+};
+
+// The families of a cloth that exist on its grid: structural, shear and bend of non-zero stiffness,
+// or those of its level (seed 000).
+std::vector<Family> families_of(const Cloth& cloth);
+
+// Factor on the stiffness of constraints between rows j and j+dj (seed 003's stiffness gradient).
+double gradient_factor(const Cloth& cloth, int j, int dj);
+
+// The rows that a family's constraints of row j join; row j+dj must exist.
+FamilyRow family_row(Lattice& lattice, const Family& family, int j);
+
+// Constants of a family's springs in row j, zero when row j+dj does not exist.
+SpringConstants spring_constants(const Cloth& cloth, const Family& family, int j);
+
+}  // namespace weft::physics

@@ -1,0 +1,13 @@
+// The table of this instruction set's kernels.
+#include "physics/kernels/row_kernels.h"
+
+namespace weft::WEFT_KERNELS {
+
+extern const physics::KernelTable kTable;
+const physics::KernelTable kTable = {
+    spring_row,     spring_family, damped_spring_family, integrate, predict,
+    velocity,       project,       project_jacobi,       apply_corrections,
+    sphere,         plane,         course_sphere,        course_plane,
+};
+
+}  // namespace weft::WEFT_KERNELS

@@ -1,0 +1,55 @@
+// Storage of one cloth, and its particles at the start.
+#include "physics/lattice.h"
+
+#include <cmath>
+
+#include "physics/random.h"
+
+namespace weft::physics {
+
+int row_stride(int columns) {
+  const int stride = (columns + 15) / 16 * 16 + 16;
+  return stride % 256 == 0 ? stride + 16 : stride;
+}
+
+Rows::Rows(int rows, int stride)
+    : rows_(rows),
+      stride_(stride),
+      // Components 80 floats further apart than their size, so that they do not share cache sets.
+      plane_(static_cast<std::size_t>(rows) * stride + 80),
+      data_(3 * plane_) {}
+
+Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bool keep_previous) {
+  const Grid& g = cloth.grid;
+  Lattice l;
+  l.columns = g.nx;
+  l.rows = g.ny;
+  l.stride = row_stride(g.nx);
+  l.x = Rows(l.rows, l.stride);
+  l.v = Rows(l.rows, l.stride);
+  if (keep_previous) l.previous = Rows(l.rows, l.stride);
+  l.inverse_mass = AlignedArray<float>(static_cast<std::size_t>(l.rows) * l.stride);
+
+  Vec3 normal{g.u[1] * g.v[2] - g.u[2] * g.v[1], g.u[2] * g.v[0] - g.u[0] * g.v[2],
+              g.u[0] * g.v[1] - g.u[1] * g.v[0]};
+  const double length = std::hypot(normal[0], normal[1], normal[2]);
+  for (double& c : normal) c /= length;
+  Random random(seed, static_cast<std::uint64_t>(cloth_index));
+  for (int j = 0; j < g.ny; ++j) {
+    for (int i = 0; i < g.nx; ++i) {
+      const double a = i / double(g.nx - 1), b = j / double(g.ny - 1);
+      const double off = g.jitter > 0 ? g.jitter * random.symmetric() : 0;
+      for (int k = 0; k < 3; ++k)
+        l.x.at(k, j, i) = float(g.origin[k] + g.u[k] * a + g.v[k] * b + normal[k] * off);
+      l.w(j)[i] = float(1 / particle_mass(cloth, i, j));
+    }
+  }
+  for (const Pin& pin : cloth.pins) {
+    l.w(pin.j)[pin.i] = 0;
+    if (!pin.keys.empty())
+      for (int k = 0; k < 3; ++k) l.x.at(k, pin.j, pin.i) = float(pin.keys.front().position[k]);
+  }
+  return l;
+}
+
+}  // namespace weft::physics

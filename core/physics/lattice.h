@@ -1,0 +1,84 @@
+// Storage of one cloth: a lattice of particles as rows in separate component arrays
+// (structure of arrays), each 64-byte aligned, each row padded by at least 16 lanes.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "physics/kernels/kernels.h"
+#include "weft/scene.h"
+
+namespace weft::physics {
+
+// A fixed-size array of T on a 64-byte boundary, zero at first.
+template <class T>
+class AlignedArray {
+ public:
+  AlignedArray() = default;
+  explicit AlignedArray(std::size_t size)
+      : data_(size == 0 ? nullptr : new (std::align_val_t{64}) T[size]()), size_(size) {}
+  T* data() { return data_.get(); }
+  const T* data() const { return data_.get(); }
+  std::size_t size() const { return size_; }
+  T& operator[](std::size_t i) { return data_[i]; }
+  const T& operator[](std::size_t i) const { return data_[i]; }
+  std::span<const T> span() const { return {data_.get(), size_}; }
+
+ private:
+  struct Delete {
+    void operator()(T* p) const { ::operator delete[](p, std::align_val_t{64}); }
+  };
+  std::unique_ptr<T[], Delete> data_;
+  std::size_t size_ = 0;
+};
+
+// Floats from one row to the next for a given number of columns: a multiple of 16 with 16 lanes of
+// padding at least, and never a multiple of 1 KiB, where neighbouring rows would compete for the
+// same lines of the cache.
+int row_stride(int columns);
+
+// Three component arrays of `rows` rows.
+class Rows {
+ public:
+  Rows() = default;
+  Rows(int rows, int stride);
+  Row3 row(int j) {
+    float* base = data_.data() + static_cast<std::size_t>(j) * stride_;
+    return {base, base + plane_, base + 2 * plane_};
+  }
+  std::span<const float> component(int axis) const {
+    return {data_.data() + axis * plane_, static_cast<std::size_t>(rows_) * stride_};
+  }
+  float& at(int axis, int j, int i) {
+    return data_[axis * plane_ + static_cast<std::size_t>(j) * stride_ + i];
+  }
+  float at(int axis, int j, int i) const {
+    return data_[axis * plane_ + static_cast<std::size_t>(j) * stride_ + i];
+  }
+  std::size_t bytes() const { return data_.size() * sizeof(float); }
+
+ private:
+  int rows_ = 0, stride_ = 0;
+  std::size_t plane_ = 0;  // floats from one component to the next
+  AlignedArray<float> data_;
+};
+
+struct Lattice {
+  int columns = 0, rows = 0, stride = 0;
+  Rows x;                       // position [m]
+  Rows v;                       // velocity [m/s]
+  Rows previous;                // positions before the substep; only for methods that project
+  AlignedArray<float> inverse_mass;  // 1/kg, 0 = pinned or padding
+
+  float* w(int j) { return inverse_mass.data() + static_cast<std::size_t>(j) * stride; }
+  float w(int j, int i) const { return inverse_mass[static_cast<std::size_t>(j) * stride + i]; }
+  std::size_t bytes() const {
+    return x.bytes() + v.bytes() + previous.bytes() + inverse_mass.size() * sizeof(float);
+  }
+};
+
+// The particles of a cloth at rest at the start, jittered along the sheet's normal by `seed`.
+Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bool keep_previous);
+
+}  // namespace weft::physics

@@ -1,0 +1,133 @@
+// Stage "springs": all spring forces on a cloth and its leapfrog step, in one pass over the rows.
+// Every spring is evaluated once, in the row of its near end; what it exerts on later rows is
+// carried along, so that a row is finished, and moved in place, as soon as its own springs are done.
+#include "physics/stages/stages.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr int kGuard = 16;  // zero lanes that a family's kernel reads before a row
+
+// The six families of a plain cloth in one kernel.
+class PlainSprings final : public RowStage {
+ public:
+  explicit PlainSprings(const ClothParts& parts)
+      : RowStage("springs", "structural, shear and bend springs, leapfrog step", 2,
+                 parts.constraints(), "constraints"),
+        parts_(parts) {}
+
+  void reserve_slots(int slots) override { carry_ = Rows(3 * slots, parts_.lattice.stride); }
+  std::size_t bytes() const override { return carry_.bytes(); }
+
+  void run(int j, const Substep& s) override {
+    Lattice& l = parts_.lattice;
+    const std::vector<Family>& f = parts_.families;
+    const int below = std::min(j + 1, l.rows - 1), below2 = std::min(j + 2, l.rows - 1);
+    SpringRow r{};
+    r.columns = l.columns;
+    r.x = l.x.row(j);
+    r.v = l.v.row(j);
+    r.w = l.w(j);
+    r.below = l.x.row(below);
+    r.below2 = l.x.row(below2);
+    r.carry = carry_.row(3 * s.slot);
+    r.carry2 = carry_.row(3 * s.slot + 1 + j % 2);
+    if (j == 0) clear(s.slot);
+    r.right = spring_constants(parts_.cloth, f[0], j);
+    r.down = spring_constants(parts_.cloth, f[1], j);
+    r.diagonal = spring_constants(parts_.cloth, f[2], j);
+    r.antidiagonal = spring_constants(parts_.cloth, f[3], j);
+    r.right2 = spring_constants(parts_.cloth, f[4], j);
+    r.down2 = spring_constants(parts_.cloth, f[5], j);
+    r.advance = advance_of(parts_, s.dt);
+    parts_.kernels.spring_row(r);
+  }
+
+ private:
+  void clear(int slot) {
+    for (int k = 0; k < 3; ++k) {
+      const Row3 c = carry_.row(3 * slot + k);
+      for (float* p : {c.x, c.y, c.z}) std::fill_n(p, parts_.lattice.stride, 0.0f);
+    }
+  }
+
+  ClothParts parts_;
+  Rows carry_;
+};
+
+// Any families, one kernel call each: levels, subsets, damping along the spring.
+class FamilySprings final : public RowStage {
+ public:
+  FamilySprings(const ClothParts& parts, int reach, bool damped)
+      : RowStage("springs",
+                 std::to_string(parts.families.size()) + " spring families" +
+                     (damped ? " with damping" : "") + ", leapfrog step",
+                 reach, parts.constraints(), "constraints"),
+        parts_(parts),
+        kernel_(damped ? parts.kernels.damped_spring_family : parts.kernels.spring_family) {}
+
+  void reserve_slots(int slots) override {
+    force_ = Rows((reach + 1) * slots, parts_.lattice.stride);
+    scratch_ = AlignedArray<float>(kGuard + std::size_t(slots) * 3 * parts_.lattice.stride);
+  }
+  std::size_t bytes() const override {
+    return force_.bytes() + scratch_.size() * sizeof(float);
+  }
+
+  void run(int j, const Substep& s) override {
+    Lattice& l = parts_.lattice;
+    const auto force = [&](int row) {
+      return force_.row(s.slot * (reach + 1) + row % (reach + 1));
+    };
+    for (const Family& family : parts_.families) {
+      if (j + family.dj >= l.rows) continue;
+      FamilyRow r = family_row(l, family, j);
+      r.f = force(j);
+      r.f_far = force(j + family.dj);
+      r.scratch = scratch_.data() + kGuard + std::size_t(s.slot) * 3 * l.stride;
+      r.stride = l.stride;
+      r.spring = spring_constants(parts_.cloth, family, j);
+      kernel_(r);
+    }
+    AdvanceRow a{};
+    a.columns = l.columns;
+    a.x = l.x.row(j);
+    a.v = l.v.row(j);
+    a.w = l.w(j);
+    a.f = force(j);
+    a.advance = advance_of(parts_, s.dt);
+    parts_.kernels.integrate(a);
+  }
+
+ private:
+  ClothParts parts_;
+  void (*kernel_)(const FamilyRow&);
+  Rows force_;  // reach+1 rows in turn per slot: row j's is complete when row j is moved
+  AlignedArray<float> scratch_;
+};
+
+}  // namespace
+
+std::int64_t ClothParts::constraints() const {
+  std::int64_t n = 0;
+  for (const Family& f : families)
+    n += std::int64_t(f.per_row(lattice.columns)) * (lattice.rows - f.dj);
+  return n;
+}
+
+Advance advance_of(const ClothParts& parts, double dt) {
+  const Vec3& g = parts.scene.gravity;
+  return {float(dt), float(std::max(0.0, 1 - dt * parts.cloth.drag)), float(g[0] * dt),
+          float(g[1] * dt), float(g[2] * dt)};
+}
+
+std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped) {
+  // families_of lists the six of a plain cloth in one order, which PlainSprings takes for granted.
+  if (!damped && parts.cloth.level == 0 && parts.families.size() == 6)
+    return std::make_unique<PlainSprings>(parts);
+  int reach = 0;
+  for (const Family& f : parts.families) reach = std::max(reach, f.dj);
+  return std::make_unique<FamilySprings>(parts, reach, damped);
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,151 @@
+// The wavefront over rows and substeps (wavefront.h).
+#include "physics/wavefront.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <oneapi/tbb/task_group.h>
+
+#include "physics/threads.h"
+
+namespace weft::physics {
+namespace {
+
+// A core's share of the second-level cache that a tile may fill.
+constexpr std::size_t kTileBytes = 384 * 1024;
+// The least work worth a task [ns].
+constexpr double kTaskNanoseconds = 12000;
+
+}  // namespace
+
+struct Wavefront::Run {
+  double time, dt;
+  int count, chunks;
+};
+
+Wavefront::Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes,
+                     double row_nanoseconds)
+    : stages_(std::move(stages)),
+      rows_(rows),
+      row_bytes_(row_bytes),
+      row_nanoseconds_(row_nanoseconds) {}
+
+// One thread and a lattice that fits the cache: one tile a substep. Else tiles as tall as the cache
+// allows, or as a task is worth, and as many substeps a chunk as its lean permits.
+void Wavefront::choose_tiles(int count, int threads) {
+  int reach = 0;
+  for (const RowStage* s : stages_) reach += s->reach;
+  reach = std::max(reach, 1);
+  const bool fits = row_bytes_ * rows_ <= kTileBytes;
+  chunk_substeps_ = 1;
+  height_ = rows_ + reach;
+  if (threads > 1 || !fits) {
+    const int cache_rows = std::max<int>(4, int(kTileBytes / std::max<std::size_t>(row_bytes_, 1)));
+    // A tile and its lean share the cache; several tiles per thread keep all threads busy.
+    height_ = std::max(2 * reach, cache_rows / 2);
+    if (threads > 1) height_ = std::min(height_, std::max(rows_ / (4 * threads), reach));
+    height_ = std::clamp(height_, 1, rows_);
+    chunk_substeps_ = std::clamp(height_ / reach, 1, 8);
+    const double tile = row_nanoseconds_ * height_;
+    if (threads > 1) chunk_substeps_ = std::max(chunk_substeps_, std::min(8, int(std::ceil(kTaskNanoseconds / tile))));
+    chunk_substeps_ = std::min(chunk_substeps_, count);
+  }
+  offset_.clear();
+  int offset = 0;
+  for (int s = 0; s < chunk_substeps_; ++s)
+    for (std::size_t q = 0; q < stages_.size(); ++q) {
+      if (s + q > 0) offset += stages_[q]->reach;
+      offset_.push_back(offset);
+    }
+  tiles_ = (rows_ + offset + height_ - 1) / height_;
+  span_ = (offset + stages_.front()->reach + height_ - 1) / height_;
+  ring_ = threads > 1 ? threads + 1 : 1;
+}
+
+void Wavefront::run(double time, double dt, int count, Threads& threads) {
+  choose_tiles(count, threads.count());
+  const Run r{time, dt, count, (count + chunk_substeps_ - 1) / chunk_substeps_};
+  if (const int slots = chunk_substeps_ * ring_; slots > slots_) {
+    for (RowStage* s : stages_) s->reserve_slots(slots);
+    slots_ = slots;
+  }
+  if (threads.count() > 1 && tiles_ > 1) return run_parallel(r, threads);
+  for (int c = 0; c < r.chunks; ++c)
+    for (int k = 0; k < tiles_; ++k) run_tile(r, k, c);
+}
+
+void Wavefront::run_tile(const Run& r, int tile, int chunk) const {
+  const int first = chunk * chunk_substeps_;
+  const int last = std::min(first + chunk_substeps_, r.count);
+  std::size_t level = 0;
+  for (int s = first; s < last; ++s) {
+    const Substep substep{r.dt, r.time + (s + 1) * r.dt,
+                          chunk % ring_ * chunk_substeps_ + (s - first)};
+    for (std::size_t q = 0; q < stages_.size(); ++q, ++level) {
+      const int begin = std::max(0, tile * height_ - offset_[level]);
+      const int end = std::min(rows_, (tile + 1) * height_ - offset_[level]);
+      if (begin >= end) continue;
+      RowStage& stage = *stages_[q];
+      if (profile_.empty()) {
+        for (int j = begin; j < end; ++j) stage.run(j, substep);
+        continue;
+      }
+      const auto before = std::chrono::steady_clock::now();
+      for (int j = begin; j < end; ++j) stage.run(j, substep);
+      const auto spent = std::chrono::steady_clock::now() - before;
+      profile_[q] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+    }
+  }
+}
+
+// Every tile counts the tiles it still waits for; whoever finishes the last of them runs it.
+void Wavefront::run_parallel(const Run& r, Threads& threads) {
+  const int all = tiles_ * r.chunks;
+  if (all > waits_size_) {
+    waits_ = std::make_unique<std::atomic<int>[]>(all);
+    waits_size_ = all;
+  }
+  for (int c = 0; c < r.chunks; ++c)
+    for (int k = 0; k < tiles_; ++k) {
+      const bool left = k > 0;
+      const bool before = c > 0 && k + span_ < tiles_;
+      const bool before_all = c > 0 && k == std::max(0, tiles_ - 1 - span_) && !before;
+      const bool slot = c >= ring_ && k == 0;
+      waits_[c * tiles_ + k].store(left + before + before_all + slot, std::memory_order_relaxed);
+    }
+  oneapi::tbb::task_group group;
+  struct Worker {
+    Wavefront& w;
+    const Run& r;
+    oneapi::tbb::task_group& group;
+    void go(int k, int c) const {
+      for (;;) {
+        w.run_tile(r, k, c);
+        int next[3][2], ready = 0;
+        const auto done = [&](int kk, int cc) {
+          if (w.waits_[cc * w.tiles_ + kk].fetch_sub(1, std::memory_order_acq_rel) == 1)
+            next[ready][0] = kk, next[ready][1] = cc, ++ready;
+        };
+        if (k + 1 < w.tiles_) done(k + 1, c);
+        if (c + 1 < r.chunks) {
+          if (k == w.tiles_ - 1) done(std::max(0, w.tiles_ - 1 - w.span_), c + 1);
+          else if (k >= w.span_) done(k - w.span_, c + 1);
+        }
+        if (k == w.tiles_ - 1 && c + w.ring_ < r.chunks) done(0, c + w.ring_);
+        if (ready == 0) return;
+        for (int n = 1; n < ready; ++n)
+          group.run([self = *this, kk = next[n][0], cc = next[n][1]] { self.go(kk, cc); });
+        k = next[0][0];
+        c = next[0][1];
+      }
+    }
+  };
+  const Worker worker{*this, r, group};
+  threads.run([&] {
+    group.run([&] { worker.go(0, 0); });
+    group.wait();
+  });
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,54 @@
+// The wavefront: runs the stages of many substeps over the rows of a lattice, on any number of
+// threads, with the result of running them one after the other.
+//
+// Stage q may work on row j as soon as stage q-1 is past row j + reach(q): all that stage q touches
+// is then final. So stage q follows `offset(q)` rows behind stage 0, offset(q) = offset(q-1) +
+// reach(q), through one substep after another. Rows are cut into tiles that lean with the offsets:
+// tile k of a chunk of substeps runs stage q on rows [k h - offset(q), (k+1) h - offset(q)). A tile
+// needs the tile before it in its chunk, and in the chunk before the tile that lies past its reach;
+// nothing else. Tiles of several chunks are under way at once, without a barrier, and a tile's rows
+// stay in the cache for all its substeps (time skewing: Wonnacott 2000; Strzodka et al. 2011).
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "physics/stage.h"
+
+namespace weft::physics {
+
+class Threads;
+
+class Wavefront {
+ public:
+  // Stages of one substep, in order. `row_bytes` sizes the tiles to the cache.
+  Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes,
+            double row_nanoseconds);
+
+  // Runs substeps first … first+count-1 of a frame; dt and time are those of the first.
+  void run(double time, double dt, int count, Threads& threads);
+
+  // Adds to ticks[q] the time that stage q took; off when null.
+  void profile(std::span<std::atomic<std::int64_t>> nanoseconds) { profile_ = nanoseconds; }
+
+ private:
+  struct Run;
+  void choose_tiles(int count, int threads);
+  void run_tile(const Run& run, int tile, int chunk) const;
+  void run_parallel(const Run& run, Threads& threads);
+
+  std::vector<RowStage*> stages_;
+  int rows_;
+  std::size_t row_bytes_;
+  double row_nanoseconds_;
+  std::span<std::atomic<std::int64_t>> profile_;
+
+  int chunk_substeps_ = 1, height_ = 1, tiles_ = 1, span_ = 1, ring_ = 1, slots_ = 0;
+  std::vector<int> offset_;  // of every stage of every substep of a chunk
+  std::unique_ptr<std::atomic<int>[]> waits_;
+  int waits_size_ = 0;
+};
+
+}  // namespace weft::physics
