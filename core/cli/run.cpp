@@ -1,0 +1,224 @@
+// `weft run SCENE`: simulates, and writes what was asked for.
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "commands.h"
+#include "failure.h"
+#include "interrupt.h"
+#include "progress.h"
+#include "scene_argument.h"
+#include "weft/output.h"
+
+namespace weft::cli {
+
+namespace {
+
+struct RunArguments {
+  SceneArgument scene;
+  std::optional<double> seconds;
+  std::optional<std::int64_t> frames;
+  int threads = 0;
+  std::string simd = "best";
+  std::uint64_t seed = 1;
+  std::string report, dump, animation;  // paths; "" = not asked for
+};
+
+// A check of an option's text: the whole of it is a number from `least` to `most`.
+template <class T>
+CLI::Validator number_in(T least, T most, const std::string& allowed) {
+  const auto fault = [=](const std::string& text) -> std::string {
+    T value{};
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    const bool good = error == std::errc() && stop == end && value >= least && value <= most;
+    return good ? "" : "'" + text + "' is out of place here (" + allowed + ")";
+  };
+  return {fault, ""};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  const auto fault = [=](const std::string& text) -> std::string {
+    if (std::ranges::find(words, text) != words.end()) return "";
+    return "'" + text + "' is none of the choices (" + list(words) + ")";
+  };
+  return {fault, ""};
+}
+
+std::string fault_of_animation(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  const std::vector<std::string> known = animation_extensions();
+  if (std::ranges::find(known, extension) != known.end()) return "";
+  return "'" + path + "' does not end in a format that can be written (" + list(known) + ")";
+}
+
+const std::vector<std::string>& simd_names() {
+  static const std::vector<std::string> names{simd_name(Simd::scalar), simd_name(Simd::sse2),
+                                              simd_name(Simd::avx2), simd_name(Simd::avx512)};
+  return names;
+}
+
+Simd parse_simd(const std::string& name) {
+  std::vector<std::string> available;
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+    if (simd_available(simd)) {
+      if (name == simd_name(simd)) return simd;
+      available.emplace_back(simd_name(simd));
+    }
+  }
+  if (name == "best") return Simd::best;
+  throw Failure{kBadCommandLine,
+                {{"--simd", "this machine does not run " + name, list(available)}}};
+}
+
+// The files of a run, opened before it starts so that a path that cannot be written costs nothing.
+class Files {
+ public:
+  Files(const RunArguments& arguments, const Simulation& simulation) {
+    refuse_same({arguments.report, arguments.dump, arguments.animation});
+    if (!arguments.animation.empty()) {
+      animation_ = open_animation(arguments.animation, simulation.view());
+    }
+    if (!arguments.dump.empty()) dump_.emplace(arguments.dump);
+    if (!arguments.report.empty()) report_.emplace(arguments.report);
+    frame(simulation);  // the start is the animation's first sample
+  }
+
+  void frame(const Simulation& simulation) {
+    if (animation_) animation_->append(simulation.view());
+  }
+
+  // A simulation that stopped itself has no final positions: it leaves no dump.
+  void finish(const Simulation& simulation, const Report& report) {
+    if (animation_) {
+      animation_->finish();
+      written_.push_back(animation_->written());
+    }
+    if (dump_ && simulation.status().ok) commit(*dump_, dump_bytes(simulation.positions()));
+    if (report_) commit(*report_, to_json(report));
+  }
+
+  const std::vector<std::string>& written() const { return written_; }
+
+ private:
+  static void refuse_same(std::vector<std::string> paths) {
+    std::erase(paths, "");
+    std::ranges::sort(paths);
+    const auto twice = std::ranges::adjacent_find(paths);
+    if (twice != paths.end()) {
+      throw Failure{kBadCommandLine, {{*twice, "two outputs would go to this file", ""}}};
+    }
+  }
+
+  void commit(OutputFile& file, const std::string& bytes) {
+    file.write(bytes);
+    file.commit();
+    written_.push_back(file.path());
+  }
+
+  std::unique_ptr<Animation> animation_;
+  std::optional<OutputFile> dump_, report_;
+  std::vector<std::string> written_;
+};
+
+std::int64_t frame_count(const RunArguments& arguments, const Time& time) {
+  if (arguments.frames) return *arguments.frames;
+  return std::llround(arguments.seconds.value_or(time.seconds) / time.frame);
+}
+
+std::string stop_text(const Status& status) {
+  return "the simulation stopped itself in frame " + std::to_string(status.frame) + ", stage " +
+         status.stage + ", particle (" + std::to_string(status.i) + "," + std::to_string(status.j) +
+         ") of cloth " + std::to_string(status.cloth) + ": " + status.text;
+}
+
+int run(const RunArguments& arguments) {
+  const LoadedScene loaded = load(arguments.scene);
+  const std::int64_t frames = frame_count(arguments, loaded.scene.time);
+  Options options;
+  options.threads = arguments.threads;
+  options.simd = parse_simd(arguments.simd);
+  options.seed = arguments.seed;
+  options.profile = !arguments.report.empty();
+  Simulation simulation = simulate(loaded, options);
+  catch_interrupts();  // before there is a temporary file that a signal could leave behind
+  Files files(arguments, simulation);
+  Progress progress(frames, loaded.scene.time.frame);
+  while (simulation.frame() < frames && interrupted() == 0) {
+    simulation.advance_frame();
+    if (!simulation.status().ok) break;
+    files.frame(simulation);
+    progress.update(simulation.frame());
+  }
+
+  Report report = simulation.report();
+  const bool cut_short = simulation.status().ok && simulation.frame() < frames;
+  if (cut_short) {
+    report.status.ok = false;
+    report.status.text = "interrupted after frame " + std::to_string(simulation.frame());
+  }
+  files.finish(simulation, report);
+  std::cout << summary(report, files.written());
+  if (!simulation.status().ok) {
+    throw Failure{kStopped, {{loaded.path, stop_text(simulation.status()), ""}}};
+  }
+  if (cut_short) {
+    std::cerr << "weft: " << report.status.text << " of " << frames << "\n";
+    return 128 + interrupted();
+  }
+  return kDone;
+}
+
+void add_duration(CLI::App& command, RunArguments& arguments) {
+  constexpr double kLongest = 1e9;
+  CLI::Option* seconds = command
+                             .add_option("--seconds", arguments.seconds,
+                                         "How long to simulate (default: as the scene says)")
+                             ->type_name("T")
+                             ->check(number_in(0.0, kLongest, "seconds, 0 to 1e9"));
+  command.add_option("--frames", arguments.frames, "The same as a number of frames")
+      ->type_name("N")
+      ->check(number_in<std::int64_t>(0, 1'000'000'000, "a whole number from 0 to 1000000000"))
+      ->excludes(seconds);
+}
+
+}  // namespace
+
+void add_run(CLI::App& program, int& exit_code) {
+  CLI::App* command = program.add_subcommand("run", "Simulate a scene");
+  const auto arguments = std::make_shared<RunArguments>();
+  add_scene_argument(*command, arguments->scene);
+  add_duration(*command, *arguments);
+  command
+      ->add_option("--threads", arguments->threads,
+                   "Worker threads (default: all cores); never changes the result")
+      ->type_name("P")
+      ->check(number_in(1, 256, "a whole number from 1 to 256"));
+  command
+      ->add_option("--simd", arguments->simd,
+                   "Instruction set: " + list(simd_names()) +
+                       " (default: the widest); never changes the result")
+      ->type_name("SET")
+      ->check(one_of(simd_names()));
+  command->add_option("--seed", arguments->seed, "Seeds every random choice (default: 1)")
+      ->type_name("N")
+      ->check(number_in<std::uint64_t>(0, UINT64_MAX, "a whole number from 0"));
+  command->add_option("--report", arguments->report, "Write what was measured, as JSON")
+      ->type_name("FILE.json");
+  command
+      ->add_option("--dump", arguments->dump,
+                   "Write the final positions as raw little-endian float64 x,y,z")
+      ->type_name("FILE.f64");
+  command
+      ->add_option("--export", arguments->animation,
+                   "Write the animation: FILE.pc2 (point cache) or FILE.obj (FILE_0000.obj, …)")
+      ->type_name("FILE")
+      ->check(CLI::Validator(fault_of_animation, ""));
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace weft::cli

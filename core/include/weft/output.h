@@ -1,0 +1,85 @@
+// Simulation -> files: final positions, whole animations, and the rule that every file appears
+// complete or not at all. A file is written under a temporary name in its own directory and takes
+// its real name at the end; whatever ends a run early, no half-written file is left behind.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "weft/simulation.h"
+
+namespace weft {
+
+// A file could not be written: what() says why, `path` which one.
+struct WriteError : std::runtime_error {
+  WriteError(std::string file, const std::string& why);
+  std::string path;
+};
+
+// A file that takes its name when commit() is called; destroyed before, it leaves nothing. Every
+// function throws WriteError. Devices and pipes (/dev/stdout) are written directly.
+class OutputFile {
+ public:
+  // Opens the temporary file: a path that cannot be written is found here, before any work.
+  explicit OutputFile(std::string path);
+  ~OutputFile();
+  OutputFile(OutputFile&& other) noexcept;
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+  OutputFile& operator=(OutputFile&&) = delete;
+
+  const std::string& path() const { return path_; }
+  void write(std::string_view bytes);
+  // Replaces bytes already written, `offset` from the start; writing goes on at the end.
+  void overwrite(std::int64_t offset, std::string_view bytes);
+  void commit();
+
+ private:
+  struct Stream;
+  std::string path_;
+  std::unique_ptr<Stream> stream_;
+};
+
+// Positions (Simulation::positions) as raw little-endian float64 x,y,z, in scene order.
+std::string dump_bytes(std::span<const double> positions);
+
+// Opens, writes and commits in one go.
+void write_dump(const std::string& path, std::span<const double> positions);
+void write_report(const std::string& path, const Report& report);
+
+// A file, or a sequence of files, that grows by one sample per append(). Memory does not grow with
+// the number of samples.
+//
+//   auto animation = weft::open_animation("run.pc2", simulation.view());
+//   animation->append(simulation.view());            // the start
+//   while (...) { simulation.advance_frame(); animation->append(simulation.view()); }
+//   animation->finish();
+class Animation {
+ public:
+  virtual ~Animation() = default;
+  // Throws WriteError; throws std::invalid_argument for a view of another particle count.
+  virtual void append(const View& view) = 0;
+  // Makes what was appended so far valid under its real name.
+  virtual void finish() = 0;
+  // What finish() leaves: "run.pc2", "run_0000.obj … run_0300.obj".
+  virtual std::string written() const = 0;
+};
+
+// The animation formats, by file extension:
+//   .pc2  point cache that Blender's Mesh Cache modifier reads (axes: y up, -z forward); one
+//   float32
+//         x,y,z per particle in scene order and sample
+//   .obj  numbered sequence run_0000.obj, run_0001.obj, …: one object of quads per cloth
+std::vector<std::string> animation_extensions();
+
+// Opens an animation of the particles of `first` (nothing is appended yet). Throws WriteError when
+// it cannot be written and std::invalid_argument when the extension is not one of the above.
+std::unique_ptr<Animation> open_animation(const std::string& path, const View& first);
+
+}  // namespace weft

@@ -1,0 +1,42 @@
+// Picks an animation format by extension. A new format adds its file and one line to kFormats.
+#include "output/animation.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+
+namespace weft {
+
+namespace {
+
+struct Format {
+  const char* extension;
+  std::unique_ptr<Animation> (*open)(const std::string& path, const View& first);
+};
+
+constexpr std::array<Format, 2> kFormats{{
+    {".pc2", open_pc2},
+    {".obj", open_obj_sequence},
+}};
+
+}  // namespace
+
+std::vector<std::string> animation_extensions() {
+  std::vector<std::string> extensions;
+  extensions.reserve(kFormats.size());
+  for (const Format& format : kFormats) extensions.emplace_back(format.extension);
+  return extensions;
+}
+
+std::unique_ptr<Animation> open_animation(const std::string& path, const View& first) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const Format& format : kFormats) {
+    if (extension == format.extension) return format.open(path, first);
+  }
+  throw std::invalid_argument("'" + extension + "' is not an animation format");
+}
+
+}  // namespace weft

@@ -1,0 +1,181 @@
+// Point caches and OBJ sequences, read back by what their formats say.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <sstream>
+
+#include "folder.h"
+#include "weft/output.h"
+
+namespace weft {
+namespace {
+
+// A cloth of made-up positions with padded rows, as the simulation shows them.
+class Sheet {
+ public:
+  Sheet(int columns, int rows) : columns_(columns), rows_(rows) {
+    const auto size = static_cast<std::size_t>(rows) * kStride;
+    x_.assign(size, kPadding);
+    y_ = z_ = x_;
+    move(0);
+  }
+  void move(float offset) {
+    for (int j = 0; j < rows_; ++j) {
+      for (int i = 0; i < columns_; ++i) {
+        const auto n = static_cast<std::size_t>(j) * kStride + static_cast<std::size_t>(i);
+        x_[n] = 0.1F * static_cast<float>(i) + offset;
+        y_[n] = 1.0F / 3.0F;
+        z_[n] = 0.1F * static_cast<float>(j);
+      }
+    }
+  }
+  ClothView view() const {
+    ClothView view;
+    view.columns = columns_;
+    view.rows = rows_;
+    view.stride = kStride;
+    view.x = x_;
+    view.y = y_;
+    view.z = z_;
+    return view;
+  }
+
+ private:
+  static constexpr int kStride = 16;
+  static constexpr float kPadding = 1e30F;  // must never be written
+  int columns_, rows_;
+  std::vector<float> x_, y_, z_;
+};
+
+View view_of(const std::vector<const Sheet*>& sheets) {
+  View view;
+  for (const Sheet* sheet : sheets) view.cloths.push_back(sheet->view());
+  return view;
+}
+
+template <class T>
+T value_at(const std::string& bytes, std::size_t offset) {
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+TEST(Pc2, HasTheHeaderThatBlenderReads) {
+  const Folder folder;
+  const Sheet sheet(3, 2);
+  const auto animation = open_animation(folder / "a.pc2", view_of({&sheet}));
+  for (int sample = 0; sample < 4; ++sample) animation->append(view_of({&sheet}));
+  EXPECT_EQ(folder.has("a.pc2"), false);
+  animation->finish();
+  EXPECT_EQ(animation->written(), folder / "a.pc2");
+  const std::string bytes = folder.read("a.pc2");
+  ASSERT_EQ(bytes.size(), 32U + 4 * 6 * 12);
+  EXPECT_EQ(bytes.substr(0, 12), std::string("POINTCACHE2\0", 12));
+  EXPECT_EQ(value_at<std::int32_t>(bytes, 12), 1);  // version
+  EXPECT_EQ(value_at<std::int32_t>(bytes, 16), 6);  // points
+  EXPECT_EQ(value_at<float>(bytes, 20), 0.0F);      // first frame
+  EXPECT_EQ(value_at<float>(bytes, 24), 1.0F);      // frames per sample
+  EXPECT_EQ(value_at<std::int32_t>(bytes, 28), 4);  // samples
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+TEST(Pc2, HoldsEveryClothInSceneOrderWithoutPadding) {
+  const Folder folder;
+  const Sheet one(3, 2);
+  Sheet two(2, 2);
+  const auto animation = open_animation(folder / "a.PC2", view_of({&one, &two}));
+  animation->append(view_of({&one, &two}));
+  two.move(5);
+  animation->append(view_of({&one, &two}));
+  animation->finish();
+  const std::string bytes = folder.read("a.PC2");
+  const auto position = [&](std::size_t sample, std::size_t point, std::size_t axis) {
+    return value_at<float>(bytes, 32 + ((sample * 10 + point) * 3 + axis) * 4);
+  };
+  ASSERT_EQ(bytes.size(), 32U + 2 * 10 * 12);
+  EXPECT_EQ(position(0, 2, 0), 0.2F);  // (2,0) of the first
+  EXPECT_EQ(position(0, 3, 2), 0.1F);  // (0,1)
+  EXPECT_EQ(position(0, 6, 0), 0.0F);  // (0,0) of the second
+  EXPECT_EQ(position(0, 6, 1), 1.0F / 3.0F);
+  EXPECT_EQ(position(1, 6, 0), 5.0F);
+  EXPECT_EQ(position(1, 0, 0), 0.0F);
+}
+
+TEST(Pc2, LeavesNothingWhenTheRunIsGivenUp) {
+  const Folder folder;
+  const Sheet sheet(3, 2);
+  {
+    const auto animation = open_animation(folder / "a.pc2", view_of({&sheet}));
+    animation->append(view_of({&sheet}));
+  }
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(Pc2, RefusesAnotherNumberOfParticles) {
+  const Folder folder;
+  const Sheet sheet(3, 2);
+  const Sheet other(3, 3);
+  const auto animation = open_animation(folder / "a.pc2", view_of({&sheet}));
+  EXPECT_THROW(animation->append(view_of({&other})), std::invalid_argument);
+}
+
+TEST(Obj, IsASequenceOfCompleteFiles) {
+  const Folder folder;
+  const Sheet sheet(3, 2);
+  const auto animation = open_animation(folder / "run.obj", view_of({&sheet}));
+  EXPECT_EQ(folder.files(), 0U);
+  for (int sample = 0; sample < 3; ++sample) animation->append(view_of({&sheet}));
+  animation->finish();
+  EXPECT_EQ(folder.files(), 3U);
+  EXPECT_TRUE(folder.has("run_0000.obj"));
+  EXPECT_TRUE(folder.has("run_0002.obj"));
+  EXPECT_EQ(animation->written(), (folder / "run_0000.obj") + " … " + (folder / "run_0002.obj"));
+}
+
+TEST(Obj, HasOneObjectOfQuadsPerCloth) {
+  const Folder folder;
+  const Sheet one(3, 2);
+  const Sheet two(2, 2);
+  const auto animation = open_animation(folder / "run.obj", view_of({&one, &two}));
+  animation->append(view_of({&one, &two}));
+  std::istringstream lines(folder.read("run_0000.obj"));
+  std::vector<std::string> objects, faces;
+  std::size_t vertices = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line[0] == 'o') objects.push_back(line);
+    if (line[0] == 'v') ++vertices;
+    if (line[0] == 'f') faces.push_back(line);
+  }
+  EXPECT_EQ(objects, (std::vector<std::string>{"o cloth_0", "o cloth_1"}));
+  EXPECT_EQ(vertices, 10U);
+  EXPECT_EQ(faces, (std::vector<std::string>{"f 1 2 5 4", "f 2 3 6 5", "f 7 8 10 9"}));
+}
+
+TEST(Obj, CoordinatesReadBackToTheSameBits) {
+  const Folder folder;
+  const Sheet sheet(2, 2);
+  open_animation(folder / "run.obj", view_of({&sheet}))->append(view_of({&sheet}));
+  std::istringstream lines(folder.read("run_0000.obj"));
+  std::string skipped;
+  std::getline(lines, skipped);
+  std::string letter, x, y;
+  lines >> letter >> x >> y;
+  EXPECT_EQ(std::stof(y), 1.0F / 3.0F);
+}
+
+TEST(Animation, ChecksThePathBeforeTheFirstSample) {
+  const Folder folder;
+  const Sheet sheet(2, 2);
+  for (const std::string& extension : animation_extensions()) {
+    EXPECT_THROW(open_animation(folder / ("missing/a" + extension), view_of({&sheet})), WriteError);
+  }
+}
+
+TEST(Animation, RefusesUnknownExtensions) {
+  const Sheet sheet(2, 2);
+  EXPECT_THROW(open_animation("a.xyz", view_of({&sheet})), std::invalid_argument);
+  EXPECT_THROW(open_animation("a", view_of({&sheet})), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace weft
