@@ -1,7 +1,11 @@
 # weft_options: the warnings and floating-point rules that every target of the project is built with.
 add_library(weft_options INTERFACE)
 target_compile_options(weft_options INTERFACE
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+  -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Werror
+  # g++: -Wshadow would also reject constructor parameters named like the member they fill; -Wrestrict
+  # warns falsely about std::string in g++ 12.
+  $<$<CXX_COMPILER_ID:GNU>:-Wshadow=local> $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+  $<$<CXX_COMPILER_ID:Clang>:-Wshadow>
   # The same bits from every compiler and instruction set: no contraction into fused multiply-add.
   -ffp-contract=off)
 if(WEFT_SANITIZE)
