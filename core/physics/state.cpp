@@ -243,7 +243,7 @@ void Simulation::State::find_fault() {
     for (int s = 0; s < substeps; ++s) {
       const Substep substep{dt, double(frame) * scene.time.frame + (s + 1) * dt, 0};
       for (const auto& stage : cloths[c]->stages()) {
-        for (int j = 0; j < l.rows; ++j) stage->run(j, substep);
+        stage->run(0, l.rows, substep);
         for (int j = 0; j < l.rows && status.text == "ok"; ++j)
           for (int i = 0; i < l.columns && status.text == "ok"; ++i)
             for (int k = 0; k < 3; ++k)
