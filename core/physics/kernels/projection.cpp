@@ -28,12 +28,10 @@ WEFT_INLINE RowAt row_at(const ProjectRows& p, int j) {
 // What differs between the sweeps, so that each kernel holds just its own.
 enum class Rule { rigid, compliant, multipliers, limit };
 
-// The correction of a block of constraints by unit inverse mass, zero outside `active`. e joins
-// their ends, lambda are their multipliers.
+// Δλ/|e| of a block of constraints of given length, zero outside `active`; updates the multipliers.
 template <Rule R>
-WEFT_INLINE Wide3 solve(const ProjectRows& p, Wide3 e, Wide wa, Wide wb, int j, Wide& lambda,
-                        WideInt active) {
-  const Wide length = sqrt(max(dot(e, e), wide(kTiny)));
+WEFT_INLINE Wide scale_of(const ProjectRows& p, Wide length, Wide wa, Wide wb, int j, Wide& lambda,
+                          WideInt active) {
   Wide violation = length - p.rest, inertia = wa + wb;
   if constexpr (R == Rule::compliant || R == Rule::multipliers)
     inertia = inertia + p.compliance[j];
@@ -41,10 +39,17 @@ WEFT_INLINE Wide3 solve(const ProjectRows& p, Wide3 e, Wide wa, Wide wb, int j, 
     active = active & (inertia > 0.0f);  // two pinned ends have nothing to move
   if constexpr (R == Rule::limit) active = active & (violation > 0.0f);
   if constexpr (R == Rule::multipliers) violation = violation + p.compliance[j] * lambda;
-  violation = violation * p.share;
-  const Wide scale = select(active, violation / (inertia * length), Wide{});
+  const Wide scale = select(active, violation * p.share / (inertia * length), Wide{});
   if constexpr (R == Rule::multipliers) lambda = lambda - scale * length;
-  return e * scale;
+  return scale;
+}
+
+// The correction of a block of constraints by unit inverse mass; e joins their ends.
+template <Rule R>
+WEFT_INLINE Wide3 solve(const ProjectRows& p, Wide3 e, Wide wa, Wide wb, int j, Wide& lambda,
+                        WideInt active) {
+  const Wide length = sqrt(max(dot(e, e), wide(kTiny)));
+  return e * scale_of<R>(p, length, wa, wb, j, lambda, active);
 }
 
 // The same for constraints a … a+kLanes-1 of rows `near` and `far`.
@@ -166,22 +171,51 @@ WEFT_INLINE int along_row_parted(const ProjectRows& p, int j, int colour) {
   return a;
 }
 
+// The constraints between rows j and j+dj. Blocks pass three stations (edge, root, shift), each a
+// block behind the one before, so that no root is waited for.
 template <Rule R>
 WEFT_INLINE void between_rows(const ProjectRows& p, int j) {
-  const RowAt near = row_at(p, j), far = row_at(p, j + p.dj);
-  for (int a = 0; a < padded(p.count); a += kLanes) {
-    const Wide wa = load(near.w + a + p.near), wb = load(far.w + a + p.far);
-    const Wide3 c = solve_block<R>(p, near, far, wa, wb, j, a, lanes_below(p.count - a));
-    if (R == Rule::limit && !moves(c)) continue;
-    shift<R>(p, near, a + p.near, c * wa);
-    shift<R>(p, far, a + p.far, Wide3{} - c * wb);
+  // Lane a of these is an end of constraint a.
+  const auto shifted = [](RowAt r, int by) {
+    return RowAt{{r.x.x + by, r.x.y + by, r.x.z + by}, {r.v.x + by, r.v.y + by, r.v.z + by}, r.w + by};
+  };
+  const RowAt near = shifted(row_at(p, j), p.near), far = shifted(row_at(p, j + p.dj), p.far);
+  struct Block {
+    Wide3 e;
+    Wide length;
+  } squared{}, rooted{};
+  float* const lambdas = p.lambda + std::ptrdiff_t(j) * p.stride;
+  const int count = p.count, end = padded(count);
+  for (int a = 0; a < end + 2 * kLanes; a += kLanes) {
+    if (const int i = a - 2 * kLanes; i >= 0) {
+      const Wide wa = load(near.w + i), wb = load(far.w + i);
+      Wide lambda{};
+      if constexpr (R == Rule::multipliers) lambda = load(lambdas + i);
+      const Wide scale =
+          scale_of<R>(p, rooted.length, wa, wb, j, lambda, lanes_below(count - i));
+      if constexpr (R == Rule::multipliers) store(lambdas + i, lambda);
+      const Wide3 c = rooted.e * scale;
+      if (R != Rule::limit || moves(c)) {
+        shift<R>(p, near, i, c * wa);
+        shift<R>(p, far, i, Wide3{} - c * wb);
+      }
+    }
+    if (const int i = a - kLanes; i >= 0 && i < end) {
+      rooted.e = squared.e;
+      rooted.length = sqrt(squared.length);
+    }
+    if (a < end) {
+      squared.e = load3(far.x, a) - load3(near.x, a);
+      squared.length = max(dot(squared.e, squared.e), wide(kTiny));
+    }
   }
 }
 
 // Rows begin … end-1 of one family: along the rows one colour after the other, between rows those of
 // one colour.
 template <Rule R>
-void sweep(const ProjectRows& p) {
+void sweep(const ProjectRows& given) {
+  const ProjectRows p = given;
   if (p.dj == 0) {
     for (int colour = 0; colour < 2; ++colour)
       for (int j = p.begin; j < p.end; ++j) {
