@@ -176,6 +176,8 @@ void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
                          std::vector<std::unique_ptr<RowStage>>& stages) {
   const std::string name = options.limit > 0 ? "strain_limit" : "gauss_seidel";
   for (std::size_t index = 0; index < parts.families.size(); ++index) {
+    // Bend constraints join second neighbours; the limit is one on the cloth's own edges.
+    if (options.limit > 0 && parts.families[index].kind == Kind::bend) continue;
     if (parts.families[index].dj == 0) {
       stages.push_back(std::make_unique<AlongRows>(parts, options, index, name));
       continue;
