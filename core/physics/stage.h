@@ -13,8 +13,9 @@ struct Substep {
   int slot = 0;             // which of a stage's carried buffers this substep uses
 };
 
-// run(j) may read and write rows j … j+reach of the lattice, and must be called for j = 0, 1, 2 …
-// It may carry data from row to row in buffers of its own, one set per slot.
+// Work on row j may read and write rows j … j+reach of the lattice, and comes in the order j = 0, 1,
+// 2 … within a substep. A stage may carry data from row to row in buffers of its own, one set per
+// slot. It overrides either run for one row or run for a range of rows.
 class RowStage {
  public:
   RowStage(std::string name, std::string detail, int reach, std::int64_t items, std::string item)
@@ -27,7 +28,12 @@ class RowStage {
   RowStage(const RowStage&) = delete;
   RowStage& operator=(const RowStage&) = delete;
 
-  virtual void run(int row, const Substep& substep) = 0;
+  virtual void run(int row, const Substep& substep) { run(row, row + 1, substep); }
+  virtual void run(int begin, int end, const Substep& substep) {
+    for (int j = begin; j < end; ++j) run(j, substep);
+  }
+  // Called before substeps of a new length.
+  virtual void prepare(double dt) { (void)dt; }
   // Makes room for substeps of slots 0 … slots-1.
   virtual void reserve_slots(int slots) { (void)slots; }
   virtual std::size_t bytes() const { return 0; }
