@@ -53,7 +53,7 @@ std::vector<Feature> features() {
 }
 
 void run_feature(benchmark::State& state, const Feature& feature, int n) {
-  weft::Scene scene = stepping_scene(n, 32);
+  weft::Scene scene = stepping_scene(n, 16);
   feature.switch_on(scene);
   weft::Options options;
   options.threads = 1;
@@ -66,9 +66,9 @@ void run_feature(benchmark::State& state, const Feature& feature, int n) {
     return;
   }
   simulation.advance_frame();
-  for (auto _ : state) simulation.advance_frame();
+  const double ns = fastest_ns(state, [&] { simulation.advance_frame(); });
   if (!simulation.status().ok) state.SkipWithError(simulation.status().text.c_str());
-  count_work(state, widest(), 32, double(n) * n, 0);
+  count_work(state, widest(), ns, {16, double(n) * n, 0});
 }
 
 }  // namespace

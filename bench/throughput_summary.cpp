@@ -39,7 +39,7 @@ void print_speed_up(const std::vector<Figure>& all) {
     for (int n : {100, 316, 1000}) {
       const Figure *one = named(all, step_name(way, n, 1)), *two = named(all, step_name(way, n, 2));
       if (!one || !two) continue;
-      const double ratio = one->ms / two->ms;
+      const double ratio = one->counter("ms") / two->counter("ms");
       std::printf("  %-26s N=%-4d %5.2f%s\n", way, n, ratio,
                   n != 316       ? ""
                   : ratio >= 1.6 ? " (>= 1.6): met"
@@ -55,7 +55,8 @@ void print_features(const std::vector<Figure>& all) {
     if (!f.error.empty())
       std::printf("  %-32s %s\n", f.name.c_str() + 8, f.error.c_str());
     else if (plain && plain != &f)
-      std::printf("  %-32s %+6.1f %%\n", f.name.c_str() + 8, 100 * (f.ms / plain->ms - 1));
+      std::printf("  %-32s %+6.1f %%\n", f.name.c_str() + 8,
+                  100 * (f.counter("ms") / plain->counter("ms") - 1));
   }
 }
 
@@ -89,7 +90,7 @@ void write_figures(const std::string& path, const std::vector<Figure>& all) {
       j["limits"]["sqrt_div_ns"][weft::simd_name(s)] = limits().sqrt_div(s);
   j["widest"] = weft::simd_name(widest());
   for (const Figure& f : all) {
-    nlohmann::ordered_json figure{{"name", f.name}, {"ms", f.ms}, {"error", f.error}};
+    nlohmann::ordered_json figure{{"name", f.name}, {"error", f.error}};
     for (const auto& [key, value] : f.counters) figure[key] = value;
     j["figures"].push_back(std::move(figure));
   }
