@@ -42,7 +42,7 @@ std::string escaped(const std::string& text) {
 }
 
 std::string fixed(double v) {
-  char text[32];
+  char text[64];
   std::snprintf(text, sizeof text, "%.1f", v);
   return text;
 }
@@ -104,7 +104,7 @@ std::vector<PlotPoint> front_of(std::vector<PlotPoint> points) {
 
 // "1 µs" … "1 s" for milliseconds, "0.1 mm" for metres: what a person would say.
 std::string decade_text(int decade) {
-  char text[32];
+  char text[64];
   if (decade >= -3 && decade <= 3)
     std::snprintf(text, sizeof text, "%g", std::pow(10, decade));
   else
