@@ -72,13 +72,14 @@ struct FamilyRow {
   SpringConstants spring;
 };
 
-// Constants of a projected family: C = |e| - rest, Δλ = -(C + compliance λ)/(w_a + w_b + compliance).
+// Constants of a projected family: C = |e| - rest,
+// Δλ = -(C + compliance λ)/(weight (w_a + w_b) + compliance).
 struct ProjectRow {
   FamilyRow rows;
   const std::int32_t* lanes;  // same_row: -1 in the lanes of this colour, 0 elsewhere
   float rest;                 // m
   float compliance;           // 1/(k dt²) [1/kg]; 0 = rigid
-  float share;                // factor on the correction (2 positional_k, Jacobi's relaxation)
+  float weight;               // of w_a + w_b (1/(2 positional_k), 1/Jacobi's relaxation)
   float* lambda;              // multipliers of this row, null for a single sweep [kg·m]
   float limit;                // > 0: one-sided, nothing happens below this length [m]
   float inverse_dt;           // > 0: add the change of position over dt to the velocity

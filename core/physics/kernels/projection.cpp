@@ -24,7 +24,7 @@ WEFT_INLINE Correction solve(const ProjectRow& p, int a, WideInt active) {
   const Wide3 e = load3(r.x_far, a + r.far) - load3(r.x, a + r.near);
   const Wide length = sqrt(max(dot(e, e), wide(kTiny)));
   const Wide wa = load(r.w + a + r.near), wb = load(r.w_far + a + r.far);
-  const Wide stiffness = wa + wb + p.compliance;
+  const Wide stiffness = (wa + wb) * p.weight + p.compliance;
   Wide violation = length - p.rest;
   if (p.limit > 0) {
     violation = length - p.limit;
@@ -33,7 +33,7 @@ WEFT_INLINE Correction solve(const ProjectRow& p, int a, WideInt active) {
   if (p.lambda) violation = violation + p.compliance * load(p.lambda + a);
   // Two pinned ends have nothing to move; the quotient is replaced, not computed.
   const WideInt movable = stiffness > 0.0f;
-  const Wide step = violation * p.share / select(movable, stiffness, wide(1));
+  const Wide step = violation / select(movable, stiffness, wide(1));
   const Wide lambda = select(active & movable, step, Wide{});
   if (p.lambda) store(p.lambda + a, load(p.lambda + a) - lambda);
   const Wide3 along = e * (lambda / length);

@@ -22,7 +22,7 @@ ProjectRow project_row(const ClothParts& parts, const SweepOptions& o, std::size
   ProjectRow p{};
   p.rows = family_row(parts.lattice, f, j);
   p.rest = float(f.rest);
-  p.share = 1;
+  p.weight = 1;
   if (o.limit > 0) {
     p.limit = float(f.rest * (1 + o.limit));
     p.inverse_dt = float(1 / s.dt);
@@ -30,7 +30,7 @@ ProjectRow project_row(const ClothParts& parts, const SweepOptions& o, std::size
     p.compliance = compliance_of(parts, f, j, s.dt);
     if (o.multipliers) p.lambda = o.multipliers->row(index, j);
   } else {
-    p.share = float(2 * parts.cloth.positional_k);
+    p.weight = float(1 / (2 * parts.cloth.positional_k));
   }
   return p;
 }
@@ -101,7 +101,9 @@ class BetweenRows final : public RowStage {
 
 // Relaxation of the summed corrections. The largest eigenvalue of the constraint system, relative
 // to its diagonal, is at most half the constraints at a particle for sheets made of these families;
-// 2.7/n keeps the sweep convergent, 0.9 is the bound of a single chain.
+// 2.7/n keeps the sweep convergent, 0.9 is the bound of a single chain. It applies to the part of the
+// system that couples constraints, w_a + w_b: compliance needs none, so that a single sweep of small
+// substeps is a spring of the full stiffness.
 float relaxation(std::size_t families) { return std::min(0.9f, 2.7f / float(2 * families)); }
 
 class Jacobi final : public RowStage {
@@ -124,7 +126,7 @@ class Jacobi final : public RowStage {
       ProjectRow p = project_row(parts_, options_, index, j, s);
       p.rows.f = sum(j);
       p.rows.f_far = sum(j + f.dj);
-      p.share *= relaxation(parts_.families.size());
+      p.weight /= relaxation(parts_.families.size());
       parts_.kernels.project_jacobi(p);
     }
     AdvanceRow a{};
