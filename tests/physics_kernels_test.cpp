@@ -177,11 +177,10 @@ struct Features {
   float compliance, weight, limit, inverse_dt;
   bool multipliers;
 };
-constexpr Features kFeatures[] = {{"rigid", 0, 1, 0, 0, false},
-                                  {"heavier", 0, 1.7f, 0, 0, false},
-                                  {"compliant", 0.7f, 1, 0, 0, false},
-                                  {"multipliers", 0.7f, 1, 0, 0, true},
-                                  {"limit", 0, 1, 1.1f, 100, false}};
+constexpr Features kFeatures[] = {
+    {"rigid", 0, 1, 0, 0, false},        {"heavier", 0, 1.7f, 0, 0, false},
+    {"compliant", 0.7f, 1, 0, 0, false}, {"multipliers", 0.7f, 1, 0, 0, true},
+    {"velocity", 0.7f, 1, 0, 100, true}, {"limit", 0, 1, 1.1f, 100, false}};
 
 void add_projections(std::vector<Case>& cases) {
   for (const auto& [di, dj] : kOffsets)

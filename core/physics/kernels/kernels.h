@@ -118,7 +118,7 @@ struct KernelTable {
   void (*velocity)(const AdvanceRow&);              // v <- (x - previous)/dt
   void (*project)(const ProjectRow&);               // Gauss-Seidel: one family, one colour, in place
   void (*project_jacobi)(const ProjectRow&);        // Jacobi: corrections added up in f
-  void (*apply_corrections)(const AdvanceRow&);     // x += f, f <- 0
+  void (*apply_corrections)(const AdvanceRow&);     // x += f, v += f/dt if inverse_dt > 0, f <- 0
   void (*sphere)(const CollideRow&);
   void (*plane)(const CollideRow&);
   void (*course_sphere)(const CollideRow&);

@@ -120,6 +120,7 @@ void project_jacobi(const ProjectRow& p) {
 void apply_corrections(const AdvanceRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     store3(r.x, i, load3(r.x, i) + load3(r.f, i));
+    if (r.inverse_dt > 0) store3(r.v, i, load3(r.v, i) + load3(r.f, i) * wide(r.inverse_dt));
     store3(r.f, i, Wide3{});
   }
 }

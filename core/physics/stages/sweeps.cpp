@@ -28,6 +28,9 @@ ProjectRow project_row(const ClothParts& parts, const SweepOptions& o, std::size
     p.inverse_dt = float(1 / s.dt);
   } else if (o.compliant) {
     p.compliance = compliance_of(parts, f, j, s.dt);
+    // The velocity gains each correction as computed: the difference of rounded positions would be
+    // off by their rounding over dt, which a small substep's force does not outweigh.
+    p.inverse_dt = float(1 / s.dt);
     if (o.multipliers) p.lambda = o.multipliers->row(index, j);
   } else {
     p.weight = float(1 / (2 * parts.cloth.positional_k));
@@ -133,6 +136,8 @@ class Jacobi final : public RowStage {
     a.columns = l.columns;
     a.x = l.x.row(j);
     a.f = sum(j);
+    a.v = l.v.row(j);
+    a.inverse_dt = options_.compliant ? float(1 / s.dt) : 0.0f;
     parts_.kernels.apply_corrections(a);
   }
 
