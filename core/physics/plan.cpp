@@ -32,7 +32,7 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method) {
       else
         append_gauss_seidel(parts, sweep, stages_);
     }
-    stages_.push_back(make_velocity(parts));
+    if (!sweep.compliant) stages_.push_back(make_velocity(parts));
   }
   for (int n = 0; n < solver.collision_iterations; ++n)
     for (const Collider& c : parts.scene.colliders)

@@ -5,7 +5,8 @@
 //
 //   spring, spring_friction:  springs (x, v -> forces -> v, x) - keyed_pins - colliders - strain_limit
 //   positional, compliant:    predict (previous <- x; v, x by gravity) - keyed_pins - sweeps (x)
-//                             - velocity (v <- (x - previous)/dt) - colliders - strain_limit
+//                             - velocity (positional: v <- (x - previous)/dt; compliant sweeps have
+//                             changed v themselves) - colliders - strain_limit
 //
 // After every stage from springs or velocity on, x - dt v is the position before the substep:
 // contact and the strain limit change x and v together.
