@@ -42,7 +42,7 @@ std::string escaped(const std::string& text) {
 }
 
 std::string fixed(double v) {
-  char text[64];
+  char text[32];
   std::snprintf(text, sizeof text, "%.1f", v);
   return text;
 }
@@ -102,13 +102,13 @@ std::vector<PlotPoint> front_of(std::vector<PlotPoint> points) {
   return front;
 }
 
-// "1 µs" … "1 s" for milliseconds, "0.1 mm" for metres: what a person would say.
+// The value of a decade: plain where it is short, else as a power of ten.
 std::string decade_text(int decade) {
-  char text[64];
+  char text[96];
   if (decade >= -3 && decade <= 3)
     std::snprintf(text, sizeof text, "%g", std::pow(10, decade));
   else
-    std::snprintf(text, sizeof text, "10<tspan dy=\"-6\" font-size=\"9\">%s%d</tspan>",
+    std::snprintf(text, sizeof text, "10<tspan dy=\"-5\" font-size=\"9\">%s%d</tspan>",
                   decade < 0 ? "−" : "", std::abs(decade));
   return text;
 }
