@@ -21,12 +21,18 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method) {
   } else {
     SweepOptions sweep;
     sweep.compliant = method == Method::compliant;
-    if (sweep.compliant && solver.iterations > 1)
+    const bool lines = solver.sweep == Sweep::line;
+    if (sweep.compliant && !lines && solver.iterations > 1)
       multipliers_ = std::make_unique<Multipliers>(lattice_, families_.size());
     sweep.multipliers = multipliers_.get();
     stages_.push_back(make_predict(parts, multipliers_.get()));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
-    for (int n = 0; n < solver.iterations && !families_.empty(); ++n) {
+    if (lines) {
+      const float share = sweep.compliant ? 1.0f : float(2 * cloth_.positional_k);
+      if (auto line = make_line(parts, {sweep.compliant, solver.iterations, share}))
+        stages_.push_back(std::move(line));
+    }
+    for (int n = 0; n < solver.iterations && !families_.empty() && !lines; ++n) {
       if (solver.sweep == Sweep::jacobi)
         stages_.push_back(make_jacobi(parts, sweep));
       else

@@ -108,6 +108,9 @@ struct CollideRow {
   float friction_static, friction_dynamic;
 };
 
+struct LineStrip;      // kernels/line.h
+struct TransposeRows;
+
 struct KernelTable {
   void (*spring_row)(const SpringRow&);
   void (*spring_family)(const FamilyRow&);          // f += spring force
@@ -122,6 +125,9 @@ struct KernelTable {
   void (*plane)(const CollideRow&);
   void (*course_sphere)(const CollideRow&);
   void (*course_plane)(const CollideRow&);
+  void (*line_strip)(const LineStrip&);             // a strip of lines, each solved as a whole
+  void (*rows_to_lanes)(const TransposeRows&);
+  void (*lanes_to_rows)(const TransposeRows&);
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

@@ -53,5 +53,8 @@ void sphere(const CollideRow&);
 void plane(const CollideRow&);
 void course_sphere(const CollideRow&);
 void course_plane(const CollideRow&);
+void line_strip(const physics::LineStrip&);
+void rows_to_lanes(const physics::TransposeRows&);
+void lanes_to_rows(const physics::TransposeRows&);
 
 }  // namespace weft::WEFT_KERNELS

@@ -8,6 +8,7 @@ const physics::KernelTable kTable = {
     spring_row,     spring_family, damped_spring_family, integrate, predict,
     velocity,       project,       project_jacobi,       apply_corrections,
     sphere,         plane,         course_sphere,        course_plane,
+    line_strip,     rows_to_lanes, lanes_to_rows,
 };
 
 }  // namespace weft::WEFT_KERNELS

@@ -51,6 +51,17 @@ struct SweepOptions {
 };
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
                          Stages& stages);
+// Compliance 1/(k dt²) [1/kg] of a family's constraints in row j; dt is the share of the substep over
+// which constraint forces act.
+float compliance_of(const ClothParts& parts, const Family& family, int j, double dt);
+
+struct LineOptions {
+  bool compliant = false;
+  int iterations = 1;
+  float share = 1;  // of the correction
+};
+// The line sweep: one stage for all families and iterations; null when the cloth has no constraint.
+std::unique_ptr<Stage> make_line(const ClothParts& parts, const LineOptions& options);
 std::unique_ptr<RowStage> make_jacobi(const ClothParts& parts, const SweepOptions& options);
 
 }  // namespace weft::physics

@@ -10,12 +10,6 @@ namespace {
 
 constexpr int kColours = 2;
 
-// Compliance 1/(k dt²) [1/kg] of a family's constraints in row j.
-float compliance_of(const ClothParts& parts, const Family& f, int j, double dt) {
-  const double k = f.stiffness * gradient_factor(parts.cloth, j, f.dj);
-  return float(1 / (std::max(k, 1e-12) * dt * dt));
-}
-
 ProjectRow project_row(const ClothParts& parts, const SweepOptions& o, std::size_t index, int j,
                        const Substep& s) {
   const Family& f = parts.families[index];
@@ -141,6 +135,11 @@ class Jacobi final : public RowStage {
 };
 
 }  // namespace
+
+float compliance_of(const ClothParts& parts, const Family& f, int j, double dt) {
+  const double k = f.stiffness * gradient_factor(parts.cloth, j, f.dj);
+  return float(1 / (std::max(k, 1e-12) * dt * dt));
+}
 
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
                          Stages& stages) {
