@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/bending.h"
+
 namespace weft::physics {
 namespace {
 
@@ -60,6 +62,7 @@ std::vector<Vec3> accelerations(const Scene& scene, const Cloth& cloth,
   const std::vector<Vec3> x = gather(l, l.x);
   const std::vector<Vec3> v = damped ? gather(l, l.v) : std::vector<Vec3>{};
   std::vector<Vec3> a = spring_forces(cloth, families, x, damped ? &v : nullptr);
+  add_bending_forces(cloth, x, a);
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i) {
       const double w = l.w(j, i);

@@ -54,26 +54,31 @@ WEFT_INLINE WideInt on_sheet(const LineStrip& p, int lane) {
   const WideInt lanes = lane_numbers() + lane;
   return (lanes >= 0) & (lanes < p.columns);
 }
-WEFT_INLINE bool all_on_sheet(const LineStrip& p, int lane) {
-  return lane >= 0 && lane + kLanes <= p.columns;
-}
 
 int quotient_up(int a, int b) { return a <= 0 ? 0 : (a + b - 1) / b; }
+int least(int a, int b) { return a < b ? a : b; }
+int greatest(int a, int b) { return a > b ? a : b; }
 
-// Constraints begin … end-1 of a block of lines have a lane on the sheet at both their ends.
+// A block of kLanes lines: constraints begin … end-1 have a lane on the sheet at both their ends, and
+// of those whole_begin … whole_end-1 have all lanes at both ends.
 struct Range {
-  int begin, end;
+  int begin, end, whole_begin, whole_end;
 };
 Range range_of(const LineStrip& p, int line) {
   const int last = p.particles - 1;
-  if (p.lean == 0) return {0, line < p.columns ? last : 0};
+  if (p.lean == 0) {
+    const int end = line < p.columns ? last : 0;
+    return {0, end, 0, line + kLanes <= p.columns ? end : 0};
+  }
   const int lean = p.lean > 0 ? p.lean : -p.lean;
   // Lanes move right by `lean` a row; for lines that lean left seen in the mirror.
-  const int left = p.lean > 0 ? line : p.columns - line - kLanes;
-  const int begin = quotient_up(-(left + kLanes - 1), lean);
-  // The leftmost lane's far end is the last to leave at the right border.
-  const int end = quotient_up(p.columns - lean - left, lean);
-  return {begin < last ? begin : last, end < last ? end : last};
+  const int left = p.lean > 0 ? line : p.columns - line - kLanes, right = left + kLanes - 1;
+  // The rightmost lane is the first to come in at the left border, the first to go at the right.
+  Range r{quotient_up(-right, lean), quotient_up(p.columns - lean - left, lean),
+          quotient_up(-left, lean), quotient_up(p.columns - lean - right, lean)};
+  for (int* c : {&r.begin, &r.end, &r.whole_begin, &r.whole_end}) *c = least(*c, last);
+  r.whole_end = greatest(r.whole_begin, r.whole_end);
+  return r;
 }
 
 // One block of lanes on its way along the lines.
@@ -93,28 +98,25 @@ struct Block {
   WEFT_INLINE float* scratch(int m) const {
     return p.scratch + static_cast<std::ptrdiff_t>(m) * kStripScratch + offset;
   }
-  WEFT_INLINE Wide compliance(int m) const {
-    return load(p.compliance + m * p.compliance_step + offset);
-  }
   // e_c where the constraint exists, else 0.
   WEFT_INLINE Wide3 existing(Wide3 e, int m) const {
     const int lane = line + m * p.lean;
-    if (!all_on_sheet(p, lane) || !all_on_sheet(p, lane + p.lean))
-      e = select(on_sheet(p, lane) & on_sheet(p, lane + p.lean), e, Wide3{});
+    e = select(on_sheet(p, lane) & on_sheet(p, lane + p.lean), e, Wide3{});
     if (p.alive) e = select(load_int(p.alive + at(m)), e, Wide3{});
     return e;
   }
 
+  template <bool kWhole>
   WEFT_INLINE void eliminate(int m) {
-    if (m < range.begin || m >= range.end) return;
-    if (m == range.begin) {
-      x = load3_at(p.x, at(m));
-      w = load(p.w + at(m));
+    if constexpr (!kWhole) {
+      if (m < range.begin || m >= range.end) return;
+      if (m == range.begin) start();
     }
     const Wide3 far = load3_at(p.x, at(m + 1));
     const Wide w_far = load(p.w + at(m + 1));
-    const Wide3 e = existing(far - x, m);
-    const Wide alpha = compliance(m);
+    Wide3 e = far - x;
+    if constexpr (!kWhole) e = existing(e, m);
+    const Wide alpha = load(p.compliance + m * p.compliance_step + offset);
     const Wide squared = dot(e, e);
     const Wide length = sqrt(squared);
     const Wide coupling = w * dot(edge, e);
@@ -132,35 +134,48 @@ struct Block {
     x = far;
     w = w_far;
   }
-
-  // Moves particle m by the pulls of the constraints before and after it.
-  WEFT_INLINE void shift(int m, Wide3 position, Wide inverse_mass, Wide3 by) const {
-    const Wide3 moved = position + by * (inverse_mass * p.share);
-    const int lane = line + m * p.lean;
-    if (all_on_sheet(p, lane)) return store3({p.x.x + at(m), p.x.y + at(m), p.x.z + at(m)}, 0, moved);
-    store3_where(p.x, at(m), on_sheet(p, lane), moved);
+  WEFT_INLINE void start() {
+    x = load3_at(p.x, at(range.begin));
+    w = load(p.w + at(range.begin));
   }
 
+  // Moves particle m by the pulls of the constraints before and after it.
+  template <bool kWhole>
+  WEFT_INLINE void shift(int m, Wide3 position, Wide inverse_mass, Wide3 by) const {
+    const Wide3 moved = position + by * (inverse_mass * p.share);
+    if constexpr (kWhole)
+      store3({p.x.x + at(m), p.x.y + at(m), p.x.z + at(m)}, 0, moved);
+    else
+      store3_where(p.x, at(m), on_sheet(p, line + m * p.lean), moved);
+  }
+
+  template <bool kWhole>
   WEFT_INLINE void substitute(int m) {
-    if (m < range.begin || m >= range.end) return;
-    if (m == range.end - 1) {
-      x = load3_at(p.x, at(m + 1));
-      w = load(p.w + at(m + 1));
-      edge = Wide3{};
+    if constexpr (!kWhole) {
+      if (m < range.begin || m >= range.end) return;
+      if (m == range.end - 1) turn_back();
     }
     const Wide3 near = load3_at(p.x, at(m));
-    const Wide3 e = existing(x - near, m);
+    Wide3 e = x - near;
+    if constexpr (!kWhole) e = existing(e, m);
     const Wide coupling = w * dot(e, edge);
     mu = load(scratch(m)) * (load(scratch(m) + kStripLines) + coupling * mu);
     if constexpr (kLambda) keep_multiplier(m);
     const Wide3 own = e * mu;
-    shift(m + 1, x, w, pull - own);
+    shift<kWhole>(m + 1, x, w, pull - own);
     pull = own;
     edge = e;
     x = near;
     w = load(p.w + at(m));
-    if (m == range.begin) shift(m, x, w, pull);
+    if constexpr (!kWhole)
+      if (m == range.begin) finish();
   }
+  WEFT_INLINE void turn_back() {
+    x = load3_at(p.x, at(range.end));
+    w = load(p.w + at(range.end));
+    edge = Wide3{};
+  }
+  WEFT_INLINE void finish() { shift<false>(range.begin, x, w, pull); }
 
   WEFT_INLINE void keep_multiplier(int m) const {
     const Wide before = p.fresh ? Wide{} : load(p.lambda + at(m));
@@ -169,31 +184,48 @@ struct Block {
   }
 };
 
+// One or two blocks of lines side by side: whole constraints in a loop without a branch, the others
+// before and after it.
 template <bool kLambda, int kBlocks>
-void solve(const LineStrip& p) {
-  const auto block = [&](int n) {
-    return Block<kLambda>{p, p.first + n * kLanes, n * kLanes, range_of(p, p.first + n * kLanes)};
+void solve_blocks(const LineStrip& given, int first) {
+  const LineStrip p = given;  // a copy that no store can alias
+  using B = Block<kLambda>;
+  B a{p, p.first + first, first, range_of(p, p.first + first)};
+  const int second = first + (kBlocks - 1) * kLanes;
+  B b{p, p.first + second, second, range_of(p, p.first + second)};
+  const int begin = least(a.range.begin, b.range.begin), end = greatest(a.range.end, b.range.end);
+  // The first and the last constraint of a line do more than the others.
+  int whole = greatest(a.range.whole_begin, b.range.whole_begin);
+  whole = greatest(whole, greatest(a.range.begin, b.range.begin) + 1);
+  int whole_end = least(a.range.whole_end, b.range.whole_end);
+  whole_end = least(whole_end, least(a.range.end, b.range.end) - 1);
+  if (p.alive || whole_end <= whole) whole = whole_end = end;
+  int m = begin;
+  const auto eliminate = [&]<bool kWhole>(int to) __attribute__((always_inline)) {
+    for (; m < to; ++m) {
+      a.template eliminate<kWhole>(m);
+      if constexpr (kBlocks == 2) b.template eliminate<kWhole>(m);
+    }
   };
-  int begin = p.particles, end = 0;
-  for (int n = 0; n < kBlocks; ++n) {
-    const Range r = block(n).range;
-    if (r.begin >= r.end) continue;
-    begin = r.begin < begin ? r.begin : begin;
-    end = r.end > end ? r.end : end;
-  }
-  // A block at a time in the narrow builds; two of the widest side by side.
-  constexpr int kTogether = kLanes == 16 ? kBlocks : 1;
-  for (int first = 0; first < kBlocks; first += kTogether) {
-    Block<kLambda> a = block(first), b = block(first + kTogether - 1);
-    for (int m = begin; m < end; ++m) {
-      a.eliminate(m);
-      if constexpr (kTogether == 2) b.eliminate(m);
+  eliminate.template operator()<false>(whole);
+  eliminate.template operator()<true>(whole_end);
+  eliminate.template operator()<false>(end);
+  const auto substitute = [&]<bool kWhole>(int from) __attribute__((always_inline)) {
+    while (m > from) {
+      --m;
+      a.template substitute<kWhole>(m);
+      if constexpr (kBlocks == 2) b.template substitute<kWhole>(m);
     }
-    for (int m = end - 1; m >= begin; --m) {
-      a.substitute(m);
-      if constexpr (kTogether == 2) b.substitute(m);
-    }
-  }
+  };
+  substitute.template operator()<false>(whole_end);
+  substitute.template operator()<true>(whole);
+  substitute.template operator()<false>(begin);
+}
+
+template <bool kLambda>
+void solve(const LineStrip& p) {
+  if (kLanes == 16 && p.lines == 32) return solve_blocks<kLambda, 2>(p, 0);
+  for (int first = 0; first < p.lines; first += kLanes) solve_blocks<kLambda, 1>(p, first);
 }
 
 // A 4 by 4 tile from one layout to the other.
@@ -216,13 +248,8 @@ WEFT_INLINE void transpose4(const float* from, std::ptrdiff_t from_step, float* 
 }  // namespace
 
 void line_strip(const LineStrip& p) {
-  constexpr int kHalf = 16 / kLanes;
-  if (p.lambda) {
-    if (p.lines == 16) return solve<true, kHalf>(p);
-    return solve<true, 2 * kHalf>(p);
-  }
-  if (p.lines == 16) return solve<false, kHalf>(p);
-  solve<false, 2 * kHalf>(p);
+  if (p.lambda) return solve<true>(p);
+  solve<false>(p);
 }
 
 void rows_to_lanes(const TransposeRows& t) {

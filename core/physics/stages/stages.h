@@ -51,8 +51,27 @@ struct SweepOptions {
 };
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
                          Stages& stages);
-// Compliance 1/(k dt²) [1/kg] of a family's constraints in row j; dt is the share of the substep over
-// which constraint forces act.
+// What the second-order substep keeps of the substep before (Lattice::previous is its position).
+struct History {
+  explicit History(const Lattice& lattice);
+  std::size_t bytes() const {
+    return star.bytes() + v_before.bytes() + (rate.size() + inverse_mass.size()) * sizeof(float);
+  }
+  Rows star, v_before;
+  AlignedArray<float> rate, inverse_mass;
+};
+// The share of the substep over which constraint forces act.
+double implicit_share(const Solver& solver);
+std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
+                                                    Multipliers* multipliers);
+std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history);
+
+std::unique_ptr<RowStage> make_tethers(const ClothParts& parts);
+// The curvature energy, as a force on the velocities or as constraints.
+std::unique_ptr<Stage> make_bending(const ClothParts& parts, bool as_force);
+
+// Compliance 1/(k dt²) [1/kg] of a family's constraints in row j, dt the share of the substep that
+// the solver's order gives constraint forces.
 float compliance_of(const ClothParts& parts, const Family& family, int j, double dt);
 
 struct LineOptions {

@@ -138,7 +138,8 @@ class Jacobi final : public RowStage {
 
 float compliance_of(const ClothParts& parts, const Family& f, int j, double dt) {
   const double k = f.stiffness * gradient_factor(parts.cloth, j, f.dj);
-  return float(1 / (std::max(k, 1e-12) * dt * dt));
+  const double h = dt * implicit_share(parts.scene.solver);
+  return float(1 / (std::max(k, 1e-12) * h * h));
 }
 
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,

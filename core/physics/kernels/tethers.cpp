@@ -1,0 +1,37 @@
+// Tethers: a particle farther from its pin p than its rest distance r over the sheet is put back onto
+// that distance, x <- p + r (x - p)/|x - p| (Kim, Chentanez, Müller-Fischer 2012, "Long range
+// attachments"; pins do not move, so the particle takes the whole correction).
+#include "physics/kernels/row_kernels.h"
+#include "physics/kernels/second_order.h"
+
+namespace weft::WEFT_KERNELS {
+
+using physics::TetherRow;
+
+namespace {
+
+WEFT_INLINE bool any(WideInt m) {
+#if WEFT_LANES == 16
+  return _mm512_movepi32_mask((__m512i)m) != 0;
+#else
+  std::int32_t bits = 0;
+  for (int i = 0; i < kLanes; ++i) bits |= m[i];
+  return bits != 0;
+#endif
+}
+
+}  // namespace
+
+void tethers(const TetherRow& given) {
+  const TetherRow r = given;
+  for (int i = 0; i < padded(r.columns); i += kLanes) {
+    const Wide3 pin = load3(r.pin, i), x = load3(r.x, i), e = x - pin;
+    const Wide reach = load(r.reach + i), squared = dot(e, e);
+    const WideInt beyond = squared > reach * reach;
+    if (!any(beyond)) continue;
+    const Wide scale = reach / select(beyond, sqrt(squared), wide(1));
+    store3(r.x, i, select(beyond, pin + e * scale, x));
+  }
+}
+
+}  // namespace weft::WEFT_KERNELS
