@@ -15,7 +15,7 @@ ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::ui
 
 void ClothStep::choose_stages(const ClothParts& parts, Method method) {
   const Solver& solver = parts.scene.solver;
-  auto bending = make_bending(parts, is_explicit(method));
+  auto bending = make_bending(parts, method);
   if (is_explicit(method)) {
     if (bending) stages_.push_back(std::move(bending));
     stages_.push_back(make_springs(parts, method == Method::spring_friction));
@@ -32,7 +32,7 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method) {
                           ? make_predict_second_order(parts, *history_, multipliers_.get())
                           : make_predict(parts, multipliers_.get()));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
-    if (auto tethers = solver.tethers ? make_tethers(parts) : nullptr)
+    if (auto tethers = solver.tethers ? make_tethers(parts, sweep.compliant) : nullptr)
       stages_.push_back(std::move(tethers));
     if (bending) stages_.push_back(std::move(bending));
     if (lines) {
@@ -46,8 +46,8 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method) {
       else
         append_gauss_seidel(parts, sweep, stages_);
     }
-    stages_.push_back(history_ ? make_velocity_second_order(parts, *history_)
-                               : make_velocity(parts));
+    if (history_) stages_.push_back(make_velocity_second_order(parts, *history_));
+    else if (!sweep.compliant || !lines) stages_.push_back(make_velocity(parts));
   }
   for (int n = 0; n < solver.collision_iterations; ++n)
     for (const Collider& c : parts.scene.colliders)

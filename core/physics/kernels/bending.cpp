@@ -80,9 +80,20 @@ void bend_row(const BendRow& given) {
 
 namespace {
 
+// Moves particles, and has their velocities follow.
+WEFT_INLINE void change(Row3 x, Row3 v, float inverse_dt, int i, Wide3 by) {
+  store3(x, i, load3(x, i) + by);
+  if (inverse_dt > 0) store3(v, i, load3(v, i) + by * wide(inverse_dt));
+}
+
 // One block of lines. Constraint m joins particles m, m+1, m+2.
 WEFT_INLINE void bend_block(const BendLine& p, int lane) {
-  const auto position = [&](int m) { return load3({p.x.x + lane + m * p.step, p.x.y + lane + m * p.step, p.x.z + lane + m * p.step}, 0); };
+  const auto row = [&](Row3 r, int m) {
+    const std::ptrdiff_t at = lane + m * p.step;
+    return Row3{r.x + at, r.y + at, r.z + at};
+  };
+  const auto position = [&](int m) { return load3(row(p.x, m), 0); };
+  const auto shift = [&](int m, Wide3 by) { change(row(p.x, m), row(p.v, m), p.inverse_dt, 0, by); };
   const auto mass = [&](int m) { return load(p.w + lane + m * p.step); };
   const auto scratch = [&](int m) {
     return p.scratch + static_cast<std::ptrdiff_t>(m) * kBendScratch + lane;
@@ -125,16 +136,13 @@ WEFT_INLINE void bend_block(const BendLine& p, int lane) {
     const Wide w2 = mass(m + 2);
     const Wide3 mu = (load3(triple(m), 0) - (mu1 * ua + mu2 * w2)) * load(scratch(m));
     const Wide3 pull = mu - mu1 * wide(2) + mu2;
-    const std::ptrdiff_t at = lane + (m + 2) * p.step;
-    store3({p.x.x + at, p.x.y + at, p.x.z + at}, 0, position(m + 2) - pull * w2);
+    shift(m + 2, Wide3{} - pull * w2);
     ua = load(scratch(m) + kBendLines);
     mu2 = mu1;
     mu1 = mu;
   }
-  const Wide3 second = mu2 - mu1 * wide(2);
-  const Row3 b{p.x.x + lane + p.step, p.x.y + lane + p.step, p.x.z + lane + p.step};
-  store3(b, 0, position(1) - second * mass(1));
-  store3({p.x.x + lane, p.x.y + lane, p.x.z + lane}, 0, position(0) - mu1 * mass(0));
+  shift(1, (mu1 * wide(2) - mu2) * mass(1));
+  shift(0, Wide3{} - mu1 * mass(0));
 }
 
 }  // namespace
@@ -158,8 +166,8 @@ void bend_twist(const TwistRow& given) {
     const Wide3 mu =
         select(chosen, t * (1.0f / (wa + wb + wc + wd + r.compliance)), Wide3{});
     const Wide3 by = mu - left.next(mu);
-    store3(r.x, i, xa - by * wa);
-    store3(r.below, i, xc + by * wc);
+    change(r.x, r.v, r.inverse_dt, i, Wide3{} - by * wa);
+    change(r.below, r.v_below, r.inverse_dt, i, by * wc);
   }
 }
 

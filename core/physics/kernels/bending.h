@@ -33,6 +33,8 @@ struct BendLine {
   const float* w;
   std::ptrdiff_t step;
   int particles;
+  Row3 v;            // velocities, laid out as x; gain corrections times inverse_dt
+  float inverse_dt;  // 1/s; 0 = velocities are not touched
   float compliance;  // 1/(k dt²) [1/kg]
   float* scratch;    // particles * kBendScratch floats
 };
@@ -41,6 +43,8 @@ struct BendLine {
 struct TwistRow {
   int columns;
   Row3 x, below;
+  Row3 v, v_below;   // gain corrections times inverse_dt
+  float inverse_dt;  // 1/s; 0 = velocities are not touched
   const float* w;
   const float* w_below;
   bool odd;

@@ -82,7 +82,7 @@ Range range_of(const LineStrip& p, int line) {
 }
 
 // One block of lanes on its way along the lines.
-template <bool kLambda>
+template <bool kLambda, bool kVelocity>
 struct Block {
   const LineStrip& p;
   int line;       // of lane 0
@@ -142,11 +142,17 @@ struct Block {
   // Moves particle m by the pulls of the constraints before and after it.
   template <bool kWhole>
   WEFT_INLINE void shift(int m, Wide3 position, Wide inverse_mass, Wide3 by) const {
-    const Wide3 moved = position + by * (inverse_mass * p.share);
+    const Wide3 change = by * (inverse_mass * p.share);
+    add_to<kWhole>(p.x, m, position, change);
+    // As computed: the difference of rounded positions over dt would be mostly rounding.
+    if constexpr (kVelocity) add_to<kWhole>(p.v, m, load3_at(p.v, at(m)), change * wide(p.inverse_dt));
+  }
+  template <bool kWhole>
+  WEFT_INLINE void add_to(Row3 r, int m, Wide3 before, Wide3 change) const {
     if constexpr (kWhole)
-      store3({p.x.x + at(m), p.x.y + at(m), p.x.z + at(m)}, 0, moved);
+      store3({r.x + at(m), r.y + at(m), r.z + at(m)}, 0, before + change);
     else
-      store3_where(p.x, at(m), on_sheet(p, line + m * p.lean), moved);
+      store3_where(r, at(m), on_sheet(p, line + m * p.lean), before + change);
   }
 
   template <bool kWhole>
@@ -186,10 +192,10 @@ struct Block {
 
 // One or two blocks of lines side by side: whole constraints in a loop without a branch, the others
 // before and after it.
-template <bool kLambda, int kBlocks>
+template <bool kLambda, bool kVelocity, int kBlocks>
 void solve_blocks(const LineStrip& given, int first) {
   const LineStrip p = given;  // a copy that no store can alias
-  using B = Block<kLambda>;
+  using B = Block<kLambda, kVelocity>;
   B a{p, p.first + first, first, range_of(p, p.first + first)};
   const int second = first + (kBlocks - 1) * kLanes;
   B b{p, p.first + second, second, range_of(p, p.first + second)};
@@ -222,41 +228,50 @@ void solve_blocks(const LineStrip& given, int first) {
   substitute.template operator()<false>(begin);
 }
 
-template <bool kLambda>
+template <bool kLambda, bool kVelocity>
 void solve(const LineStrip& p) {
-  if (kLanes == 16 && p.lines == 32) return solve_blocks<kLambda, 2>(p, 0);
-  for (int first = 0; first < p.lines; first += kLanes) solve_blocks<kLambda, 1>(p, first);
+  if (kLanes == 16 && p.lines == 32) return solve_blocks<kLambda, kVelocity, 2>(p, 0);
+  for (int first = 0; first < p.lines; first += kLanes) solve_blocks<kLambda, kVelocity, 1>(p, first);
 }
 
 // A 4 by 4 tile from one layout to the other.
 WEFT_INLINE void transpose4(const float* from, std::ptrdiff_t from_step, float* to,
-                            std::ptrdiff_t to_step) {
+                            std::ptrdiff_t to_step, bool add) {
 #if WEFT_LANES > 1
   __m128 a = _mm_loadu_ps(from), b = _mm_loadu_ps(from + from_step),
          c = _mm_loadu_ps(from + 2 * from_step), d = _mm_loadu_ps(from + 3 * from_step);
   _MM_TRANSPOSE4_PS(a, b, c, d);
+  if (add) {
+    a = _mm_add_ps(_mm_loadu_ps(to), a);
+    b = _mm_add_ps(_mm_loadu_ps(to + to_step), b);
+    c = _mm_add_ps(_mm_loadu_ps(to + 2 * to_step), c);
+    d = _mm_add_ps(_mm_loadu_ps(to + 3 * to_step), d);
+  }
   _mm_storeu_ps(to, a);
   _mm_storeu_ps(to + to_step, b);
   _mm_storeu_ps(to + 2 * to_step, c);
   _mm_storeu_ps(to + 3 * to_step, d);
 #else
   for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) to[j * to_step + i] = from[i * from_step + j];
+    for (int j = 0; j < 4; ++j) {
+      float& t = to[j * to_step + i];
+      t = (add ? t : 0.0f) + from[i * from_step + j];
+    }
 #endif
 }
 
 }  // namespace
 
 void line_strip(const LineStrip& p) {
-  if (p.lambda) return solve<true>(p);
-  solve<false>(p);
+  if (p.lambda) return p.inverse_dt > 0 ? solve<true, true>(p) : solve<true, false>(p);
+  p.inverse_dt > 0 ? solve<false, true>(p) : solve<false, false>(p);
 }
 
 void rows_to_lanes(const TransposeRows& t) {
   const int whole = t.row_count & ~3;
   for (int i = 0; i < t.columns; i += 4)  // reads the padding of the last columns
     for (int r = 0; r < whole; r += 4)
-      transpose4(t.rows + r * t.stride + i, t.stride, t.lanes + i * t.pitch + r, t.pitch);
+      transpose4(t.rows + r * t.stride + i, t.stride, t.lanes + i * t.pitch + r, t.pitch, false);
   for (int r = whole; r < t.row_count; ++r)
     for (int i = 0; i < t.columns; ++i) t.lanes[i * t.pitch + r] = t.rows[r * t.stride + i];
 }
@@ -265,10 +280,12 @@ void lanes_to_rows(const TransposeRows& t) {
   const int rows = t.row_count & ~3, columns = t.columns & ~3;
   for (int i = 0; i < columns; i += 4)
     for (int r = 0; r < rows; r += 4)
-      transpose4(t.lanes + i * t.pitch + r, t.pitch, t.rows + r * t.stride + i, t.stride);
+      transpose4(t.lanes + i * t.pitch + r, t.pitch, t.rows + r * t.stride + i, t.stride, t.add);
   for (int r = 0; r < t.row_count; ++r)
-    for (int i = r < rows ? columns : 0; i < t.columns; ++i)
-      t.rows[r * t.stride + i] = t.lanes[i * t.pitch + r];
+    for (int i = r < rows ? columns : 0; i < t.columns; ++i) {
+      float& to = t.rows[r * t.stride + i];
+      to = (t.add ? to : 0.0f) + t.lanes[i * t.pitch + r];
+    }
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -28,6 +28,8 @@ struct LineStrip {
   int lines;                // 16 or 32; further ones are not touched
   float rest;               // m
   float share;              // factor on the correction
+  Row3 v;                   // velocities, laid out as x; gain corrections times inverse_dt
+  float inverse_dt;         // 1/s; 0 = velocities are not touched
   const float* compliance;  // [m][kStripLines] of constraint m of each line [1/kg]
   std::ptrdiff_t compliance_step;  // kStripLines, or 0 when all rows are alike
   const std::int32_t* alive;  // -1 where constraint m of line n holds, 0 cut; laid out as x; or null
@@ -43,6 +45,7 @@ struct TransposeRows {
   std::ptrdiff_t stride;
   float* lanes;
   std::ptrdiff_t pitch;
+  bool add;  // lanes_to_rows: add to what the rows hold
   int row_count;  // 1 … 16; rows past it are left alone, their lanes hold values of no meaning
   int columns;
 };

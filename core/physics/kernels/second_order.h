@@ -12,8 +12,7 @@ struct SecondOrderRow {
   Row3 x, v;
   Row3 previous;      // x of the substep before; receives x [m]
   Row3 v_before;      // v of the substep before; receives v [m/s]
-  Row3 star;          // positions that the velocity is measured from [m]
-  float* rate;        // velocity = (x - star) rate [1/s]; 0 at first
+  Row3 v_end;         // v as the substep before left it [m/s]
   float* w;           // inverse mass, scaled while the constraints are solved [1/kg]
   const float* mass;  // inverse mass proper [1/kg]
   bool fresh;         // nothing is known of the substep before
@@ -26,6 +25,8 @@ struct SecondOrderRow {
 struct TetherRow {
   int columns;
   Row3 x;
+  Row3 v;              // gains corrections times inverse_dt
+  float inverse_dt;    // 1/s; 0 = velocities are not touched
   ConstRow3 pin;       // where each particle's pin is [m]
   const float* reach;  // how far the particle may be from it [m]
 };

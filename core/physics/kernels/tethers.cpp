@@ -30,7 +30,11 @@ void tethers(const TetherRow& given) {
     const WideInt beyond = squared > reach * reach;
     if (!any(beyond)) continue;
     const Wide scale = reach / select(beyond, sqrt(squared), wide(1));
-    store3(r.x, i, select(beyond, pin + e * scale, x));
+    const Wide3 target = pin + e * scale;
+    store3(r.x, i, select(beyond, target, x));
+    if (r.inverse_dt == 0) continue;
+    const Wide3 v = load3(r.v, i);
+    store3(r.v, i, select(beyond, v + (target - x) * wide(r.inverse_dt), v));
   }
 }
 

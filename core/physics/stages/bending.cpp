@@ -54,11 +54,12 @@ class BendingForce final : public RowStage {
 
 class BendingConstraints final : public WholeStage {
  public:
-  explicit BendingConstraints(const ClothParts& parts)
+  BendingConstraints(const ClothParts& parts, bool compliant)
       : WholeStage("bending", "curvature energy, rows and columns each solved as a whole, twist",
                    terms(parts.lattice), "constraints"),
         parts_(parts),
-        strips_(parts.lattice, parts.kernels, kBendScratch) {}
+        strips_(parts.lattice, parts.kernels, kBendScratch),
+        compliant_(compliant) {}
 
   std::size_t bytes() const override { return strips_.bytes(); }
 
@@ -66,6 +67,7 @@ class BendingConstraints final : public WholeStage {
     const BendingStiffness k = bending_stiffness(parts_.cloth);
     const double h = s.dt * implicit_share(parts_.scene.solver);
     const auto compliance = [&](double stiffness) { return float(1 / (stiffness * h * h)); };
+    inverse_dt_ = compliant_ ? float(1 / h) : 0;
     strips_.run(threads, [&] {
       along_rows(compliance(k.along));
       along_columns(compliance(k.across));
@@ -79,11 +81,14 @@ class BendingConstraints final : public WholeStage {
     strips_.share_out(
         strips_.row_groups(), kDifferenceNs * kStripLines * l.columns,
         [&](int group, StripMemory& memory) {
-          strips_.turned(group, memory, [&](int rows) {
+          strips_.turned(group, memory, inverse_dt_ > 0, [&](int rows) {
             for (int first = 0; first < rows; first += kBendLines) {
               const Row3 x = memory.tile.row(0);
               BendLine p{};
               p.x = {x.x + first, x.y + first, x.z + first};
+              const Row3 v = memory.gained.row(0);
+              p.v = {v.x + first, v.y + first, v.z + first};
+              p.inverse_dt = inverse_dt_;
               p.w = memory.w.data() + first;
               p.step = kStripLines;
               p.particles = l.columns;
@@ -99,10 +104,12 @@ class BendingConstraints final : public WholeStage {
     Lattice& l = parts_.lattice;
     strips_.share_out((l.columns + kBendLines - 1) / kBendLines, kDifferenceNs * kBendLines * l.rows,
                       [&](int strip, StripMemory& memory) {
-                        const Row3 x = l.x.row(0);
+                        const Row3 x = l.x.row(0), v = l.v.row(0);
                         const int first = strip * kBendLines;
                         BendLine p{};
                         p.x = {x.x + first, x.y + first, x.z + first};
+                        p.v = {v.x + first, v.y + first, v.z + first};
+                        p.inverse_dt = inverse_dt_;
                         p.w = l.w(0) + first;
                         p.step = l.stride;
                         p.particles = l.rows;
@@ -122,6 +129,9 @@ class BendingConstraints final : public WholeStage {
                           r.columns = l.columns;
                           r.x = l.x.row(j);
                           r.below = l.x.row(j + 1);
+                          r.v = l.v.row(j);
+                          r.v_below = l.v.row(j + 1);
+                          r.inverse_dt = inverse_dt_;
                           r.w = l.w(j);
                           r.w_below = l.w(j + 1);
                           r.compliance = compliance;
@@ -134,14 +144,17 @@ class BendingConstraints final : public WholeStage {
 
   ClothParts parts_;
   Strips strips_;
+  bool compliant_;        // velocities gain the corrections as computed
+  float inverse_dt_ = 0;  // 1/s, or 0
 };
 
 }  // namespace
 
-std::unique_ptr<Stage> make_bending(const ClothParts& parts, bool as_force) {
+std::unique_ptr<Stage> make_bending(const ClothParts& parts, Method method) {
   if (parts.cloth.bending == 0) return nullptr;
-  if (as_force) return std::make_unique<BendingForce>(parts);
-  return std::make_unique<BendingConstraints>(parts);
+  if (method == Method::spring || method == Method::spring_friction)
+    return std::make_unique<BendingForce>(parts);
+  return std::make_unique<BendingConstraints>(parts, method == Method::compliant);
 }
 
 }  // namespace weft::physics

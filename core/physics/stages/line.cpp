@@ -1,9 +1,12 @@
 // Stage "line": sweeps over the constraint families in which every line of a family (a row, column
 // or diagonal; for offsets of n every n-th particle of one) is solved as a whole (kernels/line.cpp).
 //
-// Families are taken one after the other; lines of one family share no particle, so strips of them
-// go to the threads in any order with the same result. Rows are turned into lanes first, 32 at a
-// time, and all families along the rows are solved on them before they are turned back.
+// Families are taken one after the other, what matters most last: bend and shear, then columns, then
+// rows, whose structural constraints are left exactly solved. (At 12 substeps a frame the greatest
+// strain of a hanging sheet of 100 x 100 is 0.5 % in this order, 1.6 % with the diagonals last.)
+// Lines of one family share no particle, so strips of them go to the threads in any order with the
+// same result. Rows are turned into lanes first, 32 at a time, and all families along the rows are
+// solved on them before they are turned back.
 #include <algorithm>
 #include <cmath>
 
@@ -52,6 +55,14 @@ class Line final : public WholeStage {
             f.dj == 0 ? std::size_t(groups) * kStripLines * parts.lattice.columns
                       : std::size_t(parts.lattice.rows) * parts.lattice.stride);
     }
+    // Longest constraints first, diagonals before columns.
+    const auto rank = [](const LineFamily& l) {
+      const bool diagonal = l.family->di != 0 && l.family->dj != 0;
+      return std::pair(-std::max(std::abs(l.family->di), l.family->dj), diagonal ? 0 : 1);
+    };
+    for (auto* families : {&along_rows_, &between_rows_})
+      std::stable_sort(families->begin(), families->end(),
+                       [&](const LineFamily& a, const LineFamily& b) { return rank(a) < rank(b); });
     for (const float w : parts.lattice.inverse_mass.span()) least_ = std::max(least_, double(w));
     least_ *= kLeastCompliance;
   }
@@ -72,17 +83,17 @@ class Line final : public WholeStage {
 
  private:
   void sweep(bool fresh) {
-    const Lattice& lattice = parts_.lattice;
-    if (!along_rows_.empty())
-      strips_.share_out(
-          strips_.row_groups(),
-          kConstraintNs * kStripLines * lattice.columns * double(along_rows_.size()),
-          [&](int group, StripMemory& memory) {
-            strips_.turned(group, memory,
-                           [&](int rows) { solve_rows(group, rows, fresh, memory); });
-          });
     for (LineFamily& l : between_rows_)
       for (int start = 0; start < l.family->dj; ++start) solve_between(l, start, fresh);
+    if (along_rows_.empty()) return;
+    strips_.share_out(strips_.row_groups(),
+                      kConstraintNs * kStripLines * parts_.lattice.columns *
+                          double(along_rows_.size()),
+                      [&](int group, StripMemory& memory) {
+                        strips_.turned(group, memory, options_.compliant, [&](int rows) {
+                          solve_rows(group, rows, fresh, memory);
+                        });
+                      });
   }
 
   void solve_between(LineFamily& l, int start, bool fresh) {
@@ -109,6 +120,8 @@ class Line final : public WholeStage {
     const Family& f = *l.family;
     LineStrip p{};
     p.x = lattice.x.row(start);
+    p.v = lattice.v.row(start);
+    p.inverse_dt = inverse_dt();
     p.w = lattice.w(start);
     p.step = std::ptrdiff_t(f.dj) * lattice.stride + f.di;
     p.particles = particles;
@@ -129,6 +142,8 @@ class Line final : public WholeStage {
       for (int start = 0; start < n; ++start) {
         LineStrip p{};
         p.x = memory.tile.row(start);
+        p.v = memory.gained.row(start);
+        p.inverse_dt = inverse_dt();
         p.w = memory.w.data() + start * kStripLines;
         p.step = n * kStripLines;
         p.particles = (columns - start + n - 1) / n;
@@ -146,6 +161,9 @@ class Line final : public WholeStage {
     }
   }
 
+  float inverse_dt() const {
+    return options_.compliant ? float(1 / (dt_ * implicit_share(parts_.scene.solver))) : 0.0f;
+  }
   void set_compliance(double dt) {
     dt_ = dt;
     for (LineFamily& l : along_rows_)

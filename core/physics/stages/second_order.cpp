@@ -14,8 +14,8 @@ SecondOrderRow row_of(const ClothParts& parts, History& h, int j) {
   r.v = l.v.row(j);
   r.previous = l.previous.row(j);
   r.v_before = h.v_before.row(j);
-  r.star = h.star.row(j);
-  r.rate = h.rate.data() + lane;
+  r.v_end = h.v_end.row(j);
+  r.drag = float(parts.cloth.drag);
   r.w = l.w(j);
   r.mass = h.inverse_mass.data() + lane;
   return r;
@@ -37,7 +37,6 @@ class Predict final : public RowStage {
     r.fresh = dt_[j] != s.dt;
     dt_[j] = s.dt;
     r.dt = float(s.dt);
-    r.drag = float(parts_.cloth.drag);
     r.gx = float(g[0]);
     r.gy = float(g[1]);
     r.gz = float(g[2]);
@@ -55,12 +54,14 @@ class Predict final : public RowStage {
 class Velocity final : public RowStage {
  public:
   Velocity(const ClothParts& parts, History& history)
-      : RowStage("velocity", "from the change of position, second order", 0, parts.particles(),
+      : RowStage("velocity", "of the second order, kept for the next substep", 0, parts.particles(),
                  "particles"),
         parts_(parts),
         history_(history) {}
-  void run(int j, const Substep&) override {
-    parts_.kernels.velocity_second_order(row_of(parts_, history_, j));
+  void run(int j, const Substep& s) override {
+    SecondOrderRow r = row_of(parts_, history_, j);
+    r.dt = float(s.dt);
+    parts_.kernels.velocity_second_order(r);
   }
 
  private:
@@ -71,9 +72,8 @@ class Velocity final : public RowStage {
 }  // namespace
 
 History::History(const Lattice& l)
-    : star(l.rows, l.stride),
-      v_before(l.rows, l.stride),
-      rate(std::size_t(l.rows) * l.stride),
+    : v_before(l.rows, l.stride),
+      v_end(l.rows, l.stride),
       inverse_mass(std::size_t(l.rows) * l.stride) {
   std::copy_n(l.inverse_mass.data(), l.inverse_mass.size(), inverse_mass.data());
 }

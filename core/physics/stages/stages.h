@@ -55,10 +55,10 @@ void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
 struct History {
   explicit History(const Lattice& lattice);
   std::size_t bytes() const {
-    return star.bytes() + v_before.bytes() + (rate.size() + inverse_mass.size()) * sizeof(float);
+    return v_before.bytes() + v_end.bytes() + inverse_mass.size() * sizeof(float);
   }
-  Rows star, v_before;
-  AlignedArray<float> rate, inverse_mass;
+  Rows v_before, v_end;
+  AlignedArray<float> inverse_mass;
 };
 // The share of the substep over which constraint forces act.
 double implicit_share(const Solver& solver);
@@ -66,9 +66,9 @@ std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, His
                                                     Multipliers* multipliers);
 std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history);
 
-std::unique_ptr<RowStage> make_tethers(const ClothParts& parts);
+std::unique_ptr<RowStage> make_tethers(const ClothParts& parts, bool compliant);
 // The curvature energy, as a force on the velocities or as constraints.
-std::unique_ptr<Stage> make_bending(const ClothParts& parts, bool as_force);
+std::unique_ptr<Stage> make_bending(const ClothParts& parts, Method method);
 
 // Compliance 1/(k dt²) [1/kg] of a family's constraints in row j, dt the share of the substep that
 // the solver's order gives constraint forces.

@@ -20,6 +20,7 @@ namespace weft::physics {
 struct StripMemory {
   AlignedArray<float> scratch;
   Rows tile;              // kStripLines rows as lanes: [column][kStripLines] of x, y, z
+  Rows gained;            // velocity that the solution adds, laid out as the tile
   AlignedArray<float> w;  // and of the inverse masses
 };
 
@@ -58,14 +59,15 @@ class Strips {
         oneapi::tbb::simple_partitioner{});
   }
 
-  // Turns the rows of a group into the lanes of a tile, solves, turns them back; solve gets the
-  // number of rows.
+  // Turns the rows of a group into the lanes of a tile, solves, turns them back and adds to the
+  // velocities what has been gained; solve gets the number of rows.
   template <class Solve>
-  void turned(int group, StripMemory& memory, const Solve& solve) {
+  void turned(int group, StripMemory& memory, bool velocities, const Solve& solve) {
     const int begin = group * kStripLines, rows = std::min(kStripLines, lattice_.rows - begin);
-    turn(begin, rows, memory, true);
+    turn_there(begin, rows, memory);
+    if (velocities) memory.gained.clear();
     solve(rows);
-    turn(begin, rows, memory, false);
+    turn_back(begin, rows, memory, velocities);
   }
 
  private:
@@ -73,7 +75,9 @@ class Strips {
   static constexpr double kTaskNanoseconds = 10000;
 
   StripMemory make_memory() const;
-  void turn(int begin, int rows, StripMemory& memory, bool there);
+  TransposeRows turning(int half, int rows) const;
+  void turn_there(int begin, int rows, StripMemory& memory);
+  void turn_back(int begin, int rows, StripMemory& memory, bool velocities);
 
   Lattice& lattice_;
   const KernelTable& kernels_;

@@ -55,10 +55,12 @@ std::vector<Place> nearest(const ClothParts& parts, int side_i, int side_j) {
 
 class Tethers final : public RowStage {
  public:
-  Tethers(const ClothParts& parts, std::vector<std::vector<Place>> slots, std::int64_t count)
+  Tethers(const ClothParts& parts, bool compliant, std::vector<std::vector<Place>> slots,
+          std::int64_t count)
       : RowStage("tethers", "to at most " + std::to_string(slots.size()) + " pins each", 0, count,
                  "tethers"),
-        parts_(parts) {
+        parts_(parts),
+        compliant_(compliant) {
     const Lattice& l = parts.lattice;
     keys_.resize(std::size_t(l.columns) * l.rows);
     for (const Pin& pin : parts.cloth.pins)
@@ -105,6 +107,8 @@ class Tethers final : public RowStage {
       TetherRow r{};
       r.columns = parts_.lattice.columns;
       r.x = parts_.lattice.x.row(j);
+      r.v = parts_.lattice.v.row(j);
+      if (compliant_) r.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
       r.pin = slot.pin.row(j);
       r.reach = slot.reach.data() + std::size_t(j) * parts_.lattice.stride;
       parts_.kernels.tethers(r);
@@ -142,13 +146,14 @@ class Tethers final : public RowStage {
   }
 
   ClothParts parts_;
+  bool compliant_;  // velocities gain the corrections as computed
   std::vector<Slot> slots_;
   std::vector<const std::vector<Key>*> keys_;  // of every particle, null where it has no path
 };
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_tethers(const ClothParts& parts) {
+std::unique_ptr<RowStage> make_tethers(const ClothParts& parts, bool compliant) {
   const Lattice& l = parts.lattice;
   if (parts.cloth.pins.empty()) return nullptr;
   // Slot s of a particle holds its s-th tether, so that few pins fill few slots.
@@ -172,7 +177,7 @@ std::unique_ptr<RowStage> make_tethers(const ClothParts& parts) {
     }
   }
   if (count == 0) return nullptr;
-  return std::make_unique<Tethers>(parts, std::move(slots), count);
+  return std::make_unique<Tethers>(parts, compliant, std::move(slots), count);
 }
 
 }  // namespace weft::physics
