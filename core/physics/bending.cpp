@@ -32,13 +32,4 @@ double bending_energy(const Cloth& cloth, const std::vector<Vec3>& x) {
   return energy;
 }
 
-void add_bending_forces(const Cloth& cloth, const std::vector<Vec3>& x, std::vector<Vec3>& force) {
-  if (cloth.bending == 0) return;
-  for_each_bend(cloth, [&](double k, int n, const int* particles, const double* factor) {
-    const Vec3 d = difference(x, n, particles, factor);
-    for (int q = 0; q < n; ++q)
-      for (int c = 0; c < 3; ++c) force[particles[q]][c] -= k * factor[q] * d[c];
-  });
-}
-
 }  // namespace weft::physics

@@ -18,9 +18,6 @@ BendingStiffness bending_stiffness(const Cloth& cloth);
 // E [J] of a sheet with particles x, row after row.
 double bending_energy(const Cloth& cloth, const std::vector<Vec3>& x);
 
-// Adds -∂E/∂x to the force [N].
-void add_bending_forces(const Cloth& cloth, const std::vector<Vec3>& x, std::vector<Vec3>& force);
-
 // Calls visit(k, n, particles, coefficients) for every term ½ k |Σ coefficient x|² of E: three or
 // four particles each, row-major j*columns + i.
 template <class Visit>
@@ -37,6 +34,19 @@ void for_each_bend(const Cloth& cloth, Visit&& visit) {
       if (j + 2 < rows) visit(k.across, 3, across, kDifference);
       if (i + 1 < columns && j + 1 < rows) visit(k.twist, 4, cell, kTwist);
     }
+}
+
+// Adds -∂E/∂x to the force [N]; position(p, c) is component c of particle p.
+template <class Position>
+void add_bending_forces(const Cloth& cloth, Position&& position, std::vector<Vec3>& force) {
+  if (cloth.bending == 0) return;
+  for_each_bend(cloth, [&](double k, int n, const int* particles, const double* factor) {
+    for (int c = 0; c < 3; ++c) {
+      double d = 0;
+      for (int q = 0; q < n; ++q) d += factor[q] * position(particles[q], c);
+      for (int q = 0; q < n; ++q) force[particles[q]][c] -= k * factor[q] * d;
+    }
+  });
 }
 
 }  // namespace weft::physics

@@ -29,6 +29,17 @@ Simd resolve(Simd simd) {
   return Simd::sse2;
 }
 
+// Without shear springs (or with nothing else) a sheet folds onto a line that stretches nothing, where
+// all its springs pull the same way: up to twice the flat sheet's ω², and no stretch adds to that.
+constexpr double kFolded = 2;
+bool folds_freely(const ClothStep& step) {
+  const auto has = [&](Kind kind) {
+    return std::any_of(step.families().begin(), step.families().end(),
+                       [&](const Family& f) { return f.kind == kind; });
+  };
+  return !has(Kind::structural) || !has(Kind::shear);
+}
+
 std::string number(double v) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", v);
@@ -71,12 +82,16 @@ void Simulation::State::choose_method_and_substeps() {
   double limit = 0;
   if (is_explicit(method)) {
     limit = std::numeric_limits<double>::infinity();
+    double safe = limit;  // for automatic substeps
     for (const auto& c : cloths) {
       spectra.push_back(estimate_spectrum(c->cloth(), c->families(), c->lattice(),
                                           method == Method::spring_friction));
       limit = std::min(limit, spectra.back().largest_substep());
+      Spectrum folded = spectra.back();
+      if (folds_freely(*c)) folded.omega_squared *= kFolded;
+      safe = std::min(safe, folded.largest_substep());
     }
-    const double needed = std::ceil(scene.time.frame / (kLimitShare * limit));
+    const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
     if (count == kAutoSubsteps && needed <= kMostSubsteps) {
       count = std::max(1, int(needed));
       notes.push_back("substeps from the stability limit of " + number(limit) + " s");
@@ -99,17 +114,23 @@ void Simulation::State::choose_method_and_substeps() {
   if (is_explicit(method)) shift_velocities(-dt / 2);
 }
 
-// v <- v + a·by: velocities of explicit springs lie half a substep behind the positions.
-void Simulation::State::shift_velocities(double by) {
+// v <- v + a·by: velocities of explicit springs lie half a substep behind the positions. `from`
+// gives all velocities in double in place of v, so that what velocities() told comes back exactly.
+void Simulation::State::shift_velocities(double by, const double* from) {
   for (auto& step : cloths) {
     Lattice& l = step->lattice();
-    const std::vector<Vec3> a = accelerations(scene, step->cloth(), step->families(), l,
-                                              method == Method::spring_friction);
+    std::vector<Vec3>& a = accelerations_;
+    accelerations(scene, step->cloth(), step->families(), l, method == Method::spring_friction, a);
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i)
-        for (int c = 0; c < 3; ++c)
-          l.v.at(c, j, i) += float(a[std::size_t(j) * l.columns + i][c] * by);
+        for (int c = 0; c < 3; ++c) {
+          float& v = l.v.at(c, j, i);
+          const double start = from && l.w(j, i) > 0 ? *from : v;
+          v = float(start + a[std::size_t(j) * l.columns + i][c] * by);
+          if (from) ++from;
+        }
   }
+  if (scene.time.substeps != kAutoSubsteps) accelerations_ = std::vector<Vec3>();
 }
 
 void Simulation::State::set_substeps(int count) {
@@ -137,7 +158,11 @@ void Simulation::State::advance_frame() {
   if (is_explicit(method) && scene.time.substeps == kAutoSubsteps) follow_stretch();
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   total_ms += spent.count();
-  frame_ms.push_back(float(spent.count()));
+  // A run longer than the scene says keeps the times of its last frames.
+  if (frame_ms.size() < frame_ms.capacity())
+    frame_ms.push_back(float(spent.count()));
+  else
+    frame_ms[std::size_t(frame) % frame_ms.size()] = float(spent.count());
 }
 
 void Simulation::State::run_frame() {
@@ -172,7 +197,7 @@ void Simulation::State::follow_stretch() {
     const double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
     // Springs in all directions: never more than twice the flat sheet's ω² for the families here.
     Spectrum stretched = spectra[c];
-    stretched.omega_squared *= 1 + t;
+    stretched.omega_squared *= folds_freely(step) ? kFolded : 1 + t;
     limit = std::min(limit, stretched.largest_substep());
   }
   const int count = int(std::ceil(scene.time.frame / (kLimitShare * limit)));
@@ -187,7 +212,7 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
   if (positions.size() != 3 * particles || velocities.size() != 3 * particles)
     throw std::invalid_argument("a state needs " + std::to_string(3 * particles) +
                                 " positions and as many velocities");
-  const auto bad = [](double v) { return !std::isfinite(v); };
+  const auto bad = [](double v) { return !(std::abs(v) <= std::numeric_limits<float>::max()); };
   if (std::any_of(positions.begin(), positions.end(), bad) ||
       std::any_of(velocities.begin(), velocities.end(), bad))
     throw std::invalid_argument("a state holds a value that is not finite");
@@ -203,7 +228,10 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
   }
   for (auto& step : cloths)
     for (const auto& stage : step->stages()) stage->restart();
-  if (is_explicit(method)) shift_velocities(-dt / 2);
+  if (is_explicit(method)) {
+    shift_velocities(-dt / 2, velocities.data());
+    if (scene.time.substeps == kAutoSubsteps) follow_stretch();
+  }
   ++changes;
 }
 
@@ -222,7 +250,7 @@ void Simulation::State::restore() {
 }
 
 std::size_t Simulation::State::backup_bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = accelerations_.capacity() * sizeof(Vec3);
   for (const Backup& b : backups_) bytes += b.x.bytes() + b.v.bytes();
   return bytes;
 }

@@ -14,12 +14,6 @@ constexpr float kTiny = 1e-30f;
 
 WEFT_INLINE Wide3 wide3(float x, float y, float z) { return {wide(x), wide(y), wide(z)}; }
 
-WEFT_INLINE bool any(WideInt m) {
-  std::int32_t bits = 0;
-  for (int i = 0; i < kLanes; ++i) bits |= m[i];
-  return bits != 0;
-}
-
 WEFT_INLINE void rub(const CollideRow& r, int i, WideInt touching, Wide depth, Wide3 n) {
   const Wide3 u = wide3(r.ux, r.uy, r.uz);
   const Wide3 v = load3(r.v, i);

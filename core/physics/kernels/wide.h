@@ -84,6 +84,19 @@ class Delay {
   Wide before_[N < kLanes ? 1 : N]{};
 };
 
+// Whether any lane of a mask is set.
+WEFT_INLINE bool any(WideInt mask) {
+#if WEFT_LANES == 16
+  return _mm512_movepi32_mask((__m512i)mask) != 0;
+#elif WEFT_LANES == 8
+  return _mm256_movemask_ps((__m256)mask) != 0;
+#elif WEFT_LANES == 4
+  return _mm_movemask_ps((__m128)mask) != 0;
+#else
+  return mask[0] != 0;
+#endif
+}
+
 struct Wide3 {
   Wide x, y, z;
 };
