@@ -260,6 +260,64 @@ WEFT_INLINE void transpose4(const float* from, std::ptrdiff_t from_step, float* 
 #endif
 }
 
+#if WEFT_LANES == 16
+
+typedef float Quad __attribute__((vector_size(16)));
+typedef Quad QuadLoose __attribute__((aligned(4), may_alias));
+
+// Four 16-lane vectors whose quarters are 4 by 4 tiles, each tile transposed.
+WEFT_INLINE void transpose_quarters(Wide (&v)[4]) {
+  const auto low = [](Wide a, Wide b) {
+    return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+  };
+  const auto high = [](Wide a, Wide b) {
+    return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+  };
+  const auto low_pairs = [](Wide a, Wide b) {
+    return __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+  };
+  const auto high_pairs = [](Wide a, Wide b) {
+    return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+  };
+  const Wide a = low(v[0], v[1]), b = high(v[0], v[1]), c = low(v[2], v[3]), d = high(v[2], v[3]);
+  v[0] = low_pairs(a, c);
+  v[1] = high_pairs(a, c);
+  v[2] = low_pairs(b, d);
+  v[3] = high_pairs(b, d);
+}
+
+// Four columns of 16 rows, there and back: rows r, r+4, r+8 and r+12 share a vector.
+WEFT_INLINE void columns_to_lanes(const TransposeRows& t, int i) {
+  Wide v[4];
+  for (int r = 0; r < 4; ++r) {
+    const auto quad = [&](int row) {
+      return *reinterpret_cast<const QuadLoose*>(t.rows + row * t.stride + i);
+    };
+    const auto ab = __builtin_shufflevector(quad(r), quad(r + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+    const auto cd = __builtin_shufflevector(quad(r + 8), quad(r + 12), 0, 1, 2, 3, 4, 5, 6, 7);
+    v[r] = __builtin_shufflevector(ab, cd, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  }
+  transpose_quarters(v);
+  for (int c = 0; c < 4; ++c) store(t.lanes + (i + c) * t.pitch, v[c]);
+}
+WEFT_INLINE void lanes_to_columns(const TransposeRows& t, int i) {
+  Wide v[4];
+  for (int c = 0; c < 4; ++c) v[c] = load(t.lanes + (i + c) * t.pitch);
+  transpose_quarters(v);
+  for (int r = 0; r < 4; ++r) {
+    const Quad quads[4] = {__builtin_shufflevector(v[r], v[r], 0, 1, 2, 3),
+                           __builtin_shufflevector(v[r], v[r], 4, 5, 6, 7),
+                           __builtin_shufflevector(v[r], v[r], 8, 9, 10, 11),
+                           __builtin_shufflevector(v[r], v[r], 12, 13, 14, 15)};
+    for (int q = 0; q < 4; ++q) {
+      auto* to = reinterpret_cast<QuadLoose*>(t.rows + (r + 4 * q) * t.stride + i);
+      *to = t.add ? *to + quads[q] : quads[q];
+    }
+  }
+}
+
+#endif
+
 }  // namespace
 
 void line_strip(const LineStrip& p) {
@@ -268,8 +326,14 @@ void line_strip(const LineStrip& p) {
 }
 
 void rows_to_lanes(const TransposeRows& t) {
+#if WEFT_LANES == 16
+  if (t.row_count == 16) {  // reads the padding of the last columns
+    for (int i = 0; i < t.columns; i += 4) columns_to_lanes(t, i);
+    return;
+  }
+#endif
   const int whole = t.row_count & ~3;
-  for (int i = 0; i < t.columns; i += 4)  // reads the padding of the last columns
+  for (int i = 0; i < t.columns; i += 4)
     for (int r = 0; r < whole; r += 4)
       transpose4(t.rows + r * t.stride + i, t.stride, t.lanes + i * t.pitch + r, t.pitch, false);
   for (int r = whole; r < t.row_count; ++r)
@@ -278,7 +342,11 @@ void rows_to_lanes(const TransposeRows& t) {
 
 void lanes_to_rows(const TransposeRows& t) {
   const int rows = t.row_count & ~3, columns = t.columns & ~3;
-  for (int i = 0; i < columns; i += 4)
+#if WEFT_LANES == 16
+  if (t.row_count == 16)
+    for (int i = 0; i < columns; i += 4) lanes_to_columns(t, i);
+#endif
+  for (int i = 0; i < columns && (kLanes < 16 || t.row_count < 16); i += 4)
     for (int r = 0; r < rows; r += 4)
       transpose4(t.lanes + i * t.pitch + r, t.pitch, t.rows + r * t.stride + i, t.stride, t.add);
   for (int r = 0; r < t.row_count; ++r)

@@ -8,20 +8,6 @@ namespace weft::WEFT_KERNELS {
 
 using physics::TetherRow;
 
-namespace {
-
-WEFT_INLINE bool any(WideInt m) {
-#if WEFT_LANES == 16
-  return _mm512_movepi32_mask((__m512i)m) != 0;
-#else
-  std::int32_t bits = 0;
-  for (int i = 0; i < kLanes; ++i) bits |= m[i];
-  return bits != 0;
-#endif
-}
-
-}  // namespace
-
 void tethers(const TetherRow& given) {
   const TetherRow r = given;
   for (int i = 0; i < padded(r.columns); i += kLanes) {

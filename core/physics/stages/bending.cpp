@@ -59,7 +59,9 @@ class BendingConstraints final : public WholeStage {
                    terms(parts.lattice), "constraints"),
         parts_(parts),
         strips_(parts.lattice, parts.kernels, kBendScratch),
-        compliant_(compliant) {}
+        compliant_(compliant) {
+    if (parts.scene.solver.order == 2) strips_.follow_masses();
+  }
 
   std::size_t bytes() const override { return strips_.bytes(); }
 
@@ -89,7 +91,7 @@ class BendingConstraints final : public WholeStage {
               const Row3 v = memory.gained.row(0);
               p.v = {v.x + first, v.y + first, v.z + first};
               p.inverse_dt = inverse_dt_;
-              p.w = memory.w.data() + first;
+              p.w = strips_.masses(group) + first;
               p.step = kStripLines;
               p.particles = l.columns;
               p.compliance = compliance;

@@ -55,6 +55,7 @@ class Line final : public WholeStage {
             f.dj == 0 ? std::size_t(groups) * kStripLines * parts.lattice.columns
                       : std::size_t(parts.lattice.rows) * parts.lattice.stride);
     }
+    if (parts.scene.solver.order == 2) strips_.follow_masses();
     // Longest constraints first, diagonals before columns.
     const auto rank = [](const LineFamily& l) {
       const bool diagonal = l.family->di != 0 && l.family->dj != 0;
@@ -144,7 +145,7 @@ class Line final : public WholeStage {
         p.x = memory.tile.row(start);
         p.v = memory.gained.row(start);
         p.inverse_dt = inverse_dt();
-        p.w = memory.w.data() + start * kStripLines;
+        p.w = strips_.masses(group) + start * kStripLines;
         p.step = n * kStripLines;
         p.particles = (columns - start + n - 1) / n;
         p.columns = rows;

@@ -3,32 +3,49 @@
 
 namespace weft::physics {
 
+Strips::Strips(Lattice& lattice, const KernelTable& kernels, int scratch)
+    : lattice_(lattice),
+      kernels_(kernels),
+      scratch_(scratch),
+      // Transposing reads and writes whole tiles of four columns.
+      masses_(std::size_t(row_groups()) * (lattice.columns + 3) * kStripLines) {
+  for (int group = 0; group < row_groups(); ++group)
+    turn_masses(group, std::min(kStripLines, lattice.rows - group * kStripLines));
+}
+
 std::size_t Strips::bytes() const {
-  std::size_t sum = 0;
+  std::size_t sum = masses_.size() * sizeof(float);
   for (const StripMemory& m : memory_)
-    sum += m.tile.bytes() + m.gained.bytes() + (m.scratch.size() + m.w.size()) * sizeof(float);
+    sum += m.tile.bytes() + m.gained.bytes() + m.scratch.size() * sizeof(float);
   return sum;
 }
 
 StripMemory Strips::make_memory() const {
-  // Transposing reads and writes whole tiles of four columns.
   const int columns = lattice_.columns + 3;
   return {AlignedArray<float>(std::size_t(std::max(lattice_.rows, lattice_.columns)) * scratch_),
-          Rows(columns, kStripLines), Rows(columns, kStripLines),
-          AlignedArray<float>(std::size_t(columns) * kStripLines)};
+          Rows(columns, kStripLines), Rows(columns, kStripLines)};
 }
 
-void Strips::turn_there(int begin, int rows, StripMemory& memory) {
+void Strips::turn_there(int group, int rows, StripMemory& memory) {
+  if (masses_change_) turn_masses(group, rows);
   for (int half = 0; half < rows; half += 16) {
-    const Row3 x = lattice_.x.row(begin + half), tile = memory.tile.row(0);
+    const Row3 x = lattice_.x.row(group * kStripLines + half), tile = memory.tile.row(0);
     TransposeRows t = turning(half, rows);
-    for (const auto& [from, to] : {std::pair(x.x, tile.x), std::pair(x.y, tile.y),
-                                   std::pair(x.z, tile.z),
-                                   std::pair(lattice_.w(begin + half), memory.w.data())}) {
+    for (const auto& [from, to] :
+         {std::pair(x.x, tile.x), std::pair(x.y, tile.y), std::pair(x.z, tile.z)}) {
       t.rows = from;
       t.lanes = to + half;
       kernels_.rows_to_lanes(t);
     }
+  }
+}
+
+void Strips::turn_masses(int group, int rows) {
+  for (int half = 0; half < rows; half += 16) {
+    TransposeRows t = turning(half, rows);
+    t.rows = lattice_.w(group * kStripLines + half);
+    t.lanes = masses_.data() + std::size_t(group) * (lattice_.columns + 3) * kStripLines + half;
+    kernels_.rows_to_lanes(t);
   }
 }
 

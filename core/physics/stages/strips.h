@@ -21,14 +21,12 @@ struct StripMemory {
   AlignedArray<float> scratch;
   Rows tile;              // kStripLines rows as lanes: [column][kStripLines] of x, y, z
   Rows gained;            // velocity that the solution adds, laid out as the tile
-  AlignedArray<float> w;  // and of the inverse masses
 };
 
 class Strips {
  public:
   // `scratch`: floats for each particle of a strip.
-  Strips(Lattice& lattice, const KernelTable& kernels, int scratch)
-      : lattice_(lattice), kernels_(kernels), scratch_(scratch) {}
+  Strips(Lattice& lattice, const KernelTable& kernels, int scratch);
 
   int row_groups() const { return (lattice_.rows + kStripLines - 1) / kStripLines; }
   std::size_t bytes() const;
@@ -59,12 +57,19 @@ class Strips {
         oneapi::tbb::simple_partitioner{});
   }
 
+  // Inverse masses of a group's rows as lanes, laid out as the tile.
+  const float* masses(int group) const {
+    return masses_.data() + std::size_t(group) * (lattice_.columns + 3) * kStripLines;
+  }
+  // They are turned once, unless they may change.
+  void follow_masses() { masses_change_ = true; }
+
   // Turns the rows of a group into the lanes of a tile, solves, turns them back and adds to the
   // velocities what has been gained; solve gets the number of rows.
   template <class Solve>
   void turned(int group, StripMemory& memory, bool velocities, const Solve& solve) {
     const int begin = group * kStripLines, rows = std::min(kStripLines, lattice_.rows - begin);
-    turn_there(begin, rows, memory);
+    turn_there(group, rows, memory);
     if (velocities) memory.gained.clear();
     solve(rows);
     turn_back(begin, rows, memory, velocities);
@@ -76,12 +81,15 @@ class Strips {
 
   StripMemory make_memory() const;
   TransposeRows turning(int half, int rows) const;
-  void turn_there(int begin, int rows, StripMemory& memory);
+  void turn_there(int group, int rows, StripMemory& memory);
+  void turn_masses(int group, int rows);
   void turn_back(int begin, int rows, StripMemory& memory, bool velocities);
 
   Lattice& lattice_;
   const KernelTable& kernels_;
   int scratch_;
+  AlignedArray<float> masses_;
+  bool masses_change_ = false;
   int count_ = 1;
   std::vector<StripMemory> memory_;
 };

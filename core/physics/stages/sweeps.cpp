@@ -164,7 +164,7 @@ class Jacobi final : public RowStage {
     a.x = l.x.row(j);
     a.v = l.v.row(j);
     a.f = sum(j);
-    a.inverse_dt = compliant_ ? float(1 / s.dt) : 0.0f;
+    a.inverse_dt = compliant_ ? float(1 / (s.dt * implicit_share(parts_.scene.solver))) : 0.0f;
     parts_.kernels.apply_corrections(a);
   }
 
