@@ -24,7 +24,7 @@ struct LineStrip {
   int particles;            // rows that lines pass through
   int lean;
   int columns;
-  int first;                // number of the first line of the strip
+  int first;                // number of the first line of the strip, a multiple of 16
   int lines;                // 16 or 32; further ones are not touched
   float rest;               // m
   float share;              // factor on the correction

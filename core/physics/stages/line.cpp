@@ -101,8 +101,10 @@ class Line final : public WholeStage {
     const Family& f = *l.family;
     const int particles = (parts_.lattice.rows - start + f.dj - 1) / f.dj;
     const int leaning = (particles - 1) * std::abs(f.di);
-    const int lines = parts_.lattice.columns + leaning;
-    const int first = f.di > 0 ? -leaning : 0;
+    // Whole strips to the left of lane 0, so that no block of lanes begins before the first row.
+    const int strips_left = f.di > 0 ? (leaning + kStripLines - 1) / kStripLines : 0;
+    const int first = -strips_left * kStripLines;
+    const int lines = parts_.lattice.columns + (f.di > 0 ? -first : leaning);
     const int strips = (lines + kStripLines - 1) / kStripLines;
     strips_.share_out(
         strips, kConstraintNs * particles * parts_.lattice.columns / strips,
