@@ -119,6 +119,14 @@ struct CollideRow {
   float friction_static, friction_dynamic;
 };
 
+struct LineStrip;      // kernels/line.h
+struct TransposeRows;
+struct SecondOrderRow;  // kernels/second_order.h
+struct TetherRow;
+struct BendRow;         // kernels/bending.h
+struct BendLine;
+struct TwistRow;
+
 struct KernelTable {
   void (*spring_rows)(const SpringRows&);
   void (*spring_family)(const FamilyRow&);          // f += spring force
@@ -134,6 +142,15 @@ struct KernelTable {
   void (*plane)(const CollideRow&);
   void (*course_sphere)(const CollideRow&);
   void (*course_plane)(const CollideRow&);
+  void (*line_strip)(const LineStrip&);             // a strip of lines, each solved as a whole
+  void (*rows_to_lanes)(const TransposeRows&);
+  void (*lanes_to_rows)(const TransposeRows&);
+  void (*predict_second_order)(const SecondOrderRow&);
+  void (*velocity_second_order)(const SecondOrderRow&);
+  void (*tethers)(const TetherRow&);
+  void (*bend_row)(const BendRow&);                 // v += dt force/mass of the bending energy
+  void (*bend_line)(const BendLine&);               // implicit bending along a strip of lines
+  void (*bend_twist)(const TwistRow&);              // and of every second cell between two rows
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

@@ -78,5 +78,14 @@ void sphere(const CollideRow&);
 void plane(const CollideRow&);
 void course_sphere(const CollideRow&);
 void course_plane(const CollideRow&);
+void line_strip(const physics::LineStrip&);
+void rows_to_lanes(const physics::TransposeRows&);
+void lanes_to_rows(const physics::TransposeRows&);
+void predict_second_order(const physics::SecondOrderRow&);
+void velocity_second_order(const physics::SecondOrderRow&);
+void tethers(const physics::TetherRow&);
+void bend_row(const physics::BendRow&);
+void bend_line(const physics::BendLine&);
+void bend_twist(const physics::TwistRow&);
 
 }  // namespace weft::WEFT_KERNELS

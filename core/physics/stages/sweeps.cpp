@@ -34,19 +34,14 @@ class ProjectedFamily {
     rows_.dj = family_.dj;
     rows_.rest = float(family_.rest);
     rows_.weight = 1;
+    rows_.inverse_dt = float(1 / dt);
     if (options_.limit > 0) {
       rows_.rest = float(family_.rest * (1 + options_.limit));
       rows_.limit = true;
-      rows_.inverse_dt = float(1 / dt);
     } else if (options_.compliant) {
-      for (int j = 0; j < l.rows; ++j) {
-        const double k = family_.stiffness * gradient_factor(parts_.cloth, j, family_.dj);
-        compliance_[j] = float(1 / (std::max(k, 1e-12) * dt * dt));
-      }
+      for (int j = 0; j < l.rows; ++j) compliance_[j] = compliance_of(parts_, family_, j, dt);
+      rows_.inverse_dt = float(1 / (dt * implicit_share(parts_.scene.solver)));
       rows_.compliance = compliance_.data();
-      // The velocity gains each correction as computed: the difference of rounded positions would
-      // be off by their rounding over dt, which a small substep's force does not outweigh.
-      rows_.inverse_dt = float(1 / dt);
       if (options_.multipliers) rows_.lambda = options_.multipliers->row(index_, 0);
     } else {
       rows_.weight = float(1 / (2 * parts_.cloth.positional_k));
@@ -143,7 +138,7 @@ class Jacobi final : public RowStage {
       : RowStage("jacobi", "all families, corrections added up and relaxed", reach,
                  parts.constraints(), "constraints"),
         parts_(parts),
-        keeps_velocity_(options.compliant) {
+        compliant_(options.compliant) {
     for (std::size_t f = 0; f < parts.families.size(); ++f)
       families_.emplace_back(parts, options, f);
   }
@@ -169,18 +164,24 @@ class Jacobi final : public RowStage {
     a.x = l.x.row(j);
     a.v = l.v.row(j);
     a.f = sum(j);
-    a.inverse_dt = keeps_velocity_ ? float(1 / s.dt) : 0.0f;
+    a.inverse_dt = compliant_ ? float(1 / (s.dt * implicit_share(parts_.scene.solver))) : 0.0f;
     parts_.kernels.apply_corrections(a);
   }
 
  private:
   ClothParts parts_;
-  bool keeps_velocity_;
+  bool compliant_;
   std::vector<ProjectedFamily> families_;
   Rows sum_;  // reach+1 rows in turn per slot
 };
 
 }  // namespace
+
+float compliance_of(const ClothParts& parts, const Family& f, int j, double dt) {
+  const double k = f.stiffness * gradient_factor(parts.cloth, j, f.dj);
+  const double h = dt * implicit_share(parts.scene.solver);
+  return float(1 / (std::max(k, 1e-12) * h * h));
+}
 
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
                          Stages& stages) {
