@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 
 #include "physics/energy.h"
-#include "physics/path.h"
+#include "weft/shape.h"
 
 namespace weft::physics {
 namespace {
@@ -42,29 +43,13 @@ void add_constraints(const ClothStep& step, Report& r) {
   }
 }
 
-// How deep a point lies below a collider's surface [m], negative above it.
-double depth_below(const Collider& c, double time, const Vec3& x) {
-  const auto from = [&](const Vec3& start) {
-    const Vec3 p = c.keys.empty() ? start : position_at(c.keys, time);
-    return Vec3{x[0] - p[0], x[1] - p[1], x[2] - p[2]};
-  };
-  if (const auto* sphere = std::get_if<Sphere>(&c.shape)) {
-    const Vec3 d = from(sphere->center);
-    return sphere->radius - std::hypot(d[0], d[1], d[2]);
-  }
-  if (const auto* plane = std::get_if<Plane>(&c.shape)) {
-    const Vec3 d = from(plane->point);
-    const Vec3& n = plane->normal;
-    return -(d[0] * n[0] + d[1] * n[1] + d[2] * n[2]) / std::hypot(n[0], n[1], n[2]);
-  }
-  return 0;
-}
-
 void add_penetration(const Simulation::State& s, const ClothStep& step, Report& r) {
   const double time = double(s.frame) * s.scene.time.frame;
   for (const Vec3& x : gather(step.lattice(), step.lattice().x))
     for (const Collider& c : s.scene.colliders)
-      r.penetration.collider_max = std::max(r.penetration.collider_max, depth_below(c, time, x));
+      if (!c.cuts)
+        r.penetration.collider_max =
+            std::max(r.penetration.collider_max, -signed_distance(c, time, x));
 }
 
 // Strain over all cloths: the largest, and the mean weighted by constraints.
@@ -86,6 +71,17 @@ void add_strain(const Simulation::State& s, Report& r) {
   }
   r.strain.max = largest;
   r.strain.mean = count > 0 ? sum / count : 0;
+}
+
+// What the stages passed over while they ran.
+void add_idle(const Simulation::State& s, Report& r) {
+  for (const auto& step : s.cloths)
+    for (const auto& stage : step->stages())
+      if (const double idle = stage->idle(); idle > 0) {
+        char why[64];
+        std::snprintf(why, sizeof why, "%.1f %% of the rows were out of reach", 100 * idle);
+        r.skipped.push_back({stage->name, stage->detail + ": " + why});
+      }
 }
 
 void add_wall_time(const Simulation::State& s, Report& r) {
@@ -181,6 +177,7 @@ Report measure(const Simulation::State& s) {
   }
   r.energy.total = r.energy.kinetic + r.energy.elastic + r.energy.gravity;
   add_strain(s, r);
+  add_idle(s, r);
   add_wall_time(s, r);
   add_stages(s, r);
   r.hash = state_hash(s);

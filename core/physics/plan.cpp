@@ -52,8 +52,11 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method) {
     stages_.push_back(make_velocity(parts));
   }
   for (int n = 0; n < solver.collision_iterations; ++n)
-    for (const Collider& c : parts.scene.colliders)
-      if (auto stage = make_collider(parts, c)) stages_.push_back(std::move(stage));
+    for (const Collider& c : parts.scene.colliders) {
+      if (c.cuts) continue;
+      stages_.push_back(make_collider(parts, c));
+      if (auto faces = make_collider_faces(parts, c)) stages_.push_back(std::move(faces));
+    }
   if (cloth_.strain_limit > 0) {
     SweepOptions limit;
     limit.limit = cloth_.strain_limit;
@@ -83,6 +86,10 @@ void describe_skipped(const Scene& scene, Method method, Plan& plan) {
       }))
     skip("keyed_pins", "no pin moves");
   if (scene.colliders.empty()) skip("collider", "the scene has none");
+  const bool faces = std::any_of(plan.stages.begin(), plan.stages.end(),
+                                 [](const PlannedStage& s) { return s.name == "collider_faces"; });
+  if (!scene.colliders.empty() && !faces)
+    skip("collider_faces", "no collider is small against the mesh");
   if (!any([](const Cloth& c) { return c.strain_limit > 0; }))
     skip("strain_limit", "strain_limit is 0");
   if (!any([](const Cloth& c) { return c.self_collision.mode != SelfCollisionMode::off; }))

@@ -31,6 +31,8 @@ class RowStage {
   // Makes room for substeps of slots 0 … slots-1.
   virtual void reserve_slots(int slots) { (void)slots; }
   virtual std::size_t bytes() const { return 0; }
+  // Share of the rows so far that had nothing to do and were passed over, 0 … 1.
+  virtual double idle() const { return 0; }
 
   const std::string name, detail, item;
   const std::int64_t items;  // touched per substep

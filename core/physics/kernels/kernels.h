@@ -94,19 +94,44 @@ struct AdvanceRow {
   float inverse_dt;
 };
 
+// Constants of a collider's shape, about its place (colliders/).
+struct ShapeConstants {
+  float radius = 0;           // sphere, capsule; the box's rounding [m]
+  float axis[3] = {0, 1, 0};  // plane: unit normal; capsule: from a to b [m]
+  float inverse_square = 0;   // capsule: 1/|axis|² [1/m²]
+  float half[3] = {};         // box: half-sizes less the rounding [m]
+  float turn[9] = {};         // box: its axes as rows
+};
+
 // One collider and one row: particles below the surface are put onto it, with friction.
 struct CollideRow {
   int columns;
   Row3 x, v;
   const float* w;
   float dt, inverse_dt;
-  float cx, cy, cz;        // center, or a point on the plane [m]
-  float nx, ny, nz;        // plane's unit normal
-  float radius;            // sphere's, with the offset [m]
-  float offset;            // plane's [m]
+  float cx, cy, cz;        // where the shape is at the end of the substep [m]
   float ux, uy, uz;        // velocity of the surface [m/s]
+  float offset;            // kept off the surface [m]
   float friction_static, friction_dynamic;
+  ShapeConstants shape;
 };
+
+// The triangles between a row and the next, and one collider. bound[a] becomes a lower bound of the
+// distance from the offset surface to the two triangles between lanes a and a+1 [m].
+struct FacesRow {
+  CollideRow row;
+  ConstRow3 x_next, v_next;
+  float* bound;
+};
+
+// How a row lies to a collider.
+struct RowReach {
+  float clearance;  // least distance of a free particle from the offset surface [m]
+  float speed;      // greatest speed of a free particle, seen from the collider [m/s]
+};
+
+// Shapes and responses, in the order of weft::Shape and weft::FrictionModel.
+inline constexpr int kShapes = 4, kFrictionModels = 2;
 
 struct KernelTable {
   void (*spring_row)(const SpringRow&);
@@ -118,10 +143,8 @@ struct KernelTable {
   void (*project)(const ProjectRow&);               // Gauss-Seidel: one family, one colour, in place
   void (*project_jacobi)(const ProjectRow&);        // Jacobi: corrections added up in f
   void (*apply_corrections)(const AdvanceRow&);     // x += f, f <- 0
-  void (*sphere)(const CollideRow&);
-  void (*plane)(const CollideRow&);
-  void (*course_sphere)(const CollideRow&);
-  void (*course_plane)(const CollideRow&);
+  RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
+  RowReach (*below_faces[kShapes])(const FacesRow&);
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

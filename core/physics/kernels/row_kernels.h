@@ -11,9 +11,11 @@ using physics::Advance;
 using physics::AdvanceRow;
 using physics::CollideRow;
 using physics::ConstRow3;
+using physics::FacesRow;
 using physics::FamilyRow;
 using physics::ProjectRow;
 using physics::Row3;
+using physics::RowReach;
 using physics::SpringConstants;
 using physics::SpringRow;
 
@@ -49,9 +51,12 @@ void velocity(const AdvanceRow&);
 void project(const ProjectRow&);
 void project_jacobi(const ProjectRow&);
 void apply_corrections(const AdvanceRow&);
-void sphere(const CollideRow&);
-void plane(const CollideRow&);
-void course_sphere(const CollideRow&);
-void course_plane(const CollideRow&);
+
+// A collider's kernels: its own file in colliders/ defines them by WEFT_COLLIDER (collide.h).
+struct ColliderKernels {
+  RowReach (*collide[physics::kFrictionModels])(const CollideRow&);
+  RowReach (*below_faces)(const FacesRow&);
+};
+extern const ColliderKernels kSphere, kPlane, kCapsule, kBox;
 
 }  // namespace weft::WEFT_KERNELS

@@ -48,6 +48,30 @@ WEFT_INLINE Wide max(Wide a, Wide b) { return a > b ? a : b; }
 WEFT_INLINE Wide sqrt(Wide v) { return Wide{__builtin_sqrtf(v[0])}; }
 #endif
 
+WEFT_INLINE Wide min(Wide a, Wide b) { return select(a < b, a, b); }
+WEFT_INLINE Wide abs(Wide v) { return max(v, -v); }
+
+// Whether any lane of a comparison holds.
+WEFT_INLINE bool any(WideInt m) {
+#if WEFT_LANES == 16
+  return _mm512_test_epi32_mask((__m512i)m, (__m512i)m) != 0;
+#elif WEFT_LANES == 8
+  return _mm256_movemask_ps((__m256)m) != 0;
+#elif WEFT_LANES == 4
+  return _mm_movemask_ps((__m128)m) != 0;
+#else
+  return m[0] != 0;
+#endif
+}
+
+// The least and the greatest lane: exact, so the order does not matter.
+WEFT_INLINE float least(Wide v) {
+  float r = v[0];
+  for (int i = 1; i < kLanes; ++i) r = v[i] < r ? v[i] : r;
+  return r;
+}
+WEFT_INLINE float greatest(Wide v) { return -least(-v); }
+
 WEFT_INLINE WideInt lane_numbers() {
   WideInt r{};
   for (int i = 0; i < kLanes; ++i) r[i] = i;
@@ -88,6 +112,7 @@ struct Wide3 {
   Wide x, y, z;
 };
 
+WEFT_INLINE Wide3 wide3(float x, float y, float z) { return {wide(x), wide(y), wide(z)}; }
 WEFT_INLINE Wide3 operator+(Wide3 a, Wide3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 WEFT_INLINE Wide3 operator-(Wide3 a, Wide3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 WEFT_INLINE Wide3 operator*(Wide3 a, Wide s) { return {a.x * s, a.y * s, a.z * s}; }
