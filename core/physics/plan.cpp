@@ -4,30 +4,13 @@
 #include <algorithm>
 
 namespace weft::physics {
-namespace {
-
-// Rough cost of a row, for sizing tasks only: nanoseconds per constraint and per particle.
-constexpr double kConstraintNs = 0.5, kParticleNs = 0.5;
-
-double row_nanoseconds(const std::vector<std::unique_ptr<RowStage>>& stages, int rows) {
-  double ns = 0;
-  for (const auto& s : stages)
-    ns += double(s->items) * (s->item == "constraints" ? kConstraintNs : kParticleNs);
-  return ns / rows;
-}
-
-}  // namespace
-
 ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::uint64_t seed,
                      const KernelTable& kernels)
     : cloth_(scene.cloths[cloth_index]),
       families_(families_of(cloth_)),
       lattice_(make_lattice(cloth_, cloth_index, seed, !is_explicit(method))) {
   choose_stages({scene, cloth_, lattice_, families_, kernels}, method);
-  std::vector<RowStage*> stages;
-  for (const auto& s : stages_) stages.push_back(s.get());
-  wavefront_ = std::make_unique<Wavefront>(stages, lattice_.rows, lattice_.bytes() / lattice_.rows,
-                                           row_nanoseconds(stages_, lattice_.rows));
+  passes_ = std::make_unique<Passes>(stages_, lattice_.rows, lattice_.bytes() / lattice_.rows);
 }
 
 void ClothStep::choose_stages(const ClothParts& parts, Method method) {

@@ -14,8 +14,8 @@
 #include <memory>
 #include <vector>
 
+#include "physics/passes.h"
 #include "physics/stages/stages.h"
-#include "physics/wavefront.h"
 #include "weft/report.h"
 
 namespace weft::physics {
@@ -30,8 +30,8 @@ class ClothStep {
   Lattice& lattice() { return lattice_; }
   const Lattice& lattice() const { return lattice_; }
   const std::vector<Family>& families() const { return families_; }
-  const std::vector<std::unique_ptr<RowStage>>& stages() const { return stages_; }
-  Wavefront& wavefront() { return *wavefront_; }
+  const Stages& stages() const { return stages_; }
+  Passes& passes() { return *passes_; }
   std::size_t bytes() const;
 
  private:
@@ -41,8 +41,8 @@ class ClothStep {
   std::vector<Family> families_;
   Lattice lattice_;
   std::unique_ptr<Multipliers> multipliers_;
-  std::vector<std::unique_ptr<RowStage>> stages_;
-  std::unique_ptr<Wavefront> wavefront_;
+  Stages stages_;
+  std::unique_ptr<Passes> passes_;
 };
 
 // Whether a method integrates springs as forces, and so has a stability limit.

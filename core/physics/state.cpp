@@ -59,7 +59,7 @@ void Simulation::State::build_cloths() {
     const Lattice& l = cloths.back()->lattice();
     backups_.push_back({Rows(l.rows, l.stride), Rows(l.rows, l.stride)});
     stage_ns.emplace_back(cloths.back()->stages().size());
-    if (options.profile) cloths.back()->wavefront().profile(stage_ns.back());
+    if (options.profile) cloths.back()->passes().profile(stage_ns.back());
   }
 }
 
@@ -145,7 +145,7 @@ void Simulation::State::run_frame() {
   for (auto& step : cloths) {
     const Lattice& l = step->lattice();
     const bool small = l.columns * l.rows <= kSmallCloth;
-    step->wavefront().run(time, dt, substeps, small ? one_thread : threads);
+    step->passes().run(time, dt, substeps, small ? one_thread : threads);
   }
 }
 
@@ -201,6 +201,8 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
           l.v.at(c, j, i) = l.w(j, i) > 0 ? float(velocities[3 * p + c]) : 0;
         }
   }
+  for (auto& step : cloths)
+    for (const auto& stage : step->stages()) stage->restart();
   if (is_explicit(method)) shift_velocities(-dt / 2);
   ++changes;
 }
@@ -239,11 +241,10 @@ void Simulation::State::find_fault() {
   status.stage = "step";
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     Lattice& l = cloths[c]->lattice();
-    for (const auto& stage : cloths[c]->stages()) stage->reserve_slots(1);
     for (int s = 0; s < substeps; ++s) {
       const Substep substep{dt, double(frame) * scene.time.frame + (s + 1) * dt, 0};
       for (const auto& stage : cloths[c]->stages()) {
-        for (int j = 0; j < l.rows; ++j) stage->run(j, substep);
+        stage->run_alone(l.rows, substep, threads);
         for (int j = 0; j < l.rows && status.text == "ok"; ++j)
           for (int i = 0; i < l.columns && status.text == "ok"; ++i)
             for (int k = 0; k < 3; ++k)

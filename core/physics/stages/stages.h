@@ -51,7 +51,7 @@ struct SweepOptions {
   double limit = 0;  // > 0: the strain limit's one-sided sweep
 };
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
-                         std::vector<std::unique_ptr<RowStage>>& stages);
+                         Stages& stages);
 std::unique_ptr<RowStage> make_jacobi(const ClothParts& parts, const SweepOptions& options);
 
 }  // namespace weft::physics

@@ -143,7 +143,7 @@ class Jacobi final : public RowStage {
 }  // namespace
 
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
-                         std::vector<std::unique_ptr<RowStage>>& stages) {
+                         Stages& stages) {
   const std::string name = options.limit > 0 ? "strain_limit" : "gauss_seidel";
   for (std::size_t index = 0; index < parts.families.size(); ++index) {
     if (parts.families[index].dj == 0) {
