@@ -113,6 +113,36 @@ Nearest nearest_of(const Box& box, const Vec3& p) {
   return {length - box.rounding, normal};
 }
 
+// Separating axes of a box and a triangle (Gottschalk et al. 1996): the faces' three normals, the
+// triangle's, and the nine products of their edges. The one of least overlap leads out.
+Overlap overlap_of(const Box& box, const Triangle& t) {
+  const std::array<Vec3, 3> axes = axes_of(box);
+  Overlap best{1e300, {}};
+  const auto separates = [&](const Vec3& direction) {
+    const double size = std::sqrt(dot(direction, direction));
+    if (size < 1e-12) return false;
+    const Vec3 n = times(direction, 1 / size);
+    double reach = 0, low = 1e300, high = -1e300;
+    for (int k = 0; k < 3; ++k) {
+      reach += (box.half[k] - box.rounding) * std::abs(dot(n, axes[k]));
+      low = std::min(low, dot(n, t[k]));
+      high = std::max(high, dot(n, t[k]));
+    }
+    const double up = reach - low, down = reach + high;  // to leave along n, or against it
+    if (std::min(up, down) < best.depth)
+      best = up < down ? Overlap{up, n} : Overlap{down, times(n, -1)};
+    return up <= 0 || down <= 0;
+  };
+  const std::array<Vec3, 3> edges{minus(t[1], t[0]), minus(t[2], t[1]), minus(t[0], t[2])};
+  if (separates(cross(edges[0], edges[1]))) return {};
+  for (const Vec3& axis : axes)
+    if (separates(axis)) return {};
+  for (const Vec3& axis : axes)
+    for (const Vec3& edge : edges)
+      if (separates(cross(axis, edge))) return {};
+  return best;
+}
+
 double feature_of(const Box& box) { return box.rounding; }
 
 // Each side is a patch of the cube's side, mapped onto the rounded box by its normals: a point on the

@@ -62,6 +62,24 @@ Nearest nearest_of(const Capsule& capsule, const Vec3& p) {
   return {length - capsule.radius, length > 0 ? times(d, 1 / length) : Vec3{0, 1, 0}};
 }
 
+// The axis cuts a triangle when its ends lie on both sides of it, and the point between inside. Out is
+// the way of the end that is nearer.
+Overlap overlap_of(const Capsule& capsule, const Triangle& t) {
+  const Vec3 n = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+  const double size = std::sqrt(dot(n, n));
+  if (size == 0) return {};
+  const Vec3 e = minus(capsule.b, capsule.a);
+  const double at_a = -dot(t[0], n), at_b = dot(minus(e, t[0]), n);
+  if (at_a * at_b >= 0) return {};
+  const Vec3 q = times(e, at_a / (at_a - at_b));
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 edge = minus(t[(k + 1) % 3], t[k]);
+    if (dot(cross(edge, minus(q, t[k])), n) < 0) return {};
+  }
+  const double nearer = std::abs(at_a) < std::abs(at_b) ? at_a : at_b;
+  return {std::abs(nearer) / size, times(n, (nearer > 0 ? 1 : -1) / size)};
+}
+
 double feature_of(const Capsule& capsule) { return capsule.radius; }
 
 ShapeMesh mesh_of(const Capsule& capsule) {

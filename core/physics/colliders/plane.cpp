@@ -86,6 +86,9 @@ Core core_of(const Plane& plane, const Vec3& p) {
   return {minus(p, times(n.normal, n.distance)), 0};
 }
 
+// Triangles are as deep as their corners.
+Overlap overlap_of(const Plane&, const Triangle&) { return {}; }
+
 double feature_of(const Plane&) { return std::numeric_limits<double>::infinity(); }
 
 ShapeMesh mesh_of(const Plane& plane) {
@@ -94,7 +97,7 @@ ShapeMesh mesh_of(const Plane& plane) {
   const Vec3 axis = std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
   const Vec3 u0 = minus(axis, times(n, dot(axis, n)));
   const Vec3 u = times(u0, 1 / std::hypot(u0[0], u0[1], u0[2]));
-  const Vec3 v{n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]};
+  const Vec3 v = cross(n, u);
   ShapeMesh mesh;
   add_patch(
       mesh, 8, 8,

@@ -15,6 +15,13 @@ struct Nearest {
   Vec3 normal{0, 1, 0};
 };
 
+// How far, and where to, a triangle must move to leave a core that it cuts; no depth when it does not.
+struct Overlap {
+  double depth = 0;  // m
+  Vec3 normal{0, 1, 0};
+};
+using Triangle = std::array<Vec3, 3>;
+
 // The shape as a core that is grown by a radius: its point nearest to p.
 struct Core {
   Vec3 nearest{};
@@ -26,10 +33,11 @@ struct Core {
   Vec3 place_of(const Shape& shape);                  \
   Nearest nearest_of(const Shape& shape, const Vec3& p); \
   Core core_of(const Shape& shape, const Vec3& p);    \
+  Overlap overlap_of(const Shape& shape, const Triangle& t); \
   double feature_of(const Shape& shape);              \
   ShapeMesh mesh_of(const Shape& shape);
 // constants_of: for the kernels; place_of: where it stands without keys; nearest_of, core_of: seen
-// from p, in double; feature_of: its smallest radius of curvature, infinite for a plane [m];
+// from p, in double; overlap_of: of the core and a triangle; feature_of: its smallest radius of curvature, infinite for a plane [m];
 // mesh_of: triangles for drawing.
 WEFT_SHAPE(Sphere)
 WEFT_SHAPE(Plane)
@@ -41,6 +49,10 @@ inline Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[
 inline Vec3 plus(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Vec3 times(const Vec3& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
 inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 
 // Adds a surface of `across` by `along` quads between points point(u, v), 0 <= u, v <= 1, with
 // normals normal(u, v); seen from outside, u runs to the right and v up.

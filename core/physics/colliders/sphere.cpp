@@ -48,6 +48,9 @@ Nearest nearest_of(const Sphere& sphere, const Vec3& p) {
 
 Core core_of(const Sphere& sphere, const Vec3&) { return {{}, sphere.radius}; }
 
+// Its core is a point, which a triangle cannot cut.
+Overlap overlap_of(const Sphere&, const Triangle&) { return {}; }
+
 double feature_of(const Sphere& sphere) { return sphere.radius; }
 
 ShapeMesh mesh_of(const Sphere& sphere) {

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kSmall = 1.5;        // in diagonals of the mesh: a larger radius needs no triangles
 constexpr int kProjections = 12;      // between triangle and core
-constexpr int kDescents = 12;         // towards the deepest point
 constexpr int kMostPlaces = 16;       // on the way of a fast collider
 constexpr int kTurns = 8;             // of one triangle in a substep
 
@@ -22,14 +21,14 @@ using Weights = std::array<double, 3>;
 
 // One triangle's corners, seen from the collider's place at the end of the substep.
 struct Corners {
-  std::array<Vec3, 3> x, path;  // and how far each came in this substep
+  Triangle x, path;  // and how far each came in this substep
   Vec3 at(const Weights& b) const {
     return plus(plus(times(x[0], b[0]), times(x[1], b[1])), times(x[2], b[2]));
   }
 };
 
 // The point of a triangle nearest to q (Ericson, Real-Time Collision Detection, 5.1.5).
-Weights nearest_on(const std::array<Vec3, 3>& t, const Vec3& q) {
+Weights nearest_on(const Triangle& t, const Vec3& q) {
   const Vec3 ab = minus(t[1], t[0]), ac = minus(t[2], t[0]), aq = minus(q, t[0]);
   const double d1 = dot(ab, aq), d2 = dot(ac, aq);
   if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
@@ -58,30 +57,28 @@ Weights nearest_on(const std::array<Vec3, 3>& t, const Vec3& q) {
   return {va / sum, vb / sum, vc / sum};
 }
 
-// The deepest point of a triangle in a convex shape: first alternating projections between triangle
-// and core, which find it outside the core, then descents of the distance towards corners.
+struct Deepest {
+  Weights weights{};
+  Nearest nearest;
+};
+
+// The deepest point of a triangle in a shape, by alternating projections between triangle and core.
+// A triangle that cuts the core is first moved out of it, along the way of least overlap.
 template <class Shape>
-Weights deepest_on(const Shape& shape, const Corners& c) {
-  Weights b{1 / 3., 1 / 3., 1 / 3.};
-  for (int n = 0; n < kProjections; ++n) b = nearest_on(c.x, core_of(shape, c.at(b)).nearest);
-  Nearest here = nearest_of(shape, c.at(b));
-  if (here.distance > 0) return b;
-  double stride = 0.5;
-  for (int n = 0; n < kDescents; ++n) {
-    int down = 0;
-    for (int k = 1; k < 3; ++k)
-      if (dot(here.normal, c.x[k]) < dot(here.normal, c.x[down])) down = k;
-    Weights next = times(b, 1 - stride);
-    next[down] += stride;
-    const Nearest there = nearest_of(shape, c.at(next));
-    if (there.distance < here.distance) {
-      b = next;
-      here = there;
-    } else {
-      stride /= 2;
-    }
+Deepest deepest_on(const Shape& shape, Corners c, double edge) {
+  const Overlap overlap = overlap_of(shape, c.x);
+  if (overlap.depth > 0)
+    for (Vec3& x : c.x) x = plus(x, times(overlap.normal, overlap.depth + 1e-3 * edge));
+  Deepest d{{1 / 3., 1 / 3., 1 / 3.}, {}};
+  double radius = 0;
+  for (int n = 0; n < kProjections; ++n) {
+    const Core core = core_of(shape, c.at(d.weights));
+    d.weights = nearest_on(c.x, core.nearest);
+    radius = core.radius;
   }
-  return b;
+  d.nearest = overlap.depth > 0 ? Nearest{-overlap.depth - radius, overlap.normal}
+                                : nearest_of(shape, c.at(d.weights));
+  return d;
 }
 
 struct Touch {
@@ -92,16 +89,16 @@ struct Touch {
 
 // The first contact on the way of the triangle, seen from the collider.
 template <class Shape>
-Touch first_touch(const Shape& shape, double offset, const Corners& end, int places) {
+Touch first_touch(const Shape& shape, double offset, const Corners& end, int places,
+                  double edge) {
   for (int n = 1; n <= places; ++n) {
     const double left = 1 - double(n) / places;
     Corners c = end;
     for (int k = 0; k < 3; ++k) c.x[k] = minus(end.x[k], times(end.path[k], left));
-    const Weights b = deepest_on(shape, c);
-    const Nearest near = nearest_of(shape, c.at(b));
-    if (near.distance >= offset) continue;
-    const Vec3 beyond = minus(c.at(b), end.at(b));
-    return {b, near.normal, offset - near.distance + std::max(0.0, dot(beyond, near.normal))};
+    const Deepest d = deepest_on(shape, c, edge);
+    if (d.nearest.distance >= offset) continue;
+    const double beyond = dot(minus(c.at(d.weights), end.at(d.weights)), d.nearest.normal);
+    return {d.weights, d.nearest.normal, offset - d.nearest.distance + std::max(0.0, beyond)};
   }
   return {};
 }
@@ -159,7 +156,7 @@ class ColliderFaces final : public RowStage {
         [&](const auto& shape) {
           const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
           const int places = std::clamp(int(std::ceil(2 * longest / size)), 1, kMostPlaces);
-          return first_touch(shape, r.offset, c, places);
+          return first_touch(shape, r.offset, c, places, edge_);
         },
         collider_.collider().shape);
     if (touch.depth <= 1e-4 * edge_) return false;
