@@ -56,6 +56,7 @@ namespace {
 // The box's own axes in the scene: turned about x, then y, then z.
 std::array<Vec3, 3> axes_of(const Box& box) {
   std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  if (box.rotation == Vec3{}) return axes;
   for (int k = 0; k < 3; ++k) {
     const double angle = box.rotation[k] * std::numbers::pi / 180;
     const double c = std::cos(angle), s = std::sin(angle);
@@ -75,6 +76,7 @@ ShapeConstants constants_of(const Box& box) {
   const std::array<Vec3, 3> axes = axes_of(box);
   ShapeConstants c;
   c.radius = float(box.rounding);
+  c.thin = float(std::min({box.half[0], box.half[1], box.half[2]}));
   for (int k = 0; k < 3; ++k) {
     c.half[k] = float(box.half[k] - box.rounding);
     for (int m = 0; m < 3; ++m) c.turn[3 * k + m] = float(axes[k][m]);

@@ -44,6 +44,7 @@ ShapeConstants constants_of(const Capsule& capsule) {
   const Vec3 e = minus(capsule.b, capsule.a);
   ShapeConstants c;
   c.radius = float(capsule.radius);
+  c.thin = c.radius;
   for (int k = 0; k < 3; ++k) c.axis[k] = float(e[k]);
   c.inverse_square = float(1 / dot(e, e));
   return c;

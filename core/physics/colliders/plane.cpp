@@ -70,6 +70,7 @@ Vec3 unit_normal(const Plane& plane) {
 ShapeConstants constants_of(const Plane& plane) {
   const Vec3 n = unit_normal(plane);
   ShapeConstants c;
+  c.thin = std::numeric_limits<float>::infinity();
   for (int k = 0; k < 3; ++k) c.axis[k] = float(n[k]);
   return c;
 }

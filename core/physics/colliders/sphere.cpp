@@ -36,6 +36,7 @@ namespace weft::physics {
 ShapeConstants constants_of(const Sphere& sphere) {
   ShapeConstants c;
   c.radius = float(sphere.radius);
+  c.thin = c.radius;
   return c;
 }
 

@@ -97,6 +97,7 @@ template <class Shape, bool kCourse>
 WEFT_INLINE RowReach collide_row(const CollideRow& r) {
   const Shape shape(r.shape);
   const Wide3 place = wide3(r.cx, r.cy, r.cz), u = wide3(r.ux, r.uy, r.uz);
+  const float shortest = 0.25f * r.shape.thin * r.shape.thin;
   Wide clearance = wide(kFar), fastest{};
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const WideInt free = free_lanes(r, i);
@@ -112,8 +113,11 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
     Wide depth = -left;
     Wide3 n = s.normal;
     if constexpr (Shape::kThin) {
-      // Only a particle that moves away from the surface nearest to it can have come through.
-      const WideInt leaving = free & (left * left < speed * (r.dt * r.dt)) & (dot(relative, n) > 0.0f);
+      // Only a particle that moves away from the surface nearest to it can have come through, and
+      // only on a path that is long against the shape.
+      const Wide path = speed * (r.dt * r.dt);
+      const WideInt leaving =
+          free & (path > shortest) & (left * left < path) & (dot(relative, n) > 0.0f);
       if (any(leaving)) {
         const Entry e = entry(r, shape, p, relative * wide(r.dt), leaving);
         touching = touching | e.caught;

@@ -97,6 +97,7 @@ struct AdvanceRow {
 // Constants of a collider's shape, about its place (colliders/).
 struct ShapeConstants {
   float radius = 0;           // sphere, capsule; the box's rounding [m]
+  float thin = 0;             // half of the least thickness; infinite for the plane [m]
   float axis[3] = {0, 1, 0};  // plane: unit normal; capsule: from a to b [m]
   float inverse_square = 0;   // capsule: 1/|axis|² [1/m²]
   float half[3] = {};         // box: half-sizes less the rounding [m]

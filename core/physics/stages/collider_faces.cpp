@@ -15,6 +15,7 @@ namespace {
 constexpr double kSmall = 1.5;        // in diagonals of the mesh: a larger radius needs no triangles
 constexpr int kProjections = 12;      // between triangle and core
 constexpr int kMostPlaces = 16;       // on the way of a fast collider
+constexpr double kSlack = 1e-4;       // of an edge: a triangle may be as deep
 constexpr int kTurns = 8;             // of one triangle in a substep
 
 using Weights = std::array<double, 3>;
@@ -62,10 +63,11 @@ struct Deepest {
   Nearest nearest;
 };
 
-// The deepest point of a triangle in a shape, by alternating projections between triangle and core.
-// A triangle that cuts the core is first moved out of it, along the way of least overlap.
+// The deepest point of a triangle in a shape, by alternating projections between triangle and core;
+// they end early at a plane that holds the two further apart than `offset`. A triangle that cuts the
+// core is first moved out of it, along the way of least overlap.
 template <class Shape>
-Deepest deepest_on(const Shape& shape, Corners c, double edge) {
+Deepest deepest_on(const Shape& shape, Corners c, double offset, double edge) {
   const Overlap overlap = overlap_of(shape, c.x);
   if (overlap.depth > 0)
     for (Vec3& x : c.x) x = plus(x, times(overlap.normal, overlap.depth + 1e-3 * edge));
@@ -73,8 +75,17 @@ Deepest deepest_on(const Shape& shape, Corners c, double edge) {
   double radius = 0;
   for (int n = 0; n < kProjections; ++n) {
     const Core core = core_of(shape, c.at(d.weights));
-    d.weights = nearest_on(c.x, core.nearest);
     radius = core.radius;
+    const Weights before = d.weights;
+    d.weights = nearest_on(c.x, core.nearest);
+    const Vec3 apart = minus(c.at(d.weights), core_of(shape, c.at(d.weights)).nearest);
+    const double square = dot(apart, apart);
+    double least = 1e300;
+    for (const Vec3& x : c.x) least = std::min(least, dot(apart, minus(x, c.at(d.weights))));
+    const double gap = (square + least) / std::sqrt(std::max(square, 1e-300));
+    if (overlap.depth <= 0 && gap >= radius + offset) return {d.weights, {offset, {}}};
+    const Vec3 change = minus(d.weights, before);
+    if (dot(change, change) < 1e-12) break;
   }
   d.nearest = overlap.depth > 0 ? Nearest{-overlap.depth - radius, overlap.normal}
                                 : nearest_of(shape, c.at(d.weights));
@@ -95,7 +106,7 @@ Touch first_touch(const Shape& shape, double offset, const Corners& end, int pla
     const double left = 1 - double(n) / places;
     Corners c = end;
     for (int k = 0; k < 3; ++k) c.x[k] = minus(end.x[k], times(end.path[k], left));
-    const Deepest d = deepest_on(shape, c, edge);
+    const Deepest d = deepest_on(shape, c, offset, edge);
     if (d.nearest.distance >= offset) continue;
     const double beyond = dot(minus(c.at(d.weights), end.at(d.weights)), d.nearest.normal);
     return {d.weights, d.nearest.normal, offset - d.nearest.distance + std::max(0.0, beyond)};
@@ -111,7 +122,16 @@ class ColliderFaces final : public RowStage {
         parts_(parts),
         collider_(parts, collider),
         far_(parts, collider_.fastest()),
-        edge_(edge) {}
+        upright_(collider.shape),
+        edge_(edge) {
+    // A box is looked at in its own axes.
+    if (auto* box = std::get_if<Box>(&upright_)) {
+      const ShapeConstants turned = constants_of(*box);
+      for (int k = 0; k < 3; ++k)
+        axes_[k] = {turned.turn[3 * k], turned.turn[3 * k + 1], turned.turn[3 * k + 2]};
+      box->rotation = {};
+    }
+  }
 
   void reserve_slots(int slots) override { bound_ = Rows(slots, parts_.lattice.stride); }
   std::size_t bytes() const override { return bound_.bytes(); }
@@ -126,12 +146,14 @@ class ColliderFaces final : public RowStage {
     f.v_next = l.v.row(j + 1);
     f.bound = bound_.row(s.slot).x;
     RowReach reach = parts_.kernels.below_faces[collider_.shape()](f);
-    const float path = reach.speed * f.row.dt;
+    // The way of a substep matters only where it is long against the collider.
+    const float way = reach.speed * f.row.dt;
+    const float near = way > 0.5f * f.row.shape.thin ? way : float(-kSlack * edge_);
     // Between its corners a triangle may be nearer by as much as an edge, stretched by half.
     reach.clearance -= float(1.5 * edge_);
     far_.found(j, s, reach);
     for (int i = 0; i + 1 < l.columns; ++i) {
-      if (f.bound[i] >= path) continue;
+      if (f.bound[i] >= near) continue;
       // An edge or a corner of the collider leaves a triangle by one of its sides after another.
       for (int n = 0; n < kTurns && touch(f.row, {j, j, j + 1}, {i, i + 1, i}); ++n) continue;
       for (int n = 0; n < kTurns && touch(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i}); ++n) continue;
@@ -148,18 +170,21 @@ class ColliderFaces final : public RowStage {
     double longest = 0;
     for (int k = 0; k < 3; ++k) {
       v[k] = minus({l.v.at(0, j[k], i[k]), l.v.at(1, j[k], i[k]), l.v.at(2, j[k], i[k])}, u);
-      c.x[k] = minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place);
-      c.path[k] = times(v[k], r.dt);
+      c.x[k] = into_shape(
+          minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place));
+      c.path[k] = into_shape(times(v[k], r.dt));
       longest = std::max(longest, std::sqrt(dot(c.path[k], c.path[k])));
     }
-    const Touch touch = std::visit(
+    Touch touch = std::visit(
         [&](const auto& shape) {
           const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
           const int places = std::clamp(int(std::ceil(2 * longest / size)), 1, kMostPlaces);
           return first_touch(shape, r.offset, c, places, edge_);
         },
-        collider_.collider().shape);
-    if (touch.depth <= 1e-4 * edge_) return false;
+        upright_);
+    if (touch.depth <= kSlack * edge_) return false;
+    touch.normal = plus(plus(times(axes_[0], touch.normal[0]), times(axes_[1], touch.normal[1])),
+                        times(axes_[2], touch.normal[2]));
     double mobility = 0;
     Vec3 speed{};
     for (int k = 0; k < 3; ++k) {
@@ -178,6 +203,8 @@ class ColliderFaces final : public RowStage {
     return true;
   }
 
+  Vec3 into_shape(const Vec3& p) const { return {dot(axes_[0], p), dot(axes_[1], p), dot(axes_[2], p)}; }
+
   // Changes of position and velocity of the touching point, as a particle's in collide.h.
   static std::pair<Vec3, Vec3> rub(const CollideRow& r, const Touch& touch, const Vec3& speed) {
     const double into = dot(speed, touch.normal);
@@ -195,6 +222,8 @@ class ColliderFaces final : public RowStage {
   ClothParts parts_;
   MovingCollider collider_;
   OutOfReach far_;
+  Shape upright_;
+  std::array<Vec3, 3> axes_{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
   double edge_;  // m, longest of a flat triangle
   Rows bound_;
 };
