@@ -105,6 +105,32 @@ TEST(CliRun, WritesTheReportToAPipe) {
   EXPECT_EQ(Json::parse(outcome.err)["frames"], 1);
 }
 
+TEST(CliRun, ASimulationThatStopsItselfSaysWhereAndKeepsWhatIsGood) {
+  const Folder folder;
+  small_scene(folder);
+  // A sheet that falls for ever leaves the space in which positions mean anything.
+  const Outcome outcome = run_weft(folder,
+                                   "run small.json --set /cloths/0/pins=[] --set "
+                                   "/gravity=[0,-10000,0] --frames 1000000 --export a.pc2 "
+                                   "--dump d.f64 --report r.json",
+                                   "timeout 60");
+  EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("weft: error: small.json: the simulation stopped itself: "))
+      << outcome.err;
+  for (const char* part : {"frame ", "stage ", "particle "}) {
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  }
+  const Json report = Json::parse(folder.read("r.json"));
+  EXPECT_NE(report["status"], "ok");
+  EXPECT_EQ(report["finite"], false);
+  // The animation ends with the last good frame: the start and every frame that was completed.
+  const std::string animation = folder.read("a.pc2");
+  const auto frames = report["frames"].get<std::size_t>();
+  EXPECT_EQ(animation.size(), 32U + (frames + 1) * 48 * 12);
+  EXPECT_FALSE(folder.has("d.f64"));
+  EXPECT_EQ(folder.files(), 3U);
+}
+
 TEST(CliRun, AnInterruptKeepsWhatWasDone) {
   const Folder folder;
   small_scene(folder);

@@ -130,12 +130,6 @@ std::int64_t frame_count(const RunArguments& arguments, const Time& time) {
   return std::llround(arguments.seconds.value_or(time.seconds) / time.frame);
 }
 
-std::string stop_text(const Status& status) {
-  return "the simulation stopped itself in frame " + std::to_string(status.frame) + ", stage " +
-         status.stage + ", particle (" + std::to_string(status.i) + "," + std::to_string(status.j) +
-         ") of cloth " + std::to_string(status.cloth) + ": " + status.text;
-}
-
 int run(const RunArguments& arguments) {
   const LoadedScene loaded = load(arguments.scene);
   const std::int64_t frames = frame_count(arguments, loaded.scene.time);
@@ -164,7 +158,8 @@ int run(const RunArguments& arguments) {
   files.finish(simulation, report);
   std::cout << summary(report, files.written());
   if (!simulation.status().ok) {
-    throw Failure{kStopped, {{loaded.path, stop_text(simulation.status()), ""}}};
+    const std::string why = "the simulation stopped itself: " + simulation.status().text;
+    throw Failure{kStopped, {{loaded.path, why, ""}}};
   }
   if (cut_short) {
     std::cerr << "weft: " << report.status.text << " of " << frames << "\n";

@@ -10,6 +10,18 @@ namespace {
 Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+// The force of a spring along e, and its damping against dv, on both of its ends.
+void add_spring(const Family& f, double k, const Vec3& e, const Vec3& dv, Vec3& near, Vec3& far) {
+  const double length = std::sqrt(dot(e, e));
+  if (length == 0) return;
+  const double damping = f.damping * (f.stiffness > 0 ? k / f.stiffness : 1);
+  const double scale = k * (1 - f.rest / length) + damping * dot(e, dv) / (length * length);
+  for (int c = 0; c < 3; ++c) {
+    near[c] += scale * e[c];
+    far[c] -= scale * e[c];
+  }
+}
+
 }  // namespace
 
 std::vector<Vec3> gather(const Lattice& l, const Rows& rows) {
@@ -38,35 +50,37 @@ std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Family>& f
   std::vector<Vec3> force(x.size(), Vec3{});
   for (const Family& f : families)
     for_each_constraint(cloth, f, [&](int a, int b, double k) {
-      const Vec3 e = minus(x[b], x[a]);
-      const double length = std::sqrt(dot(e, e));
-      if (length == 0) return;
-      double scale = k * (1 - f.rest / length);
-      if (v) {
-        const double damping = f.damping * (f.stiffness > 0 ? k / f.stiffness : 1);
-        scale += damping * dot(e, minus((*v)[b], (*v)[a])) / (length * length);
-      }
-      for (int c = 0; c < 3; ++c) {
-        force[a][c] += scale * e[c];
-        force[b][c] -= scale * e[c];
-      }
+      const Vec3 dv = v ? minus((*v)[b], (*v)[a]) : Vec3{};
+      add_spring(f, k, minus(x[b], x[a]), dv, force[a], force[b]);
     });
   return force;
 }
 
-std::vector<Vec3> accelerations(const Scene& scene, const Cloth& cloth,
-                                const std::vector<Family>& families, const Lattice& l,
-                                bool damped) {
-  const std::vector<Vec3> x = gather(l, l.x);
-  const std::vector<Vec3> v = damped ? gather(l, l.v) : std::vector<Vec3>{};
-  std::vector<Vec3> a = spring_forces(cloth, families, x, damped ? &v : nullptr);
+void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Family>& families,
+                   const Lattice& l, bool damped, std::vector<Vec3>& a) {
+  a.assign(std::size_t(l.columns) * l.rows, Vec3{});
+  for (const Family& f : families)
+    for (int j = 0; j + f.dj < l.rows; ++j) {
+      const double k = f.stiffness * gradient_factor(cloth, j, f.dj);
+      for (int n = 0; n < f.per_row(l.columns); ++n) {
+        const int near = n + f.near(), far = n + f.far();
+        const auto difference = [&](const Rows& rows) {
+          Vec3 d;
+          for (int c = 0; c < 3; ++c)
+            d[c] = double(rows.at(c, j + f.dj, far)) - rows.at(c, j, near);
+          return d;
+        };
+        add_spring(f, k, difference(l.x), damped ? difference(l.v) : Vec3{},
+                   a[std::size_t(j) * l.columns + near],
+                   a[std::size_t(j + f.dj) * l.columns + far]);
+      }
+    }
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i) {
       const double w = l.w(j, i);
       Vec3& f = a[std::size_t(j) * l.columns + i];
       for (int c = 0; c < 3; ++c) f[c] = w > 0 ? f[c] * w + scene.gravity[c] : 0;
     }
-  return a;
 }
 
 Strain structural_strain(const Cloth& cloth, const std::vector<Family>& families,

@@ -40,7 +40,8 @@ Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bo
       const double a = i / double(g.nx - 1), b = j / double(g.ny - 1);
       const double off = g.jitter > 0 ? g.jitter * random.symmetric() : 0;
       for (int k = 0; k < 3; ++k)
-        l.x.at(k, j, i) = float(g.origin[k] + g.u[k] * a + g.v[k] * b + normal[k] * off);
+        // + 0: no particle starts at -0, so none ever gets there, and adding 0 changes no bits.
+        l.x.at(k, j, i) = float(g.origin[k] + g.u[k] * a + g.v[k] * b + normal[k] * off) + 0.0f;
       l.w(j)[i] = float(1 / particle_mass(cloth, i, j));
     }
   }

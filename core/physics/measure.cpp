@@ -127,9 +127,9 @@ std::vector<Vec3> velocities_now(const Simulation::State& s, std::size_t index) 
   const ClothStep& step = *s.cloths[index];
   std::vector<Vec3> v = gather(step.lattice(), step.lattice().v);
   if (!is_explicit(s.method)) return v;
-  const std::vector<Vec3> a =
-      accelerations(s.scene, step.cloth(), step.families(), step.lattice(),
-                    s.method == Method::spring_friction);
+  std::vector<Vec3> a;
+  accelerations(s.scene, step.cloth(), step.families(), step.lattice(),
+                s.method == Method::spring_friction, a);
   for (std::size_t p = 0; p < v.size(); ++p)
     for (int k = 0; k < 3; ++k) v[p][k] += a[p][k] * s.dt / 2;
   return v;

@@ -45,6 +45,9 @@ void Passes::run(double time, double dt, int count, Threads& threads) {
     for (Pass& p : passes_) p.wavefront->run(time, dt, count, threads);
     return;
   }
+  for (Pass& p : passes_)
+    if (p.whole && dt != prepared_dt_) p.whole->prepare(dt);
+  prepared_dt_ = dt;
   for (int s = 0; s < count; ++s) {
     const Substep substep{dt, time + (s + 1) * dt, 0};
     for (Pass& p : passes_) {

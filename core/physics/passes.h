@@ -35,6 +35,7 @@ class Passes {
   };
   std::vector<Pass> passes_;
   std::size_t whole_stages_ = 0;
+  double prepared_dt_ = 0;
   std::span<std::atomic<std::int64_t>> profile_;
 };
 

@@ -17,6 +17,7 @@ struct Substep {
   int slot = 0;             // which of a stage's carried buffers this substep uses
 };
 
+// One stage of the plan.
 class Stage {
  public:
   Stage(std::string stage_name, std::string stage_detail, std::int64_t touched,
@@ -29,6 +30,8 @@ class Stage {
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
+  // Called before substeps of a new length.
+  virtual void prepare(double dt) { (void)dt; }
   // The whole stage at once, for those who look between two stages.
   virtual void run_alone(int rows, const Substep& substep, Threads& threads) = 0;
   // Forgets what it keeps from one substep to the next: the state was set from outside.
@@ -43,9 +46,9 @@ class Stage {
 
 using Stages = std::vector<std::unique_ptr<Stage>>;
 
-// Works on one row after another: run(j) may read and write rows j … j+reach of the lattice, and
-// must be called for j = 0, 1, 2 … It may carry data from row to row in buffers of its own, one set
-// per slot.
+// Works on one row after another: work on row j may read and write rows j … j+reach of the lattice,
+// and comes in the order j = 0, 1, 2 … within a substep. A stage may carry data from row to row in
+// buffers of its own, one set per slot. It overrides run for one row, or for a range of rows.
 class RowStage : public Stage {
  public:
   RowStage(std::string stage_name, std::string stage_detail, int rows_reached,
@@ -53,13 +56,17 @@ class RowStage : public Stage {
       : Stage(std::move(stage_name), std::move(stage_detail), touched, std::move(touched_item)),
         reach(rows_reached) {}
 
-  virtual void run(int row, const Substep& substep) = 0;
+  virtual void run(int row, const Substep& substep) { run(row, row + 1, substep); }
+  virtual void run(int begin, int end, const Substep& substep) {
+    for (int j = begin; j < end; ++j) run(j, substep);
+  }
   // Makes room for substeps of slots 0 … slots-1.
   virtual void reserve_slots(int slots) { (void)slots; }
 
   void run_alone(int rows, const Substep& substep, Threads&) final {
     reserve_slots(1);
-    for (int j = 0; j < rows; ++j) run(j, substep);
+    prepare(substep.dt);
+    run(0, rows, substep);
   }
 
   const int reach;
@@ -71,7 +78,10 @@ class WholeStage : public Stage {
  public:
   using Stage::Stage;
   virtual void run(const Substep& substep, Threads& threads) = 0;
-  void run_alone(int, const Substep& substep, Threads& threads) final { run(substep, threads); }
+  void run_alone(int, const Substep& substep, Threads& threads) final {
+    prepare(substep.dt);
+    run(substep, threads);
+  }
 };
 
 }  // namespace weft::physics

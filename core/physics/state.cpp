@@ -99,17 +99,23 @@ void Simulation::State::choose_method_and_substeps() {
   if (is_explicit(method)) shift_velocities(-dt / 2);
 }
 
-// v <- v + a·by: velocities of explicit springs lie half a substep behind the positions.
-void Simulation::State::shift_velocities(double by) {
+// v <- v + a·by: velocities of explicit springs lie half a substep behind the positions. `from`
+// gives all velocities in double in place of v, so that what velocities() told comes back exactly.
+void Simulation::State::shift_velocities(double by, const double* from) {
   for (auto& step : cloths) {
     Lattice& l = step->lattice();
-    const std::vector<Vec3> a = accelerations(scene, step->cloth(), step->families(), l,
-                                              method == Method::spring_friction);
+    std::vector<Vec3>& a = accelerations_;
+    accelerations(scene, step->cloth(), step->families(), l, method == Method::spring_friction, a);
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i)
-        for (int c = 0; c < 3; ++c)
-          l.v.at(c, j, i) += float(a[std::size_t(j) * l.columns + i][c] * by);
+        for (int c = 0; c < 3; ++c) {
+          float& v = l.v.at(c, j, i);
+          const double start = from && l.w(j, i) > 0 ? *from : v;
+          v = float(start + a[std::size_t(j) * l.columns + i][c] * by);
+          if (from) ++from;
+        }
   }
+  if (scene.time.substeps != kAutoSubsteps) accelerations_ = {};
 }
 
 void Simulation::State::set_substeps(int count) {
@@ -137,7 +143,11 @@ void Simulation::State::advance_frame() {
   if (is_explicit(method) && scene.time.substeps == kAutoSubsteps) follow_stretch();
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   total_ms += spent.count();
-  frame_ms.push_back(float(spent.count()));
+  // A run longer than the scene says keeps the times of its last frames.
+  if (frame_ms.size() < frame_ms.capacity())
+    frame_ms.push_back(float(spent.count()));
+  else
+    frame_ms[std::size_t(frame) % frame_ms.size()] = float(spent.count());
 }
 
 void Simulation::State::run_frame() {
@@ -203,7 +213,7 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
   }
   for (auto& step : cloths)
     for (const auto& stage : step->stages()) stage->restart();
-  if (is_explicit(method)) shift_velocities(-dt / 2);
+  if (is_explicit(method)) shift_velocities(-dt / 2, velocities.data());
   ++changes;
 }
 
@@ -222,7 +232,7 @@ void Simulation::State::restore() {
 }
 
 std::size_t Simulation::State::backup_bytes() const {
-  std::size_t bytes = 0;
+  std::size_t bytes = accelerations_.capacity() * sizeof(Vec3);
   for (const Backup& b : backups_) bytes += b.x.bytes() + b.v.bytes();
   return bytes;
 }

@@ -43,11 +43,12 @@ struct Simulation::State {
     physics::Rows x, v;
   };
   std::vector<Backup> backups_;
+  std::vector<Vec3> accelerations_;  // of one cloth, kept where automatic substeps change (explicit)
 
   void choose_method_and_substeps();
   void build_cloths();
   void set_substeps(int count);
-  void shift_velocities(double by_dt);
+  void shift_velocities(double by, const double* from = nullptr);
   void follow_stretch();
   void run_frame();
   void save();

@@ -65,6 +65,9 @@ void Wavefront::choose_tiles(int count, int threads) {
 
 void Wavefront::run(double time, double dt, int count, Threads& threads) {
   choose_tiles(count, threads.count());
+  if (dt != prepared_dt_)
+    for (RowStage* s : stages_) s->prepare(dt);
+  prepared_dt_ = dt;
   const Run r{time, dt, count, (count + chunk_substeps_ - 1) / chunk_substeps_};
   if (const int slots = chunk_substeps_ * ring_; slots > slots_) {
     for (RowStage* s : stages_) s->reserve_slots(slots);
@@ -88,11 +91,11 @@ void Wavefront::run_tile(const Run& r, int tile, int chunk) const {
       if (begin >= end) continue;
       RowStage& stage = *stages_[q];
       if (profile_.empty()) {
-        for (int j = begin; j < end; ++j) stage.run(j, substep);
+        stage.run(begin, end, substep);
         continue;
       }
       const auto before = std::chrono::steady_clock::now();
-      for (int j = begin; j < end; ++j) stage.run(j, substep);
+      stage.run(begin, end, substep);
       const auto spent = std::chrono::steady_clock::now() - before;
       profile_[q] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
     }

@@ -43,16 +43,19 @@ struct Advance {
   float gx, gy, gz;      // velocity gained from gravity in one substep [m/s]
 };
 
-// The six families of a plain cloth at once, and the leapfrog step. Row j is finished, the forces it
-// exerts on rows j+1 and j+2 are carried to the calls for those.
-struct SpringRow {
-  int columns;
-  Row3 x, v;             // row j
-  const float* w;        // inverse mass of row j [1/kg]
-  ConstRow3 below, below2;  // rows j+1 and j+2 (any row where there is none, with k = 0)
-  Row3 carry;            // in: force row j-1 exerted on row j, negated; out: row j on row j+1
-  Row3 carry2;           // the same from row j-2, to row j+2
-  SpringConstants right, right2, down, down2, diagonal, antidiagonal;  // (1,0) (2,0) (0,1) (0,2) (1,1) (-1,1)
+// The six families of a plain cloth at once, and the leapfrog step, for rows begin … end-1. Row j is
+// finished, and the forces it exerts on rows j+1 and j+2 are carried to those; calls for successive
+// ranges of rows carry on from each other.
+inline constexpr int kPlainFamilies = 6;
+struct SpringRows {
+  int begin, end, rows;
+  int columns, stride;
+  Row3 x, v;       // row 0
+  const float* w;  // inverse mass of row 0 [1/kg]
+  // Negated forces of earlier rows: of row j-1 on row j, and of row j-2 on rows j even and odd.
+  Row3 carry[3];
+  // Six for each row: (1,0) (0,1) (1,1) (-1,1) (2,0) (0,2); zero where row j+dj does not exist.
+  const SpringConstants* springs;
   Advance advance;
 };
 
@@ -72,16 +75,23 @@ struct FamilyRow {
   SpringConstants spring;
 };
 
-// Constants of a projected family: C = |e| - rest, Δλ = -(C + compliance λ)/(w_a + w_b + compliance).
-struct ProjectRow {
-  FamilyRow rows;
-  const std::int32_t* lanes;  // same_row: -1 in the lanes of this colour, 0 elsewhere
-  float rest;                 // m
-  float compliance;           // 1/(k dt²) [1/kg]; 0 = rigid
+// One family of projected constraints in rows begin … end-1. Which of the optional parts are given
+// picks the rule: a strain limit (inverse_dt > 0), compliance with multipliers, compliance alone, or
+// rigid constraints.
+struct ProjectRows {
+  int begin, end, rows;
+  int stride;
+  Row3 x, v;       // row 0; v is used by the strain limit only
+  const float* w;  // inverse mass of row 0 [1/kg]
+  int count;       // constraints in a row: a joins lane a+near of row j and lane a+far of row j+dj
+  int near, far, dj;
+  int colour;                 // between rows: those with j/dj % 2 == colour
+  const std::int32_t* lanes;  // along rows: -1 in the lanes of a colour, 0 elsewhere; both colours
+  float rest;                 // m; the strain limit's greatest length
   float share;                // factor on the correction (2 positional_k, Jacobi's relaxation)
-  float* lambda;              // multipliers of this row, null for a single sweep [kg·m]
-  float limit;                // > 0: one-sided, nothing happens below this length [m]
-  float inverse_dt;           // > 0: add the change of position over dt to the velocity
+  const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
+  float* lambda;              // multipliers of row 0 [kg·m], or null
+  float inverse_dt;           // > 0: one-sided; the change of position goes into the velocity too
 };
 
 struct AdvanceRow {
@@ -134,18 +144,38 @@ struct RowReach {
 // Shapes and responses, in the order of weft::Shape and weft::FrictionModel.
 inline constexpr int kShapes = 4, kFrictionModels = 2;
 
+// The particles of one cell against those of the 27 cells about it, gathered in one run.
+struct NearCell {
+  ConstRow3 members;          // of the cell
+  int member_count;
+  ConstRow3 candidates;       // padded to whole groups of 16 by particles far away
+  int candidate_count;        // without the padding
+  float range_squared;        // m²
+  std::int32_t* counts;       // per member: how many candidates are in range, itself included
+  std::int32_t* hits;         // their numbers, member after member, ascending
+};
+
+// Least and greatest of some values, component by component.
+struct Spread {
+  float low[3], high[3];
+};
+
 struct KernelTable {
-  void (*spring_row)(const SpringRow&);
+  void (*spring_rows)(const SpringRows&);
   void (*spring_family)(const FamilyRow&);          // f += spring force
   void (*damped_spring_family)(const FamilyRow&);   // f += spring force and damping along it
   void (*integrate)(const AdvanceRow&);             // leapfrog step from f, then f <- 0
   void (*predict)(const AdvanceRow&);               // previous <- x, v and x advanced by gravity
   void (*velocity)(const AdvanceRow&);              // v <- (x - previous)/dt
-  void (*project)(const ProjectRow&);               // Gauss-Seidel: one family, one colour, in place
-  void (*project_jacobi)(const ProjectRow&);        // Jacobi: corrections added up in f
+  void (*project)(const ProjectRows&);              // Gauss-Seidel, in place
+  // Jacobi: the corrections of one row's constraints added to the sums of rows j and j+dj
+  void (*project_jacobi)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
   void (*apply_corrections)(const AdvanceRow&);     // x += f, f <- 0
   RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
   RowReach (*below_faces[kShapes])(const FacesRow&);
+  int (*near_pairs)(const NearCell&);               // returns the number of hits
+  // Widens `spread` by the differences a - b of a row (b null: by a).
+  void (*spread)(ConstRow3 a, ConstRow3 b, int columns, Spread& spread);
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

@@ -13,11 +13,11 @@ using physics::CollideRow;
 using physics::ConstRow3;
 using physics::FacesRow;
 using physics::FamilyRow;
-using physics::ProjectRow;
+using physics::ProjectRows;
 using physics::Row3;
 using physics::RowReach;
 using physics::SpringConstants;
-using physics::SpringRow;
+using physics::SpringRows;
 
 WEFT_INLINE Wide3 load3(ConstRow3 r, int i) { return {load(r.x + i), load(r.y + i), load(r.z + i)}; }
 WEFT_INLINE void store3(Row3 r, int i, Wide3 v) {
@@ -25,6 +25,26 @@ WEFT_INLINE void store3(Row3 r, int i, Wide3 v) {
   store(r.y + i, v.y);
   store(r.z + i, v.z);
 }
+
+// Delay3<N> for any N up to 16 known only at run time: through a buffer that holds the lanes before.
+class LongDelay3 {
+ public:
+  explicit LongDelay3(int lanes) : lanes_(lanes) {}
+  WEFT_INLINE Wide3 next(Wide3 block) {
+    store3({x_ + 16, y_ + 16, z_ + 16}, 0, block);
+    const Wide3 delayed = load3(ConstRow3(x_, y_, z_), 16 - lanes_);
+    for (int i = 0; i < 16; ++i) {
+      x_[i] = x_[i + kLanes];
+      y_[i] = y_[i + kLanes];
+      z_[i] = z_[i + kLanes];
+    }
+    return delayed;
+  }
+
+ private:
+  int lanes_;
+  alignas(64) float x_[32] = {}, y_[32] = {}, z_[32] = {};
+};
 
 // Rows are worked through in whole groups of 16 lanes at every width, so that lanes past the end see
 // the same operations whatever the instruction set.
@@ -42,15 +62,18 @@ WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const 
   store3(x, i, load3(x, i) + velocity * wide(a.dt));
 }
 
-void spring_row(const SpringRow&);
+void spring_rows(const SpringRows&);
 void spring_family(const FamilyRow&);
 void damped_spring_family(const FamilyRow&);
 void integrate(const AdvanceRow&);
 void predict(const AdvanceRow&);
 void velocity(const AdvanceRow&);
-void project(const ProjectRow&);
-void project_jacobi(const ProjectRow&);
+void project(const ProjectRows&);
+void project_jacobi(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
 void apply_corrections(const AdvanceRow&);
+
+int near_pairs(const physics::NearCell&);
+void spread(ConstRow3 a, ConstRow3 b, int columns, physics::Spread&);
 
 // A collider's kernels: its own file in colliders/ defines them by WEFT_COLLIDER (collide.h).
 struct ColliderKernels {

@@ -5,6 +5,8 @@
 //
 // (seed 000, "Spring or Physical constraint" and "Verlet's Step", with the velocity kept in place of
 // the previous position: the same method, without the rounding of x - x_previous.)
+#include <cstddef>
+
 #include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
@@ -28,23 +30,49 @@ WEFT_INLINE void pin_order(Wide3& v) {
   pin_order(v.z);
 }
 
-enum Family { kRight, kRight2, kDown, kDiagonal, kAntidiagonal, kDown2, kFamilies };
+enum Family { kRight, kDown, kDiagonal, kAntidiagonal, kRight2, kDown2, kFamilies };
+static_assert(kFamilies == physics::kPlainFamilies);
 
-// The state of the fused kernel for one block of lanes. Each of the six springs passes four
-// stations: square (edge and squared length), root, reciprocal, force. Stations of different springs
-// are interleaved, and force runs one block behind square, so that the divider always has work and
-// no result is waited for.
+// One row as the fused kernel sees it.
+struct RowView {
+  Row3 x, v, carry, carry2;
+  ConstRow3 below, below2;
+  const float* w;
+  const SpringConstants* springs;
+};
+
+RowView view_row(const SpringRows& s, int j) {
+  const auto row = [&](Row3 r, int k) {
+    const std::ptrdiff_t at = std::ptrdiff_t(k < s.rows ? k : s.rows - 1) * s.stride;
+    return Row3{r.x + at, r.y + at, r.z + at};
+  };
+  RowView view;
+  view.x = row(s.x, j);
+  view.v = row(s.v, j);
+  view.below = row(s.x, j + 1);
+  view.below2 = row(s.x, j + 2);
+  view.w = s.w + std::ptrdiff_t(j) * s.stride;
+  view.carry = s.carry[0];
+  view.carry2 = s.carry[1 + j % 2];
+  view.springs = s.springs + std::ptrdiff_t(j) * kFamilies;
+  return view;
+}
+
+// The fused kernel works block by block, row after row. Each of the six springs of a block passes
+// four stations: square (edge and squared length), root, quotient (k l/|e|) and force. Stations of
+// different springs are interleaved, with force four springs behind square, so that the divider
+// always has work and nothing waits for it: the order of the statements is the schedule.
+//
+// The delays need no reset between rows: past a row's last spring they hold zeros.
 struct Pipeline {
-  const SpringRow& row;
   Wide3 edge[kFamilies];
-  Wide length[kFamilies];  // squared length, then length, then its reciprocal
-  Wide3 own, below;        // force on row j, and on row j+1 (negated), of the block in `force`
+  Wide length[kFamilies];  // squared length, then length, then k l/|e|
+  Wide3 own, below;        // force on the block in `force`, and on the row below it (negated)
   Delay3<1> right, diagonal, antidiagonal;
   Delay3<2> right2;
 
   template <Family F>
-  WEFT_INLINE void square(int i) {
-    const SpringRow& r = row;
+  WEFT_INLINE void square(const RowView& r, int i) {
     const Wide3 near = load3(r.x, F == kAntidiagonal ? i + 1 : i);
     Wide3 far;
     if constexpr (F == kRight) far = load3(r.x, i + 1);
@@ -62,123 +90,131 @@ struct Pipeline {
     pin_order(length[F]);
   }
   template <Family F>
-  WEFT_INLINE void reciprocal() {
-    length[F] = 1.0f / length[F];
+  WEFT_INLINE void quotient(const RowView& r) {
+    length[F] = r.springs[F].kl / length[F];
     pin_order(length[F]);
   }
   // Force of family F on its near end; lanes past the last spring of the row are zero.
   template <Family F, bool kLast>
-  WEFT_INLINE Wide3 spring(int i) const {
-    const SpringRow& r = row;
-    const SpringConstants& c = F == kRight      ? r.right
-                               : F == kRight2   ? r.right2
-                               : F == kDown     ? r.down
-                               : F == kDiagonal ? r.diagonal
-                               : F == kDown2    ? r.down2
-                                                : r.antidiagonal;
-    const Wide3 f = edge[F] * (c.k - c.kl * length[F]);
+  WEFT_INLINE Wide3 spring(const RowView& r, int columns, int i) const {
+    const Wide3 f = edge[F] * (r.springs[F].k - length[F]);
     if constexpr (!kLast || F == kDown || F == kDown2) return f;
-    return select(lanes_below(r.columns - (F == kRight2 ? 2 : 1) - i), f, Wide3{});
+    return select(lanes_below(columns - (F == kRight2 ? 2 : 1) - i), f, Wide3{});
   }
 
   template <bool kLast>
-  WEFT_INLINE void force_right(int i) {
-    const Wide3 f = spring<kRight, kLast>(i);
+  WEFT_INLINE void force_right(const RowView& r, int columns, int i) {
+    const Wide3 f = spring<kRight, kLast>(r, columns, i);
     own = f - right.next(f);
     pin_order(own);
   }
   template <bool kLast>
-  WEFT_INLINE void force_right2(int i) {
-    const Wide3 f = spring<kRight2, kLast>(i);
+  WEFT_INLINE void force_right2(const RowView& r, int columns, int i) {
+    const Wide3 f = spring<kRight2, kLast>(r, columns, i);
     own = own + (f - right2.next(f));
     pin_order(own);
   }
   template <bool kLast>
-  WEFT_INLINE void force_down(int i) {
-    below = spring<kDown, kLast>(i);
+  WEFT_INLINE void force_down(const RowView& r, int columns, int i) {
+    below = spring<kDown, kLast>(r, columns, i);
     own = own + below;
     pin_order(own);
   }
   template <bool kLast>
-  WEFT_INLINE void force_diagonal(int i) {
-    const Wide3 f = spring<kDiagonal, kLast>(i);
+  WEFT_INLINE void force_diagonal(const RowView& r, int columns, int i) {
+    const Wide3 f = spring<kDiagonal, kLast>(r, columns, i);
     own = own + f;
     below = below + diagonal.next(f);
     pin_order(own);
     pin_order(below);
   }
   template <bool kLast>
-  WEFT_INLINE void force_antidiagonal(int i) {
-    const Wide3 f = spring<kAntidiagonal, kLast>(i);
+  WEFT_INLINE void force_antidiagonal(const RowView& r, int columns, int i) {
+    const Wide3 f = spring<kAntidiagonal, kLast>(r, columns, i);
     below = below + f;
-    own = own + antidiagonal.next(f) - load3(row.carry, i);
-    store3(row.carry, i, below);
+    own = own + antidiagonal.next(f) - load3(r.carry, i);
+    store3(r.carry, i, below);
     pin_order(own);
   }
   template <bool kLast>
-  WEFT_INLINE void force_down2(int i) {
-    const Wide3 f = spring<kDown2, kLast>(i);
-    own = own + (f - load3(row.carry2, i));
-    store3(row.carry2, i, f);
+  WEFT_INLINE void force_down2(const RowView& r, int columns, int i) {
+    const Wide3 f = spring<kDown2, kLast>(r, columns, i);
+    own = own + (f - load3(r.carry2, i));
+    store3(r.carry2, i, f);
     pin_order(own);
-  }
-
-  // Squares block i while block i - kLanes gets its forces and moves.
-  template <bool kBefore, bool kLast>
-  WEFT_INLINE void turn(int i) {
-    const int h = i - kLanes;
-    if constexpr (kBefore) force_right<kLast>(h);
-    square<kRight>(i);
-    if constexpr (kBefore) reciprocal<kAntidiagonal>();
-    if constexpr (kBefore) force_right2<kLast>(h);
-    square<kRight2>(i);
-    root<kRight>();
-    if constexpr (kBefore) reciprocal<kDown2>();
-    if constexpr (kBefore) force_down<kLast>(h);
-    square<kDown>(i);
-    root<kRight2>();
-    reciprocal<kRight>();
-    if constexpr (kBefore) force_diagonal<kLast>(h);
-    square<kDiagonal>(i);
-    root<kDown>();
-    reciprocal<kRight2>();
-    if constexpr (kBefore) force_antidiagonal<kLast>(h);
-    square<kAntidiagonal>(i);
-    root<kDiagonal>();
-    reciprocal<kDown>();
-    if constexpr (kBefore) force_down2<kLast>(h);
-    const Wide3 f = own;
-    square<kDown2>(i);
-    root<kAntidiagonal>();
-    reciprocal<kDiagonal>();
-    if constexpr (kBefore) move(row.x, row.v, row.w, f, row.advance, h);
-    root<kDown2>();
-  }
-
-  WEFT_INLINE void finish(int h) {
-    reciprocal<kAntidiagonal>();
-    reciprocal<kDown2>();
-    force_right<true>(h);
-    force_right2<true>(h);
-    force_down<true>(h);
-    force_diagonal<true>(h);
-    force_antidiagonal<true>(h);
-    force_down2<true>(h);
-    move(row.x, row.v, row.w, own, row.advance, h);
   }
 };
 
+// Where a block lies.
+struct Block {
+  RowView row;
+  int i;
+};
+
+// Squares block b and gives it its first two forces, while the block before, a, gets the other four
+// and moves. a_last and b_last: the row's last spring to the right lies in or before the block.
+template <bool kA, bool kALast, bool kB, bool kBLast>
+WEFT_INLINE void turn(Pipeline& p, const Block& a, const Block& b, const SpringRows& s) {
+  const int n = s.columns;
+  if constexpr (kA) p.quotient<kDiagonal>(a.row);
+  if constexpr (kB) p.square<kRight>(b.row, b.i);
+  if constexpr (kA) p.root<kDown2>();
+  if constexpr (kA) p.force_down<kALast>(a.row, n, a.i);
+  if constexpr (kA) p.quotient<kAntidiagonal>(a.row);
+  if constexpr (kB) p.square<kRight2>(b.row, b.i);
+  if constexpr (kB) p.root<kRight>();
+  if constexpr (kA) p.force_diagonal<kALast>(a.row, n, a.i);
+  if constexpr (kA) p.quotient<kDown2>(a.row);
+  if constexpr (kB) p.square<kDown>(b.row, b.i);
+  if constexpr (kB) p.root<kRight2>();
+  if constexpr (kA) p.force_antidiagonal<kALast>(a.row, n, a.i);
+  if constexpr (kB) p.quotient<kRight>(b.row);
+  if constexpr (kB) p.square<kDiagonal>(b.row, b.i);
+  if constexpr (kB) p.root<kDown>();
+  if constexpr (kA) p.force_down2<kALast>(a.row, n, a.i);
+  if constexpr (kA) move(a.row.x, a.row.v, a.row.w, p.own, s.advance, a.i);
+  if constexpr (kB) p.quotient<kRight2>(b.row);
+  if constexpr (kB) p.square<kAntidiagonal>(b.row, b.i);
+  if constexpr (kB) p.root<kDiagonal>();
+  if constexpr (kB) p.force_right<kBLast>(b.row, n, b.i);
+  if constexpr (kB) p.quotient<kDown>(b.row);
+  if constexpr (kB) p.square<kDown2>(b.row, b.i);
+  if constexpr (kB) p.root<kAntidiagonal>();
+  if constexpr (kB) p.force_right2<kBLast>(b.row, n, b.i);
+}
+
 }  // namespace
 
-void spring_row(const SpringRow& given) {
-  const SpringRow row = given;
-  Pipeline p{row, {}, {}, {}, {}, {}, {}, {}, {}};
-  p.turn<false, false>(0);
-  int i = kLanes;
-  // A block is whole when its springs two to the right all exist.
-  for (; i + 2 <= row.columns; i += kLanes) p.turn<true, false>(i);
-  for (; i < row.columns; i += kLanes) p.turn<true, true>(i);
-  p.finish(i - kLanes);
+void spring_rows(const SpringRows& given) {
+  const SpringRows s = given;
+  // A block is whole when all its springs two to the right exist.
+  const auto last = [&](const Block& b) { return b.i + kLanes + 2 > s.columns; };
+  Pipeline p{};
+  Block a{view_row(s, s.begin), 0}, b = a;
+  if (last(a))
+    turn<false, false, true, true>(p, a, a, s);
+  else
+    turn<false, false, true, false>(p, a, a, s);
+  for (int j = s.begin; j < s.end; ++j) {
+    if (j > s.begin) b = {view_row(s, j), 0};
+    int i = j > s.begin ? 0 : kLanes;
+    for (; i < s.columns; i += kLanes) {
+      b.i = i;
+      if (last(b)) {
+        if (last(a))
+          turn<true, true, true, true>(p, a, b, s);
+        else
+          turn<true, false, true, true>(p, a, b, s);
+      } else if (last(a)) {
+        turn<true, true, true, false>(p, a, b, s);
+      } else {
+        turn<true, false, true, false>(p, a, b, s);
+      }
+      if (i == 0) a.row = b.row;
+      a.i = i;
+    }
+  }
+  turn<true, true, false, false>(p, a, a, s);
 }
 
 namespace {

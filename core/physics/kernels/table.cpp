@@ -5,13 +5,15 @@ namespace weft::WEFT_KERNELS {
 
 extern const physics::KernelTable kTable;
 const physics::KernelTable kTable = {
-    spring_row,     spring_family, damped_spring_family, integrate, predict,
+    spring_rows,    spring_family, damped_spring_family, integrate, predict,
     velocity,       project,       project_jacobi,       apply_corrections,
     {{kSphere.collide[0], kSphere.collide[1]},
      {kPlane.collide[0], kPlane.collide[1]},
      {kCapsule.collide[0], kCapsule.collide[1]},
      {kBox.collide[0], kBox.collide[1]}},
     {kSphere.below_faces, kPlane.below_faces, kCapsule.below_faces, kBox.below_faces},
+    near_pairs,
+    spread,
 };
 
 }  // namespace weft::WEFT_KERNELS

@@ -51,19 +51,6 @@ WEFT_INLINE Wide sqrt(Wide v) { return Wide{__builtin_sqrtf(v[0])}; }
 WEFT_INLINE Wide min(Wide a, Wide b) { return select(a < b, a, b); }
 WEFT_INLINE Wide abs(Wide v) { return max(v, -v); }
 
-// Whether any lane of a comparison holds.
-WEFT_INLINE bool any(WideInt m) {
-#if WEFT_LANES == 16
-  return _mm512_test_epi32_mask((__m512i)m, (__m512i)m) != 0;
-#elif WEFT_LANES == 8
-  return _mm256_movemask_ps((__m256)m) != 0;
-#elif WEFT_LANES == 4
-  return _mm_movemask_ps((__m128)m) != 0;
-#else
-  return m[0] != 0;
-#endif
-}
-
 // The least and the greatest lane: exact, so the order does not matter.
 WEFT_INLINE float least(Wide v) {
   float r = v[0];
@@ -107,6 +94,32 @@ class Delay {
   static_assert(N < kLanes || kLanes == 1);
   Wide before_[N < kLanes ? 1 : N]{};
 };
+
+// Whether any lane of a mask is set.
+WEFT_INLINE bool any(WideInt mask) {
+#if WEFT_LANES == 16
+  return _mm512_movepi32_mask((__m512i)mask) != 0;
+#elif WEFT_LANES == 8
+  return _mm256_movemask_ps((__m256)mask) != 0;
+#elif WEFT_LANES == 4
+  return _mm_movemask_ps((__m128)mask) != 0;
+#else
+  return mask[0] != 0;
+#endif
+}
+
+// The lanes of a mask as bits, lane 0 lowest.
+WEFT_INLINE unsigned bits(WideInt mask) {
+#if WEFT_LANES == 16
+  return _mm512_movepi32_mask((__m512i)mask);
+#elif WEFT_LANES == 8
+  return unsigned(_mm256_movemask_ps((__m256)mask));
+#elif WEFT_LANES == 4
+  return unsigned(_mm_movemask_ps((__m128)mask));
+#else
+  return mask[0] != 0;
+#endif
+}
 
 struct Wide3 {
   Wide x, y, z;

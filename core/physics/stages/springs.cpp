@@ -14,33 +14,36 @@ class PlainSprings final : public RowStage {
   explicit PlainSprings(const ClothParts& parts)
       : RowStage("springs", "structural, shear and bend springs, leapfrog step", 2,
                  parts.constraints(), "constraints"),
-        parts_(parts) {}
+        parts_(parts),
+        springs_(std::size_t(parts.lattice.rows) * kPlainFamilies) {
+    for (int j = 0; j < parts.lattice.rows; ++j)
+      for (int f = 0; f < kPlainFamilies; ++f)
+        springs_[std::size_t(j) * kPlainFamilies + f] =
+            spring_constants(parts.cloth, parts.families[f], j);
+  }
 
   void reserve_slots(int slots) override { carry_ = Rows(3 * slots, parts_.lattice.stride); }
-  std::size_t bytes() const override { return carry_.bytes(); }
+  std::size_t bytes() const override {
+    return carry_.bytes() + springs_.size() * sizeof(SpringConstants);
+  }
+  void prepare(double dt) override { advance_ = advance_of(parts_, dt); }
 
-  void run(int j, const Substep& s) override {
+  void run(int begin, int end, const Substep& s) override {
     Lattice& l = parts_.lattice;
-    const std::vector<Family>& f = parts_.families;
-    const int below = std::min(j + 1, l.rows - 1), below2 = std::min(j + 2, l.rows - 1);
-    SpringRow r{};
+    if (begin == 0) clear(s.slot);
+    SpringRows r{};
+    r.begin = begin;
+    r.end = end;
+    r.rows = l.rows;
     r.columns = l.columns;
-    r.x = l.x.row(j);
-    r.v = l.v.row(j);
-    r.w = l.w(j);
-    r.below = l.x.row(below);
-    r.below2 = l.x.row(below2);
-    r.carry = carry_.row(3 * s.slot);
-    r.carry2 = carry_.row(3 * s.slot + 1 + j % 2);
-    if (j == 0) clear(s.slot);
-    r.right = spring_constants(parts_.cloth, f[0], j);
-    r.down = spring_constants(parts_.cloth, f[1], j);
-    r.diagonal = spring_constants(parts_.cloth, f[2], j);
-    r.antidiagonal = spring_constants(parts_.cloth, f[3], j);
-    r.right2 = spring_constants(parts_.cloth, f[4], j);
-    r.down2 = spring_constants(parts_.cloth, f[5], j);
-    r.advance = advance_of(parts_, s.dt);
-    parts_.kernels.spring_row(r);
+    r.stride = l.stride;
+    r.x = l.x.row(0);
+    r.v = l.v.row(0);
+    r.w = l.w(0);
+    for (int k = 0; k < 3; ++k) r.carry[k] = carry_.row(3 * s.slot + k);
+    r.springs = springs_.data();
+    r.advance = advance_;
+    parts_.kernels.spring_rows(r);
   }
 
  private:
@@ -52,6 +55,8 @@ class PlainSprings final : public RowStage {
   }
 
   ClothParts parts_;
+  std::vector<SpringConstants> springs_;
+  Advance advance_{};
   Rows carry_;
 };
 

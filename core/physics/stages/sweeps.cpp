@@ -10,30 +10,60 @@ namespace {
 
 constexpr int kColours = 2;
 
-// Compliance 1/(k dt²) [1/kg] of a family's constraints in row j.
-float compliance_of(const ClothParts& parts, const Family& f, int j, double dt) {
-  const double k = f.stiffness * gradient_factor(parts.cloth, j, f.dj);
-  return float(1 / (std::max(k, 1e-12) * dt * dt));
-}
-
-ProjectRow project_row(const ClothParts& parts, const SweepOptions& o, std::size_t index, int j,
-                       const Substep& s) {
-  const Family& f = parts.families[index];
-  ProjectRow p{};
-  p.rows = family_row(parts.lattice, f, j);
-  p.rest = float(f.rest);
-  p.share = 1;
-  if (o.limit > 0) {
-    p.limit = float(f.rest * (1 + o.limit));
-    p.inverse_dt = float(1 / s.dt);
-  } else if (o.compliant) {
-    p.compliance = compliance_of(parts, f, j, s.dt);
-    if (o.multipliers) p.lambda = o.multipliers->row(index, j);
-  } else {
-    p.share = float(2 * parts.cloth.positional_k);
+// One family of a sweep as its kernel takes it, with the compliance of every row.
+class ProjectedFamily {
+ public:
+  ProjectedFamily(const ClothParts& parts, const SweepOptions& options, std::size_t index)
+      : parts_(parts), options_(options), family_(parts.families[index]), index_(index) {
+    if (options.compliant) compliance_.resize(parts.lattice.rows);
   }
-  return p;
-}
+
+  const Family& family() const { return family_; }
+
+  void prepare(double dt) {
+    rows_ = {};
+    Lattice& l = parts_.lattice;
+    rows_.rows = l.rows;
+    rows_.stride = l.stride;
+    rows_.x = l.x.row(0);
+    rows_.v = l.v.row(0);
+    rows_.w = l.w(0);
+    rows_.count = family_.per_row(l.columns);
+    rows_.near = family_.near();
+    rows_.far = family_.far();
+    rows_.dj = family_.dj;
+    rows_.rest = float(family_.rest);
+    rows_.share = 1;
+    if (options_.limit > 0) {
+      rows_.rest = float(family_.rest * (1 + options_.limit));
+      rows_.inverse_dt = float(1 / dt);
+    } else if (options_.compliant) {
+      for (int j = 0; j < l.rows; ++j) {
+        const double k = family_.stiffness * gradient_factor(parts_.cloth, j, family_.dj);
+        compliance_[j] = float(1 / (std::max(k, 1e-12) * dt * dt));
+      }
+      rows_.compliance = compliance_.data();
+      if (options_.multipliers) rows_.lambda = options_.multipliers->row(index_, 0);
+    } else {
+      rows_.share = float(2 * parts_.cloth.positional_k);
+    }
+  }
+
+  ProjectRows rows(int begin, int end) const {
+    ProjectRows r = rows_;
+    r.begin = begin;
+    r.end = end;
+    return r;
+  }
+
+ private:
+  ClothParts parts_;
+  SweepOptions options_;
+  Family family_;
+  std::size_t index_;
+  std::vector<float> compliance_;
+  ProjectRows rows_{};
+};
 
 std::int64_t constraints_of(const ClothParts& parts, const Family& f) {
   return std::int64_t(f.per_row(parts.lattice.columns)) * (parts.lattice.rows - f.dj);
@@ -43,33 +73,30 @@ std::string offset_text(const Family& f) {
   return "(" + std::to_string(f.di) + "," + std::to_string(f.dj) + ")";
 }
 
-// Constraints along the rows: both colours of a row, one after the other.
+// Constraints along the rows, one colour after the other.
 class AlongRows final : public RowStage {
  public:
   AlongRows(const ClothParts& parts, const SweepOptions& options, std::size_t index,
             const std::string& name)
       : RowStage(name, "family " + offset_text(parts.families[index]), 0,
                  constraints_of(parts, parts.families[index]), "constraints"),
-        parts_(parts),
-        options_(options),
-        index_(index),
+        project_(parts.kernels.project),
+        family_(parts, options, index),
         lanes_(std::size_t(kColours) * parts.lattice.stride) {
-    const Family& f = parts.families[index];
+    const Family& f = family_.family();
     for (int a = 0; a < f.per_row(parts.lattice.columns); ++a)
       lanes_[std::size_t(a / f.di % kColours) * parts.lattice.stride + a] = -1;
   }
-  void run(int j, const Substep& s) override {
-    ProjectRow p = project_row(parts_, options_, index_, j, s);
-    for (int colour = 0; colour < kColours; ++colour) {
-      p.lanes = lanes_.data() + std::size_t(colour) * parts_.lattice.stride;
-      parts_.kernels.project(p);
-    }
+  void prepare(double dt) override { family_.prepare(dt); }
+  void run(int begin, int end, const Substep&) override {
+    ProjectRows p = family_.rows(begin, end);
+    p.lanes = lanes_.data();
+    project_(p);
   }
 
  private:
-  ClothParts parts_;
-  SweepOptions options_;
-  std::size_t index_;
+  void (*project_)(const ProjectRows&);
+  ProjectedFamily family_;
   AlignedArray<std::int32_t> lanes_;
 };
 
@@ -83,19 +110,19 @@ class BetweenRows final : public RowStage {
                      std::to_string(colour + 1),
                  parts.families[index].dj, constraints_of(parts, parts.families[index]) / kColours,
                  "constraints"),
-        parts_(parts),
-        options_(options),
-        index_(index),
+        project_(parts.kernels.project),
+        family_(parts, options, index),
         colour_(colour) {}
-  void run(int j, const Substep& s) override {
-    if (j / reach % kColours != colour_ || j + reach >= parts_.lattice.rows) return;
-    parts_.kernels.project(project_row(parts_, options_, index_, j, s));
+  void prepare(double dt) override { family_.prepare(dt); }
+  void run(int begin, int end, const Substep&) override {
+    ProjectRows p = family_.rows(begin, end);
+    p.colour = colour_;
+    project_(p);
   }
 
  private:
-  ClothParts parts_;
-  SweepOptions options_;
-  std::size_t index_;
+  void (*project_)(const ProjectRows&);
+  ProjectedFamily family_;
   int colour_;
 };
 
@@ -109,23 +136,26 @@ class Jacobi final : public RowStage {
   Jacobi(const ClothParts& parts, const SweepOptions& options, int reach)
       : RowStage("jacobi", "all families, corrections added up and relaxed", reach,
                  parts.constraints(), "constraints"),
-        parts_(parts),
-        options_(options) {}
+        parts_(parts) {
+    for (std::size_t f = 0; f < parts.families.size(); ++f)
+      families_.emplace_back(parts, options, f);
+  }
   void reserve_slots(int slots) override {
     sum_ = Rows((reach + 1) * slots, parts_.lattice.stride);
   }
   std::size_t bytes() const override { return sum_.bytes(); }
+  void prepare(double dt) override {
+    for (ProjectedFamily& f : families_) f.prepare(dt);
+  }
   void run(int j, const Substep& s) override {
     Lattice& l = parts_.lattice;
     const auto sum = [&](int row) { return sum_.row(s.slot * (reach + 1) + row % (reach + 1)); };
-    for (std::size_t index = 0; index < parts_.families.size(); ++index) {
-      const Family& f = parts_.families[index];
-      if (j + f.dj >= l.rows) continue;
-      ProjectRow p = project_row(parts_, options_, index, j, s);
-      p.rows.f = sum(j);
-      p.rows.f_far = sum(j + f.dj);
-      p.share *= relaxation(parts_.families.size());
-      parts_.kernels.project_jacobi(p);
+    for (const ProjectedFamily& f : families_) {
+      const int dj = f.family().dj;
+      if (j + dj >= l.rows) continue;
+      ProjectRows p = f.rows(j, j + 1);
+      p.share *= relaxation(families_.size());
+      parts_.kernels.project_jacobi(p, j, sum(j), sum(j + dj));
     }
     AdvanceRow a{};
     a.columns = l.columns;
@@ -136,7 +166,7 @@ class Jacobi final : public RowStage {
 
  private:
   ClothParts parts_;
-  SweepOptions options_;
+  std::vector<ProjectedFamily> families_;
   Rows sum_;  // reach+1 rows in turn per slot
 };
 
@@ -146,6 +176,8 @@ void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
                          Stages& stages) {
   const std::string name = options.limit > 0 ? "strain_limit" : "gauss_seidel";
   for (std::size_t index = 0; index < parts.families.size(); ++index) {
+    // Bend constraints join second neighbours; the limit is one on the cloth's own edges.
+    if (options.limit > 0 && parts.families[index].kind == Kind::bend) continue;
     if (parts.families[index].dj == 0) {
       stages.push_back(std::make_unique<AlongRows>(parts, options, index, name));
       continue;

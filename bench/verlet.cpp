@@ -1,0 +1,253 @@
+// Velocity Verlet in double precision (verlet.h). Plain loops over whole arrays, which the compiler
+// turns into vectors; the two loops that take the time are built for several instruction sets.
+#include "verlet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace bench {
+namespace {
+
+#define WEFT_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+
+// e <- k (1 - l/|b - a|) (b - a), the force on a, for `count` springs.
+WEFT_CLONES void spring_row(int count, double k, double rest, const double* __restrict ax,
+                            const double* __restrict ay, const double* __restrict az,
+                            const double* __restrict bx, const double* __restrict by,
+                            const double* __restrict bz, double* __restrict ex,
+                            double* __restrict ey, double* __restrict ez) {
+  for (int i = 0; i < count; ++i) {
+    const double dx = bx[i] - ax[i], dy = by[i] - ay[i], dz = bz[i] - az[i];
+    const double s = k * (1 - rest / std::sqrt(dx * dx + dy * dy + dz * dz));
+    ex[i] = s * dx;
+    ey[i] = s * dy;
+    ez[i] = s * dz;
+  }
+}
+
+WEFT_CLONES void add(int count, const double* __restrict e, double* __restrict f) {
+  for (int i = 0; i < count; ++i) f[i] += e[i];
+}
+
+WEFT_CLONES void subtract(int count, const double* __restrict e, double* __restrict f) {
+  for (int i = 0; i < count; ++i) f[i] -= e[i];
+}
+
+// Half a kick, drag, half a kick, drift; the force is cleared for the next step.
+WEFT_CLONES void move_component(std::size_t n, double h, double keep,
+                                const double* __restrict inverse_mass, const double* __restrict g,
+                                double* __restrict f, double* __restrict v, double* __restrict x) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double half = 0.5 * h * (f[i] * inverse_mass[i] + g[i]);
+    v[i] = (v[i] + half) * keep + half;
+    x[i] += h * v[i];
+    f[i] = 0;
+  }
+}
+
+double norm(const weft::Vec3& v) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+double rest_length(const weft::Grid& g, int di, int dj) {
+  weft::Vec3 e;
+  for (std::size_t c = 0; c < 3; ++c) e[c] = g.u[c] * di / (g.nx - 1) + g.v[c] * dj / (g.ny - 1);
+  return norm(e);
+}
+
+std::vector<Springs> springs_of(const weft::Cloth& cloth) {
+  std::vector<Springs> all;
+  const weft::Grid& g = cloth.grid;
+  const auto family = [&](int di, int dj, double k) {
+    if (k <= 0 || std::abs(di) >= g.nx || dj >= g.ny) return;
+    Springs s{std::max(0, -di),    std::max(0, di),        dj,
+              g.nx - std::abs(di), rest_length(g, di, dj), {}};
+    for (int j = 0; j + dj < g.ny; ++j)
+      s.stiffness.push_back(k * (1 - cloth.stiffness_gradient * (j + 0.5 * dj) / (g.ny - 1)));
+    all.push_back(std::move(s));
+  };
+  if (cloth.level == 0) {
+    for (const auto& [di, dj] : {std::pair{1, 0}, {0, 1}})
+      family(di, dj, cloth.stiffness.structural);
+    for (const auto& [di, dj] : {std::pair{1, 1}, {-1, 1}}) family(di, dj, cloth.stiffness.shear);
+    for (const auto& [di, dj] : {std::pair{2, 0}, {0, 2}}) family(di, dj, cloth.stiffness.bend);
+  }
+  for (int n = 1; n <= cloth.level; ++n)
+    for (const auto& [di, dj] : {std::pair{n, 0}, {0, n}, {n, n}, {-n, n}})
+      family(di, dj, cloth.stiffness.structural);
+  return all;
+}
+
+// A particle below a surface is put onto it; its velocity loses the part into the surface and, by
+// Coulomb's law, as much of the part along it as the normal correction allows.
+void touch(const weft::Friction& friction, double depth, double h, const weft::Vec3& n,
+           weft::Vec3& x, weft::Vec3& v) {
+  double into = 0, along = 0;
+  for (std::size_t c = 0; c < 3; ++c) into += v[c] * n[c];
+  weft::Vec3 t;
+  for (std::size_t c = 0; c < 3; ++c) t[c] = v[c] - into * n[c];
+  along = norm(t);
+  const bool sticks = along * h <= friction.statik * depth;
+  const double keep =
+      sticks || along == 0 ? 0 : std::max(0.0, 1 - friction.dynamic * depth / (along * h));
+  for (std::size_t c = 0; c < 3; ++c) {
+    x[c] += depth * n[c] + (keep - 1) * t[c] * h;
+    v[c] = keep * t[c] + std::max(0.0, into) * n[c];
+  }
+}
+
+}  // namespace
+
+Verlet::Verlet(const weft::Scene& scene)
+    : scene_(scene),
+      columns_(scene.cloths[0].grid.nx),
+      rows_(scene.cloths[0].grid.ny),
+      particles_(std::size_t(columns_) * std::size_t(rows_)),
+      springs_(springs_of(scene.cloths[0])) {
+  const weft::Cloth& cloth = scene_.cloths[0];
+  const weft::Grid& g = cloth.grid;
+  for (auto* a : {&x_, &y_, &z_, &vx_, &vy_, &vz_, &fx_, &fy_, &fz_, &inverse_mass_})
+    a->assign(particles_, 0.0);
+  gx_.assign(particles_, scene.gravity[0]);
+  gy_.assign(particles_, scene.gravity[1]);
+  gz_.assign(particles_, scene.gravity[2]);
+  for (auto* a : {&ex_, &ey_, &ez_}) a->resize(std::size_t(columns_));
+  std::size_t p = 0;
+  for (int j = 0; j < rows_; ++j)
+    for (int i = 0; i < columns_; ++i, ++p) {
+      const double s = double(i) / (g.nx - 1), t = double(j) / (g.ny - 1);
+      x_[p] = g.origin[0] + g.u[0] * s + g.v[0] * t;
+      y_[p] = g.origin[1] + g.u[1] * s + g.v[1] * t;
+      z_[p] = g.origin[2] + g.u[2] * s + g.v[2] * t;
+      inverse_mass_[p] = 1 / weft::particle_mass(cloth, i, j);
+    }
+  for (const weft::Pin& pin : cloth.pins) {
+    p = std::size_t(pin.j) * std::size_t(columns_) + std::size_t(pin.i);
+    inverse_mass_[p] = gx_[p] = gy_[p] = gz_[p] = 0;
+  }
+}
+
+double Verlet::safe_step() const {
+  // Every spring at a particle adds its stiffness to the particle's own block of K and once more
+  // beside it.
+  std::vector<double> k(particles_, 0.0);
+  for (const Springs& s : springs_)
+    for (int j = 0; j + s.dj < rows_; ++j)
+      for (int a = 0; a < s.count; ++a) {
+        const double stiffness = s.stiffness[std::size_t(j)];
+        k[std::size_t(j * columns_ + a + s.near)] += 2 * stiffness;
+        k[std::size_t((j + s.dj) * columns_ + a + s.far)] += 2 * stiffness;
+      }
+  double omega_squared = 0;
+  for (std::size_t p = 0; p < particles_; ++p)
+    omega_squared = std::max(omega_squared, k[p] * inverse_mass_[p]);
+  return omega_squared > 0 ? 2 / std::sqrt(omega_squared) : 1e-2;
+}
+
+void Verlet::spring_forces(const Springs& s) {
+  for (int j = 0; j + s.dj < rows_; ++j) {
+    const std::size_t a = std::size_t(j * columns_ + s.near);
+    const std::size_t b = std::size_t((j + s.dj) * columns_ + s.far);
+    spring_row(s.count, s.stiffness[std::size_t(j)], s.rest, &x_[a], &y_[a], &z_[a], &x_[b], &y_[b],
+               &z_[b], ex_.data(), ey_.data(), ez_.data());
+    add(s.count, ex_.data(), &fx_[a]);
+    add(s.count, ey_.data(), &fy_[a]);
+    add(s.count, ez_.data(), &fz_[a]);
+    subtract(s.count, ex_.data(), &fx_[b]);
+    subtract(s.count, ey_.data(), &fy_[b]);
+    subtract(s.count, ez_.data(), &fz_[b]);
+  }
+}
+
+void Verlet::forces() {
+  for (const Springs& s : springs_) spring_forces(s);
+}
+
+void Verlet::move(double h, double keep) {
+  move_component(particles_, h, keep, inverse_mass_.data(), gx_.data(), fx_.data(), vx_.data(),
+                 x_.data());
+  move_component(particles_, h, keep, inverse_mass_.data(), gy_.data(), fy_.data(), vy_.data(),
+                 y_.data());
+  move_component(particles_, h, keep, inverse_mass_.data(), gz_.data(), fz_.data(), vz_.data(),
+                 z_.data());
+}
+
+void Verlet::contact(double h) {
+  for (const weft::Collider& collider : scene_.colliders)
+    for (std::size_t p = 0; p < particles_; ++p) {
+      if (inverse_mass_[p] == 0) continue;
+      weft::Vec3 x{x_[p], y_[p], z_[p]}, v{vx_[p], vy_[p], vz_[p]}, n{};
+      double depth = 0;
+      if (const auto* sphere = std::get_if<weft::Sphere>(&collider.shape)) {
+        for (std::size_t c = 0; c < 3; ++c) n[c] = x[c] - sphere->center[c];
+        const double r = norm(n);
+        for (double& c : n) c /= r;
+        depth = sphere->radius + collider.offset - r;
+      } else if (const auto* plane = std::get_if<weft::Plane>(&collider.shape)) {
+        const double length = norm(plane->normal);
+        depth = collider.offset;
+        for (std::size_t c = 0; c < 3; ++c) {
+          n[c] = plane->normal[c] / length;
+          depth -= (x[c] - plane->point[c]) * n[c];
+        }
+      }
+      if (depth <= 0) continue;
+      touch(collider.friction, depth, h, n, x, v);
+      x_[p] = x[0], y_[p] = x[1], z_[p] = x[2];
+      vx_[p] = v[0], vy_[p] = v[1], vz_[p] = v[2];
+    }
+}
+
+void Verlet::advance(double seconds, std::int64_t steps) {
+  const double h = seconds / double(steps);
+  const double drag = scene_.cloths[0].drag;
+  // The first step starts from rest: its second half kick is the only one, which leaves the
+  // velocity at half a step.
+  forces();
+  for (auto* f : {&fx_, &fy_, &fz_})
+    for (double& c : *f) c *= 0.5;
+  for (auto* g : {&gx_, &gy_, &gz_})
+    for (double& c : *g) c *= 0.5;
+  move(h, 1);
+  for (auto* g : {&gx_, &gy_, &gz_})
+    for (double& c : *g) c *= 2;
+  contact(h);
+  const double keep = std::exp(-drag * h);
+  for (std::int64_t n = 1; n < steps; ++n) {
+    forces();
+    move(h, keep);
+    contact(h);
+  }
+}
+
+double Verlet::largest_acceleration() const {
+  double most = 0;
+  for (std::size_t p = 0; p < particles_; ++p) {
+    const double w = inverse_mass_[p];
+    most = std::max({most, std::abs(fx_[p] * w + gx_[p]), std::abs(fy_[p] * w + gy_[p]),
+                     std::abs(fz_[p] * w + gz_[p])});
+  }
+  return most;
+}
+
+void Verlet::come_to_rest(double acceleration) {
+  constexpr std::int64_t kMostSteps = 2'000'000;
+  constexpr double kDrag = 4;  // 1/s; critical for the slowest modes of a hanging metre of cloth
+  const double h = 0.7 * safe_step(), keep = std::exp(-kDrag * h);
+  for (std::int64_t n = 0; n < kMostSteps; ++n) {
+    forces();
+    if (n % 1000 == 0 && largest_acceleration() < acceleration) break;
+    move(h, keep);
+  }
+  for (auto* f : {&fx_, &fy_, &fz_}) f->assign(particles_, 0.0);
+}
+
+std::vector<double> Verlet::positions() const {
+  std::vector<double> all;
+  all.reserve(3 * particles_);
+  for (std::size_t p = 0; p < particles_; ++p) all.insert(all.end(), {x_[p], y_[p], z_[p]});
+  return all;
+}
+
+}  // namespace bench

@@ -1,0 +1,138 @@
+// The same bits for any number of threads, for every instruction set, from run to run, and after
+// the state has been taken out and put back.
+#include <gtest/gtest.h>
+
+#include "weft/read_scene.h"
+#include "weft/simulation.h"
+
+namespace weft {
+namespace {
+
+// `huge` has a test of its own (slow_huge_test.cpp).
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const ShippedScene& scene : shipped_scenes())
+    if (scene.name != "huge") names.push_back(scene.name);
+  return names;
+}
+
+// Enough frames for the start, a few changes of the automatic substeps, and some contact.
+constexpr int kFrames = 4;
+
+std::uint64_t hash_of(const Scene& scene, const Options& options = {}, int frames = kFrames) {
+  Simulation simulation(scene, options);
+  for (int frame = 0; frame < frames; ++frame) simulation.advance_frame();
+  EXPECT_TRUE(simulation.status().ok) << simulation.status().text;
+  return simulation.hash();
+}
+
+Options threads(int count) {
+  Options options;
+  options.threads = count;
+  return options;
+}
+
+void expect_one_result(const Scene& scene) {
+  const std::uint64_t expected = hash_of(scene, threads(1));
+  EXPECT_EQ(hash_of(scene, threads(1)), expected) << "second run";
+  for (const int count : {2, 3, 4, 8})
+    EXPECT_EQ(hash_of(scene, threads(count)), expected) << count << " threads";
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+    if (!simd_available(simd)) continue;
+    Options options;
+    options.simd = simd;
+    options.threads = simd == Simd::sse2 ? 3 : 1;
+    EXPECT_EQ(hash_of(scene, options), expected) << simd_name(simd);
+  }
+}
+
+class Shipped : public testing::TestWithParam<std::string> {};
+
+TEST_P(Shipped, HasOneResult) {
+  expect_one_result(read_scene(GetParam()).scene);
+}
+
+INSTANTIATE_TEST_SUITE_P(, Shipped, testing::ValuesIn(scene_names()),
+                         [](const auto& test) { return test.param; });
+
+// Cloths of up to 4096 particles run on one thread; this one is shared out.
+Scene large_sheet(Method method) {
+  Cloth cloth;
+  cloth.grid = {83, 101, {0, 0, 0}, {1, 0, 0}, {0, 0, 1.2}, 0.002};
+  cloth.drag = 0.5;
+  cloth.strain_limit = 0.1;
+  cloth.stiffness_gradient = 0.2;
+  cloth.pins = {{0, 0, {}}, {82, 0, {{0, {1, 0, 0}}, {0.1, {0.9, 0.1, 0}}}}};
+  Scene scene;
+  scene.cloths = {cloth};
+  scene.solver.method = method;
+  scene.time = {0.01, kAutoSubsteps, 1};
+  Collider ball;
+  ball.shape = Sphere{{0.5, -0.05, 0.6}, 0.1};
+  ball.friction.statik = ball.friction.dynamic = 0.3;
+  ball.keys = {{0, {0.5, -0.11, 0.6}}, {0.1, {0.5, 0.1, 0.6}}};
+  scene.colliders = {ball};
+  return scene;
+}
+
+struct Variant {
+  std::string name;
+  Method method;
+  Sweep sweep = Sweep::gauss_seidel;
+  int iterations = 1, level = 0;
+};
+
+class LargeSheet : public testing::TestWithParam<Variant> {};
+
+TEST_P(LargeSheet, HasOneResult) {
+  Scene scene = large_sheet(GetParam().method);
+  scene.solver.sweep = GetParam().sweep;
+  scene.solver.iterations = GetParam().iterations;
+  scene.cloths[0].level = GetParam().level;
+  scene.cloths[0].spring_damping = {0.001, 0.001, 0.001};
+  expect_one_result(scene);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , LargeSheet,
+    testing::Values(Variant{"spring", Method::spring},
+                    Variant{"spring_level", Method::spring, Sweep::gauss_seidel, 1, 3},
+                    Variant{"spring_friction", Method::spring_friction},
+                    Variant{"positional", Method::positional, Sweep::gauss_seidel, 2},
+                    Variant{"positional_jacobi", Method::positional, Sweep::jacobi, 2},
+                    Variant{"compliant", Method::compliant, Sweep::gauss_seidel, 3},
+                    Variant{"compliant_level", Method::compliant, Sweep::gauss_seidel, 1, 2},
+                    Variant{"compliant_jacobi", Method::compliant, Sweep::jacobi, 3}),
+    [](const auto& test) { return test.param.name; });
+
+TEST_P(LargeSheet, GoesOnFromItsOwnState) {
+  if (GetParam().method == Method::spring_friction)
+    GTEST_SKIP() << "forces of the damping depend on velocities half a substep apart";
+  Scene scene = large_sheet(GetParam().method);
+  scene.solver.sweep = GetParam().sweep;
+  scene.solver.iterations = GetParam().iterations;
+  scene.cloths[0].level = GetParam().level;
+  Simulation simulation(scene);
+  for (int frame = 0; frame < kFrames; ++frame) {
+    simulation.advance_frame();
+    const std::uint64_t before = simulation.hash();
+    simulation.set_state(simulation.positions(), simulation.velocities());
+    EXPECT_EQ(simulation.hash(), before);
+  }
+  EXPECT_EQ(simulation.hash(), hash_of(scene));
+}
+
+TEST(Seed, MattersWhereThereIsJitter) {
+  Options other;
+  other.seed = 2;
+  for (const bool rough : {true, false}) {
+    Scene scene = large_sheet(Method::spring);
+    if (!rough) scene.cloths[0].grid.jitter = 0;
+    EXPECT_EQ(hash_of(scene, {}, 1) != hash_of(scene, other, 1), rough);
+  }
+  const Scene upright = read_scene("selfCollision").scene;
+  EXPECT_NE(hash_of(upright, {}, 0), hash_of(upright, other, 0));
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,299 @@
+// Every kernel gives the same bits for every instruction set that this machine runs, whatever the
+// width of a row and the features in use. The padding behind a row holds other values each time, so
+// that a lane that leaks in from there shows.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "physics/kernels/kernels.h"
+#include "physics/lattice.h"
+#include "physics/random.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr int kRows = 3;    // rows that a kernel can join
+constexpr int kGuard = 16;  // zero lanes that springs along a row read before it
+
+// All that kernels touch: a few rows of one random sheet, the same for every instruction set.
+struct Patch {
+  int columns, stride;
+  Rows x, v, f, previous, carry;
+  AlignedArray<float> w, lambda, scratch;
+  AlignedArray<std::int32_t> lanes;
+
+  Patch(int columns_, float padding)
+      : columns(columns_),
+        stride(row_stride(columns_)),
+        x(kRows, stride),
+        v(kRows, stride),
+        f(kRows, stride),
+        previous(kRows, stride),
+        carry(kRows, stride),
+        w(std::size_t(kRows) * stride),
+        lambda(std::size_t(stride)),
+        scratch(kGuard + 3 * std::size_t(stride)),
+        lanes(std::size_t(stride)) {
+    Random random(5, std::uint64_t(columns));
+    for (int j = 0; j < kRows; ++j)
+      for (int i = 0; i < stride; ++i) {
+        const bool used = i < columns;
+        for (Rows* rows : {&x, &v, &f, &previous, &carry})
+          for (int axis = 0; axis < 3; ++axis)
+            rows->at(axis, j, i) = used ? float(random.symmetric()) : padding;
+        if (used) {
+          x.at(0, j, i) += float(i);
+          x.at(1, j, i) += float(j);
+          // One particle in eight is pinned.
+          w[std::size_t(j) * stride + i] = random.unit() < 0.125 ? 0 : float(0.5 + random.unit());
+        }
+      }
+    for (int i = 0; i < stride; ++i) lambda[i] = i < columns ? float(random.symmetric()) : padding;
+    // Two coincident particles: a spring without a direction.
+    for (int axis = 0; axis < 3; ++axis) x.at(axis, 0, 1) = x.at(axis, 0, 0);
+  }
+
+  const float* weights(int j) { return w.data() + std::size_t(j) * stride; }
+
+  // The bits of all that belongs to particles, and whether they are numbers.
+  std::vector<std::uint32_t> bits(bool& numbers) const {
+    std::vector<std::uint32_t> all;
+    const auto add = [&](float value) {
+      numbers &= std::isfinite(value);
+      all.push_back(std::bit_cast<std::uint32_t>(value));
+    };
+    for (const Rows* rows : {&x, &v, &f, &previous, &carry})
+      for (int axis = 0; axis < 3; ++axis)
+        for (int j = 0; j < kRows; ++j)
+          for (int i = 0; i < columns; ++i) add(rows->at(axis, j, i));
+    for (int i = 0; i < columns; ++i) add(lambda[std::size_t(i)]);
+    return all;
+  }
+};
+
+using Call = std::function<void(const KernelTable&, Patch&)>;
+struct Case {
+  std::string name;
+  int least_columns;
+  Call call;
+};
+
+Advance advance() {
+  return {0.01f, 0.98f, 0.01f, -0.0981f, 0.003f};
+}
+
+AdvanceRow advance_row(Patch& p) {
+  return {p.columns,  p.x.row(0),        p.v.row(0), p.weights(0),
+          p.f.row(0), p.previous.row(0), advance(),  100.0f};
+}
+
+FamilyRow family_row(Patch& p, int di, int dj) {
+  FamilyRow r{};
+  r.count = p.columns - std::abs(di);
+  r.near = std::max(0, -di);
+  r.far = std::max(0, di);
+  r.same_row = dj == 0;
+  const int other = std::min(dj, kRows - 1);
+  r.x = p.x.row(0);
+  r.x_far = p.x.row(other);
+  r.v = p.v.row(0);
+  r.v_far = p.v.row(other);
+  r.w = p.weights(0);
+  r.w_far = p.weights(other);
+  r.f = p.f.row(0);
+  r.f_far = p.f.row(other);
+  r.scratch = p.scratch.data() + kGuard;
+  r.stride = p.stride;
+  r.spring = {70, 63, 0.4f};
+  return r;
+}
+
+constexpr std::array<std::array<int, 2>, 12> kOffsets{{{1, 0},
+                                                       {2, 0},
+                                                       {3, 0},
+                                                       {5, 0},
+                                                       {16, 0},
+                                                       {0, 1},
+                                                       {1, 1},
+                                                       {-1, 1},
+                                                       {2, 2},
+                                                       {-2, 2},
+                                                       {7, 1},
+                                                       {-16, 1}}};
+
+void add_springs(std::vector<Case>& cases) {
+  for (const bool all : {true, false})
+    cases.push_back(
+        {all ? "spring_row" : "spring_row, last row", 2, [all](const KernelTable& k, Patch& p) {
+           SpringRow r{};
+           r.columns = p.columns;
+           r.x = p.x.row(0);
+           r.v = p.v.row(0);
+           r.w = p.weights(0);
+           r.below = p.x.row(all ? 1 : 0);
+           r.below2 = p.x.row(all ? 2 : 0);
+           r.carry = p.carry.row(0);
+           r.carry2 = p.carry.row(1);
+           r.right = {70, 63, 0};
+           r.right2 = {20, 41, 0};
+           if (all) {
+             r.down = {71, 60, 0};
+             r.down2 = {20, 39, 0};
+             r.diagonal = {40, 57, 0};
+             r.antidiagonal = {41, 56, 0};
+           }
+           r.advance = advance();
+           k.spring_row(r);
+         }});
+  for (const auto& [di, dj] : kOffsets) {
+    const std::string at = " (" + std::to_string(di) + "," + std::to_string(dj) + ")";
+    const auto springs = [di = di, dj = dj](auto kernel) {
+      return [=](const KernelTable& k, Patch& p) { (k.*kernel)(family_row(p, di, dj)); };
+    };
+    const int least = std::abs(di) + 1;
+    cases.push_back({"spring_family" + at, least, springs(&KernelTable::spring_family)});
+    cases.push_back(
+        {"damped_spring_family" + at, least, springs(&KernelTable::damped_spring_family)});
+  }
+}
+
+void add_moves(std::vector<Case>& cases) {
+  const auto move = [](auto kernel) {
+    return [=](const KernelTable& k, Patch& p) { (k.*kernel)(advance_row(p)); };
+  };
+  cases.push_back({"integrate", 2, move(&KernelTable::integrate)});
+  cases.push_back({"predict", 2, move(&KernelTable::predict)});
+  cases.push_back({"velocity", 2, move(&KernelTable::velocity)});
+  cases.push_back({"apply_corrections", 2, move(&KernelTable::apply_corrections)});
+}
+
+struct Features {
+  const char* name;
+  float compliance, share, limit, inverse_dt;
+  bool multipliers;
+};
+constexpr Features kFeatures[] = {{"rigid", 0, 1, 0, 0, false},
+                                  {"half share", 0, 0.6f, 0, 0, false},
+                                  {"compliant", 0.7f, 1, 0, 0, false},
+                                  {"multipliers", 0.7f, 1, 0, 0, true},
+                                  {"limit", 0, 1, 1.1f, 100, false}};
+
+void add_projections(std::vector<Case>& cases) {
+  for (const auto& [di, dj] : kOffsets)
+    for (const Features& has : kFeatures)
+      for (const bool jacobi : {false, true})
+        cases.push_back({(jacobi ? "project_jacobi (" : "project (") + std::to_string(di) + "," +
+                             std::to_string(dj) + ") " + has.name,
+                         std::abs(di) + 1,
+                         [di = di, dj = dj, has, jacobi](const KernelTable& k, Patch& p) {
+                           ProjectRow r{};
+                           r.rows = family_row(p, di, dj);
+                           r.rest = 0.9f;
+                           r.compliance = has.compliance;
+                           r.share = has.share;
+                           r.limit = has.limit;
+                           r.inverse_dt = has.inverse_dt;
+                           if (has.multipliers) r.lambda = p.lambda.data();
+                           if (jacobi) return k.project_jacobi(r);
+                           if (dj > 0) return k.project(r);
+                           for (int colour = 0; colour < 2; ++colour) {
+                             for (int a = 0; a < p.stride; ++a)
+                               p.lanes[a] = a < r.rows.count && a / di % 2 == colour ? -1 : 0;
+                             r.lanes = p.lanes.data();
+                             k.project(r);
+                           }
+                         }});
+}
+
+void add_contacts(std::vector<Case>& cases) {
+  const auto touch = [](auto kernel, float friction, bool moving) {
+    return [=](const KernelTable& k, Patch& p) {
+      CollideRow r{};
+      r.columns = p.columns;
+      r.x = p.x.row(0);
+      r.v = p.v.row(0);
+      r.w = p.weights(0);
+      r.dt = 0.01f;
+      r.inverse_dt = 100;
+      // A sphere as wide as half the row with a particle at its very centre.
+      const int middle = p.columns / 2;
+      r.cx = p.x.at(0, 0, middle);
+      r.cy = p.x.at(1, 0, middle);
+      r.cz = p.x.at(2, 0, middle);
+      r.radius = 1 + float(p.columns) / 4;
+      r.nx = 0.36f;
+      r.ny = 0.8f;
+      r.nz = 0.48f;
+      r.offset = 0.01f;
+      if (moving) r.ux = 0.3f, r.uy = -0.2f, r.uz = 0.1f;
+      r.friction_static = friction;
+      r.friction_dynamic = 0.8f * friction;
+      (k.*kernel)(r);
+    };
+  };
+  for (const float friction : {0.0f, 0.4f})
+    for (const bool moving : {false, true}) {
+      const std::string has =
+          std::string(friction > 0 ? " rough" : " smooth") + (moving ? ", moving" : "");
+      cases.push_back({"sphere" + has, 2, touch(&KernelTable::sphere, friction, moving)});
+      cases.push_back({"plane" + has, 2, touch(&KernelTable::plane, friction, moving)});
+      cases.push_back(
+          {"course_sphere" + has, 2, touch(&KernelTable::course_sphere, friction, moving)});
+      cases.push_back(
+          {"course_plane" + has, 2, touch(&KernelTable::course_plane, friction, moving)});
+    }
+}
+
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  add_springs(cases);
+  add_moves(cases);
+  add_projections(cases);
+  add_contacts(cases);
+  return cases;
+}
+
+std::vector<std::uint32_t> bits_after(const Case& test, Simd simd, int columns, float padding,
+                                      bool& numbers) {
+  Patch patch(columns, padding);
+  test.call(kernel_table(simd), patch);
+  numbers = true;
+  return patch.bits(numbers);
+}
+
+class WideKernels : public testing::TestWithParam<Simd> {};
+
+TEST_P(WideKernels, EqualTheScalarOnesBitForBit) {
+  if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
+  std::vector<int> widths{100, 316};
+  for (int columns = 2; columns <= 70; ++columns) widths.push_back(columns);
+  for (const Case& test : all_cases())
+    for (const int columns : widths) {
+      if (columns < test.least_columns) continue;
+      bool numbers = false, scalar_numbers = false;
+      const auto wide = bits_after(test, GetParam(), columns, 7.5f, numbers);
+      const auto scalar = bits_after(test, Simd::scalar, columns, -0.3f, scalar_numbers);
+      ASSERT_TRUE(numbers && scalar_numbers) << test.name << ", " << columns << " columns";
+      ASSERT_EQ(wide, scalar) << test.name << ", " << columns << " columns";
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(, WideKernels, testing::Values(Simd::sse2, Simd::avx2, Simd::avx512),
+                         [](const auto& test) { return simd_name(test.param); });
+
+// The test above compares nothing if a kernel does nothing.
+TEST(Kernels, EachChangesSomething) {
+  for (const Case& test : all_cases()) {
+    bool numbers = true;
+    EXPECT_NE(bits_after(test, Simd::scalar, 40, 0, numbers), Patch(40, 0).bits(numbers))
+        << test.name;
+  }
+}
+
+}  // namespace
+}  // namespace weft::physics
