@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "physics/energy.h"
+#include "physics/self_collision/crossings.h"
 #include "weft/shape.h"
 
 namespace weft::physics {
@@ -73,6 +74,24 @@ void add_strain(const Simulation::State& s, Report& r) {
   r.strain.mean = count > 0 ? sum / count : 0;
 }
 
+void add_self_contact(const Simulation::State& s, Report& r) {
+  std::vector<Vec3> x;
+  std::vector<Face> faces;
+  for (const auto& step : s.cloths) {
+    const Lattice& l = step->lattice();
+    add_faces(l.columns, l.rows, std::int32_t(x.size()), faces);
+    const std::vector<Vec3> of_cloth = gather(l, l.x);
+    x.insert(x.end(), of_cloth.begin(), of_cloth.end());
+  }
+  r.penetration.crossings = count_crossings(x, faces);
+  if (!s.self_collision) return;
+  // By a search of its own: the one that runs must not notice.
+  const SelfContact::Overlaps overlaps =
+      SelfContact::make(s.scene, s.cloths, kernel_table(s.simd))->overlaps();
+  r.penetration.self_pairs = overlaps.pairs;
+  r.penetration.self_max = overlaps.deepest;
+}
+
 // What the stages passed over while they ran.
 void add_idle(const Simulation::State& s, Report& r) {
   for (const auto& step : s.cloths)
@@ -82,6 +101,13 @@ void add_idle(const Simulation::State& s, Report& r) {
         std::snprintf(why, sizeof why, "%.1f %% of the rows were out of reach", 100 * idle);
         r.skipped.push_back({stage->name, stage->detail + ": " + why});
       }
+  if (s.self_collision && s.self_collision_runs > 0) {
+    char why[96];
+    std::snprintf(why, sizeof why, "ran after %.1f %% of the substeps, searched in %.1f %% of those",
+                  100 * double(s.self_collision_runs) / double(std::max<std::int64_t>(s.total_substeps, 1)),
+                  100 * (1 - s.self_collision->kept()));
+    r.skipped.push_back({"self_collision", why});
+  }
 }
 
 void add_wall_time(const Simulation::State& s, Report& r) {
@@ -114,6 +140,11 @@ void add_stages(const Simulation::State& s, Report& r) {
       at->calls += s.total_substeps;
       sum += ms;
     }
+  }
+  if (s.self_collision) {
+    const double ms = double(s.self_collision_ns) * 1e-6;
+    r.stages.push_back({"self_collision", ms, s.self_collision_runs});
+    sum += ms;
   }
   // Several threads spend more than passes on the clock: shares of the work, not of the wall.
   const double scale = sum > s.total_ms ? s.total_ms / sum : 1;
@@ -177,6 +208,7 @@ Report measure(const Simulation::State& s) {
   }
   r.energy.total = r.energy.kinetic + r.energy.elastic + r.energy.gravity;
   add_strain(s, r);
+  if (s.status.ok) add_self_contact(s, r);
   add_idle(s, r);
   add_wall_time(s, r);
   add_stages(s, r);

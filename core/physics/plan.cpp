@@ -93,6 +93,13 @@ Plan describe(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>&
       const std::string which = cloths.size() > 1 ? "cloth " + std::to_string(c) + ": " : "";
       plan.stages.push_back({s->name, which + s->detail, double(substeps), s->items, s->item});
     }
+  std::int64_t particles = 0;
+  for (const Cloth& c : scene.cloths)
+    if (c.self_collision.mode != SelfCollisionMode::off)
+      particles += std::int64_t(c.grid.nx) * c.grid.ny;
+  if (particles > 0)
+    plan.stages.push_back({"self_collision", "all cloths together, as often as they move",
+                           double(substeps), particles, "particles"});
   describe_skipped(scene, scene.solver.method, plan);
   return plan;
 }
