@@ -144,15 +144,22 @@ struct RowReach {
 // Shapes and responses, in the order of weft::Shape and weft::FrictionModel.
 inline constexpr int kShapes = 4, kFrictionModels = 2;
 
-// The particles of one cell against those of the 27 cells about it, gathered in one run.
+// A run of particles that follow each other.
+struct Run {
+  std::int32_t first, last;
+};
+
+// The particles of one cell against those in the 27 cells about it.
 struct NearCell {
-  ConstRow3 members;          // of the cell
-  int member_count;
-  ConstRow3 candidates;       // padded to whole groups of 16 by particles far away
-  int candidate_count;        // without the padding
+  ConstRow3 sorted;           // all particles, cell by cell, with 16 lanes of padding
+  Run members;                // of the cell
+  const Run* runs;            // the 27 cells
+  int run_count;
+  Row3 candidates;            // room for all particles of the runs, 16 lanes more for each run
+  std::int32_t* numbers;      // the same
   float range_squared;        // m²
-  std::int32_t* counts;       // per member: how many candidates are in range, itself included
-  std::int32_t* hits;         // their numbers, member after member, ascending
+  std::int32_t* counts;       // out, per member: how many candidates are in range, itself included
+  std::int32_t* hits;         // out, member after member: their numbers
 };
 
 // Least and greatest of some values, component by component.
@@ -173,7 +180,7 @@ struct KernelTable {
   void (*apply_corrections)(const AdvanceRow&);     // x += f, f <- 0
   RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
   RowReach (*below_faces[kShapes])(const FacesRow&);
-  int (*near_pairs)(const NearCell&);               // returns the number of hits
+  void (*near_pairs)(const NearCell&);
   // Widens `spread` by the differences a - b of a row (b null: by a).
   void (*spread)(ConstRow3 a, ConstRow3 b, int columns, Spread& spread);
 };

@@ -4,20 +4,42 @@
 
 namespace weft::WEFT_KERNELS {
 
-int near_pairs(const physics::NearCell& given) {
+namespace {
+
+// Brings the runs' particles together, so that every member tests them in whole groups; returns how
+// many. The last group is filled up with particles far away.
+WEFT_INLINE int bring_together(const physics::NearCell& c) {
+  typedef WideInt Loose __attribute__((aligned(4), may_alias));
+  int count = 0;
+  for (int r = 0; r < c.run_count; ++r) {
+    const int first = c.runs[r].first, size = c.runs[r].last - first;
+    for (int i = 0; i < size; i += kLanes) {
+      store3(c.candidates, count + i, load3(c.sorted, first + i));
+      *reinterpret_cast<Loose*>(c.numbers + count + i) = lane_numbers() + (first + i);
+    }
+    count += size;
+  }
+  for (int i = 0; i < 16; i += kLanes)
+    store(c.candidates.x + count + i, wide(1e18f));  // its square is still finite
+  return count;
+}
+
+}  // namespace
+
+void near_pairs(const physics::NearCell& given) {
   const physics::NearCell c = given;
+  const int count = bring_together(c);
   std::int32_t* out = c.hits;
-  for (int m = 0; m < c.member_count; ++m) {
-    const Wide3 p = wide3(c.members.x[m], c.members.y[m], c.members.z[m]);
+  for (int m = c.members.first; m < c.members.last; ++m) {
+    const Wide3 p = wide3(c.sorted.x[m], c.sorted.y[m], c.sorted.z[m]);
     std::int32_t* const first = out;
-    for (int i = 0; i < padded(c.candidate_count); i += kLanes) {
+    for (int i = 0; i < padded(count); i += kLanes) {
       const Wide3 d = load3(c.candidates, i) - p;
       for (unsigned near = bits(dot(d, d) < c.range_squared); near != 0; near &= near - 1)
-        *out++ = i + __builtin_ctz(near);
+        *out++ = c.numbers[i + __builtin_ctz(near)];
     }
-    c.counts[m] = std::int32_t(out - first);
+    c.counts[m - c.members.first] = std::int32_t(out - first);
   }
-  return int(out - c.hits);
 }
 
 void spread(ConstRow3 a, ConstRow3 b, int columns, physics::Spread& s) {

@@ -72,7 +72,7 @@ void project(const ProjectRows&);
 void project_jacobi(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
 void apply_corrections(const AdvanceRow&);
 
-int near_pairs(const physics::NearCell&);
+void near_pairs(const physics::NearCell&);
 void spread(ConstRow3 a, ConstRow3 b, int columns, physics::Spread&);
 
 // A collider's kernels: its own file in colliders/ defines them by WEFT_COLLIDER (collide.h).

@@ -37,9 +37,6 @@ class CellGrid {
   // The first start of a bucket at or after `sorted`.
   std::size_t bucket_start_from(std::size_t sorted) const;
 
-  struct Run {
-    std::int32_t first, last;  // sorted particles
-  };
   // The runs of the 27 cells about the bucket of a sorted particle, at most 18; returns how many.
   int runs_about(std::size_t sorted, Run* runs) const;
   std::size_t bytes() const;

@@ -14,7 +14,9 @@ namespace {
 
 constexpr double kSkin = 0.3;         // of the thickness
 constexpr double kMotion = 0.25;      // of the thickness: relative motion between two runs
+constexpr double kFall = 0.005;       // of the thickness, twice the fall from rest between two runs
 constexpr int kMostSubsteps = 12;     // between two runs
+constexpr int kIterations = 3;        // of pushing apart, in one run
 constexpr int kMostSubstepsCourse = 4;  // its push acts like a spring, stable up to here
 constexpr std::size_t kChunks = 64;
 constexpr std::size_t kGrain = 512;   // particles of a task
@@ -37,7 +39,7 @@ float diagonal(const Spread& s) {
 struct SelfContact::Chunk {
   std::vector<std::int32_t> owner, first, neighbour;  // sorted particles
   std::vector<float> x, y, z;                         // candidates of one cell
-  std::vector<std::int32_t> candidate, counts, hits;
+  std::vector<std::int32_t> numbers, counts, hits;
 };
 
 SelfContact::~SelfContact() = default;
@@ -84,6 +86,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets,
   pairs_.first.reserve(n + 1);
   pairs_.neighbour.reserve(kPairsReserved * n);
   bodies_.reserve(n);
+  separated_.reserve(n);
   for (Chunk& c : chunks_) {
     c.owner.reserve(2 * n / kChunks);
     c.first.reserve(2 * n / kChunks);
@@ -122,11 +125,12 @@ float SelfContact::relative_speed() const {
   return diagonal(spread);
 }
 
-// Whether two particles are further apart than `range` on the flat sheet, or on different ones.
-bool SelfContact::apart_at_rest(const Site& a, const Site& b, float range) const {
+// Whether two particles are out of range of each other on the flat sheet, or on different ones.
+bool SelfContact::apart_at_rest(const Site& a, const Site& b) const {
   if (a.cloth != b.cloth) return true;
   const Sheet& s = sheets_[a.cloth];
   const float di = float(a.column - b.column), dj = float(a.row - b.row);
+  const float range = s.thickness * float(1 + kSkin);
   return di * di * s.uu + 2 * di * dj * s.uv + dj * dj * s.vv >= range * range;
 }
 
@@ -136,7 +140,7 @@ void SelfContact::search_chunk(Chunk& c, std::size_t begin, std::size_t end, flo
   c.neighbour.clear();
   for (std::size_t cell = begin; cell < end;) {
     const std::size_t last = grid_.bucket_end(cell);
-    CellGrid::Run runs[18];
+    Run runs[18];
     const int run_count = grid_.runs_about(cell, runs);
     std::size_t n = 0;
     for (int r = 0; r < run_count; ++r) n += std::size_t(runs[r].last - runs[r].first);
@@ -145,36 +149,31 @@ void SelfContact::search_chunk(Chunk& c, std::size_t begin, std::size_t end, flo
       continue;
     }
     const std::size_t members = last - cell;
-    if (c.x.size() < n + 16) {
-      for (std::vector<float>* v : {&c.x, &c.y, &c.z}) v->resize(2 * n + 16);
-      c.candidate.resize(2 * n + 16);
+    if (const std::size_t room = n + 16 * 18; c.numbers.size() < room) {
+      for (std::vector<float>* v : {&c.x, &c.y, &c.z}) v->resize(2 * room);
+      c.numbers.resize(2 * room);
     }
     if (c.counts.size() < members) c.counts.resize(2 * members);
     if (c.hits.size() < members * n) c.hits.resize(2 * members * n);
-    std::size_t at = 0;
-    for (int r = 0; r < run_count; ++r) {
-      const ConstRow3 from = grid_.sorted(std::size_t(runs[r].first));
-      const int count = runs[r].last - runs[r].first;
-      std::copy_n(from.x, count, c.x.data() + at);
-      std::copy_n(from.y, count, c.y.data() + at);
-      std::copy_n(from.z, count, c.z.data() + at);
-      for (int k = 0; k < count; ++k) c.candidate[at++] = runs[r].first + k;
-    }
-    std::fill_n(c.x.data() + n, 16, 1e18f);  // far from everyone, the square still finite
-    NearCell near{grid_.sorted(cell), int(members), {c.x.data(), c.y.data(), c.z.data()}, int(n),
-                  range * range, c.counts.data(), c.hits.data()};
-    kernels_.near_pairs(near);
+    kernels_.near_pairs({grid_.sorted(0),
+                         {std::int32_t(cell), std::int32_t(last)},
+                         runs,
+                         run_count,
+                         {c.x.data(), c.y.data(), c.z.data()},
+                         c.numbers.data(),
+                         range * range,
+                         c.counts.data(),
+                         c.hits.data()});
     const std::int32_t* hit = c.hits.data();
     for (std::size_t m = 0; m < members; ++m) {
       const auto p = std::int32_t(cell + m);
       const Site& site = sites_[std::size_t(grid_.number(std::size_t(p)))];
       const std::size_t before = c.neighbour.size();
       for (int k = 0; k < c.counts[m]; ++k) {
-        const std::int32_t q = c.candidate[std::size_t(*hit++)];
+        const std::int32_t q = *hit++;
         if (q == p) continue;
         const Site& other = sites_[std::size_t(grid_.number(std::size_t(q)))];
-        const float pair = 0.5f * (sheets_[site.cloth].thickness + sheets_[other.cloth].thickness);
-        if (apart_at_rest(site, other, pair)) c.neighbour.push_back(q);
+        if (apart_at_rest(site, other)) c.neighbour.push_back(q);
       }
       if (c.neighbour.size() == before) continue;
       c.owner.push_back(p);
@@ -242,12 +241,30 @@ int SelfContact::run(double dt, int since, Threads& threads) {
       });
     });
   };
+  separated_.resize(bodies_.size());
   share([&](std::size_t a) { gather(a); });
-  share([&](std::size_t a) { separate(a, dt, since); });
-  const bool course = std::any_of(sheets_.begin(), sheets_.end(), [](auto& s) { return s.course; });
-  const int most = course ? kMostSubstepsCourse : kMostSubsteps;
-  const double way = double(relative_speed()) * dt;
-  return std::max(1, int(std::min(double(most), kMotion * thickness_ / std::max(way, 1e-12))));
+  const int iterations = course() ? 1 : kIterations;
+  for (int n = 0; n < iterations; ++n) {
+    share([&](std::size_t a) { separate(a, dt, since); });
+    std::swap(bodies_, separated_);
+  }
+  share([&](std::size_t a) { scatter(a); });
+  return next_run(dt);
+}
+
+bool SelfContact::course() const {
+  return std::any_of(sheets_.begin(), sheets_.end(), [](const Sheet& s) { return s.course; });
+}
+
+// Before particles move by a share of the thickness against each other, be it by their speed now or
+// by gravity's pull on one of them.
+int SelfContact::next_run(double dt) const {
+  const Vec3& g = scene_.gravity;
+  const double pull = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+  const double fall = std::sqrt(kFall * thickness_ / std::max(pull, 1e-12)) / dt;
+  const double way = kMotion * thickness_ / std::max(double(relative_speed()) * dt, 1e-12);
+  const double most = course() ? kMostSubstepsCourse : fall;
+  return int(std::clamp(std::min(most, way), 1.0, double(kMostSubsteps)));
 }
 
 SelfContact::Overlaps SelfContact::overlaps() {

@@ -1,5 +1,5 @@
-// Self-collision, mode `particles`: no two particles of any cloths nearer than the thickness, unless
-// they are so on the flat sheet.
+// Self-collision, mode `particles`: no two particles of any cloths nearer than the thickness, except
+// neighbours: those within the thickness and a skin of each other on the flat sheet.
 //
 // Who may touch is found rarely: pairs within the thickness and a skin stay complete until two
 // particles have moved by more than the skin against each other (Verlet's list, 1967). That is
@@ -75,10 +75,13 @@ class SelfContact {
   float moved_apart() const;     // since the last search, at most [m]
   float relative_speed() const;  // at most [m/s]
   void search_chunk(Chunk& chunk, std::size_t begin, std::size_t end, float range) const;
-  bool apart_at_rest(const Site& a, const Site& b, float range) const;
+  bool apart_at_rest(const Site& a, const Site& b) const;
   void join_chunks();
   void gather(std::size_t a);
   void separate(std::size_t a, double dt, int since);
+  void scatter(std::size_t a);
+  int next_run(double dt) const;
+  bool course() const;
 
   const Scene& scene_;
   std::vector<Sheet> sheets_;
@@ -89,7 +92,7 @@ class SelfContact {
   std::vector<Chunk> chunks_;
   std::vector<std::int32_t> listed_;  // sorted particle -> number into pairs_.site, or -1
   NearPairs pairs_;
-  std::vector<Body> bodies_;
+  std::vector<Body> bodies_, separated_;
   float thickness_ = 0;  // greatest of the sheets [m]
   bool valid_ = false;
   std::int64_t runs_ = 0, searches_ = 0;

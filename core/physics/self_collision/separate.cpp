@@ -13,7 +13,8 @@
 namespace weft::physics {
 namespace {
 
-constexpr float kMostPush = 0.2f;  // of the thickness, at once: what starts intersecting comes apart slowly
+constexpr float kMostPush = 0.5f;  // of the thickness, at once: what starts intersecting comes apart slowly
+constexpr float kHeld = 1.05f;  // thicknesses that a pair is held apart: layers of a stack sink in a little
 constexpr float kTiny = 1e-12f;
 
 }  // namespace
@@ -33,6 +34,8 @@ void SelfContact::gather(std::size_t a) {
 
 void SelfContact::separate(std::size_t a, double dt, int since) {
   const Body& p = bodies_[a];
+  Body& out = separated_[a];
+  out = p;
   if (p.w <= 0) return;
   const Site& site = pairs_.site[a];
   const Sheet& sheet = sheets_[site.cloth];
@@ -41,7 +44,7 @@ void SelfContact::separate(std::size_t a, double dt, int since) {
   for (std::int32_t k = pairs_.first[a]; k < pairs_.first[a + 1]; ++k) {
     const std::int32_t other = pairs_.neighbour[std::size_t(k)];
     const Body& q = bodies_[std::size_t(other)];
-    const float thickness = 0.5f * (p.thickness + q.thickness);
+    const float thickness = 0.5f * (p.thickness + q.thickness) * (sheet.course ? 1 : kHeld);
     float d[3] = {p.x[0] - q.x[0], p.x[1] - q.x[1], p.x[2] - q.x[2]};
     const float square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
     if (square >= thickness * thickness) continue;
@@ -72,7 +75,6 @@ void SelfContact::separate(std::size_t a, double dt, int since) {
     }
   }
   if (count == 0) return;
-  Lattice& l = *sheet.lattice;
   const float mean = 1 / float(count);
   // The course's push for as many substeps as have passed.
   const double steps = scene_.time.substeps > 0 ? scene_.time.substeps : scene_.time.frame / dt;
@@ -80,8 +82,18 @@ void SelfContact::separate(std::size_t a, double dt, int since) {
   for (int m = 0; m < 3; ++m) {
     const float change = push[m] * mean * (sheet.course ? course : 1);
     const float faster = sheet.course ? change / float(dt) : gain[m] * mean;
-    l.x.at(m, site.row, site.column) += change;
-    l.v.at(m, site.row, site.column) += faster;
+    out.x[m] += change;
+    out.v[m] += faster;
+  }
+}
+
+void SelfContact::scatter(std::size_t a) {
+  const Site& s = pairs_.site[a];
+  Lattice& l = *sheets_[s.cloth].lattice;
+  if (bodies_[a].w <= 0) return;
+  for (int k = 0; k < 3; ++k) {
+    l.x.at(k, s.row, s.column) = bodies_[a].x[k];
+    l.v.at(k, s.row, s.column) = bodies_[a].v[k];
   }
 }
 
