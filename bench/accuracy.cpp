@@ -96,6 +96,7 @@ int run(const Command& c) {
     run_problem(p, c, trials);
     bench::mark_front(trials);
     bench::print_trials(p, trials, c.all);
+    bench::write_diagram(c.out + "/" + p.name + "_" + std::to_string(p.size), p, trials);
     std::fflush(stdout);
   }
   bench::print_targets(problems, trials);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "machine.h"
+#include "plot.h"
 
 namespace bench {
 namespace {
@@ -20,6 +21,16 @@ std::ofstream open(const std::string& path) {
   std::ofstream out(path);
   if (!out) throw std::runtime_error("cannot write " + path);
   return out;
+}
+
+// The method, and what else distinguishes the runs of this file.
+std::string series_name(const Trial& t, const std::vector<Trial>& all) {
+  std::string name = t.setting.method;
+  const auto differ = [&](auto&& other) { return std::any_of(all.begin(), all.end(), other); };
+  if (differ([&](const Trial& o) { return o.ok() && o.simd != t.simd; })) name += ", " + t.simd;
+  if (differ([&](const Trial& o) { return o.threads != t.threads; }))
+    name += t.threads == 1 ? ", 1 thread" : ", " + std::to_string(t.threads) + " threads";
+  return name;
 }
 
 std::string quoted(const std::string& text) {
@@ -73,6 +84,30 @@ void print_targets(const std::vector<Problem>& problems, const std::vector<Trial
                 best->run_ms <= p.target_ms ? "met" : "MISSED", best->rms, p.target_error,
                 best->rms <= p.target_error ? "met" : "MISSED");
   }
+}
+
+void write_diagram(const std::string& path, const Problem& problem,
+                   const std::vector<Trial>& trials) {
+  const bool strain = problem.measure == Measure::strain;
+  Plot plot;
+  plot.title = problem.title();
+  plot.subtitle = problem.about;
+  plot.x_label = strain ? "wall time of a frame [ms]" : "wall time of the whole run [ms]";
+  plot.y_label = strain ? "greatest structural strain" : "RMS error [m]";
+  plot.target_x = problem.target_ms;
+  plot.target_y = problem.target_error;
+  for (const Trial& t : trials) {
+    if (!belongs(t, problem) || !t.ok()) continue;
+    const std::string name = series_name(t, trials);
+    auto series = std::find_if(plot.series.begin(), plot.series.end(),
+                               [&](const PlotSeries& s) { return s.name == name; });
+    if (series == plot.series.end()) series = plot.series.insert(series, PlotSeries{name, {}});
+    const double ms = strain ? t.quiet_ms / t.frames : t.quiet_ms;
+    char text[64];
+    std::snprintf(text, sizeof text, ": %.3g ms, %.2e", ms, t.rms);
+    series->points.push_back({ms, std::max(t.rms, 1e-9), t.setting.text() + text});
+  }
+  write_plot(path, plot);
 }
 
 void write_csv(const std::string& path, const std::vector<Trial>& trials) {

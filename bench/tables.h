@@ -14,6 +14,10 @@ void print_trials(const Problem& problem, const std::vector<Trial>& trials, bool
 // The figures that the project asks of method `spring`, measured against asked.
 void print_targets(const std::vector<Problem>& problems, const std::vector<Trial>& trials);
 
+// The work-precision diagram of one problem as PATH.svg and, where it can be made, PATH.png.
+void write_diagram(const std::string& path, const Problem& problem,
+                   const std::vector<Trial>& trials);
+
 // All trials; throws std::runtime_error when the file cannot be written.
 void write_csv(const std::string& path, const std::vector<Trial>& trials);
 void write_json(const std::string& path, const std::vector<Trial>& trials,

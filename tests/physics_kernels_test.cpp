@@ -174,14 +174,13 @@ void add_moves(std::vector<Case>& cases) {
 
 struct Features {
   const char* name;
-  float compliance, share, limit, inverse_dt;
+  float compliance, weight, limit, inverse_dt;
   bool multipliers;
 };
-constexpr Features kFeatures[] = {{"rigid", 0, 1, 0, 0, false},
-                                  {"half share", 0, 0.6f, 0, 0, false},
-                                  {"compliant", 0.7f, 1, 0, 0, false},
-                                  {"multipliers", 0.7f, 1, 0, 0, true},
-                                  {"limit", 0, 1, 1.1f, 100, false}};
+constexpr Features kFeatures[] = {
+    {"rigid", 0, 1, 0, 0, false},        {"heavier", 0, 1.7f, 0, 0, false},
+    {"compliant", 0.7f, 1, 0, 0, false}, {"multipliers", 0.7f, 1, 0, 0, true},
+    {"velocity", 0.7f, 1, 0, 100, true}, {"limit", 0, 1, 1.1f, 100, false}};
 
 void add_projections(std::vector<Case>& cases) {
   for (const auto& [di, dj] : kOffsets)
@@ -195,7 +194,7 @@ void add_projections(std::vector<Case>& cases) {
                            r.rows = family_row(p, di, dj);
                            r.rest = 0.9f;
                            r.compliance = has.compliance;
-                           r.share = has.share;
+                           r.weight = has.weight;
                            r.limit = has.limit;
                            r.inverse_dt = has.inverse_dt;
                            if (has.multipliers) r.lambda = p.lambda.data();

@@ -4,19 +4,38 @@
 #include <algorithm>
 
 namespace weft::physics {
+
 ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::uint64_t seed,
                      const KernelTable& kernels)
     : cloth_(scene.cloths[cloth_index]),
       families_(families_of(cloth_)),
-      lattice_(make_lattice(cloth_, cloth_index, seed, !is_explicit(method))) {
-  choose_stages({scene, cloth_, lattice_, families_, kernels}, method);
+      lattice_(make_lattice(cloth_, cloth_index, seed, !is_explicit(method))),
+      parts_{scene, cloth_, lattice_, families_, kernels} {
+  choose_stages(parts_, method, seed);
+  make_passes();
+}
+
+void ClothStep::make_passes() {
   passes_ = std::make_unique<Passes>(stages_, lattice_.rows, lattice_.bytes() / lattice_.rows);
 }
 
-void ClothStep::choose_stages(const ClothParts& parts, Method method) {
+void ClothStep::add_stage(std::unique_ptr<Stage> stage) {
+  std::size_t at = 0;
+  while (at < stages_.size() && stages_[at]->name != "springs" && stages_[at]->name != "predict") ++at;
+  stages_.insert(stages_.begin() + std::ptrdiff_t(std::min(at + 1, stages_.size())), std::move(stage));
+  make_passes();
+}
+
+void ClothStep::remove_stage(const Stage* stage) {
+  std::erase_if(stages_, [&](const auto& s) { return s.get() == stage; });
+  make_passes();
+}
+
+void ClothStep::choose_stages(const ClothParts& parts, Method method, std::uint64_t seed) {
   const Solver& solver = parts.scene.solver;
   if (is_explicit(method)) {
     stages_.push_back(make_springs(parts, method == Method::spring_friction));
+    if (auto wind = make_wind(parts, seed)) stages_.push_back(std::move(wind));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
   } else {
     SweepOptions sweep;
@@ -25,6 +44,7 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method) {
       multipliers_ = std::make_unique<Multipliers>(lattice_, families_.size());
     sweep.multipliers = multipliers_.get();
     stages_.push_back(make_predict(parts, multipliers_.get()));
+    if (auto wind = make_wind(parts, seed)) stages_.push_back(std::move(wind));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
     for (int n = 0; n < solver.iterations && !families_.empty(); ++n) {
       if (solver.sweep == Sweep::jacobi)
@@ -32,7 +52,7 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method) {
       else
         append_gauss_seidel(parts, sweep, stages_);
     }
-    stages_.push_back(make_velocity(parts));
+    if (!sweep.compliant) stages_.push_back(make_velocity(parts));
   }
   for (int n = 0; n < solver.collision_iterations; ++n)
     for (const Collider& c : parts.scene.colliders) {

@@ -5,7 +5,8 @@
 //
 //   spring, spring_friction:  springs (x, v -> forces -> v, x) - keyed_pins - colliders - strain_limit
 //   positional, compliant:    predict (previous <- x; v, x by gravity) - keyed_pins - sweeps (x)
-//                             - velocity (v <- (x - previous)/dt) - colliders - strain_limit
+//                             - velocity (positional: v <- (x - previous)/dt; compliant sweeps have
+//                             changed v themselves) - colliders - strain_limit
 //
 // After every stage from springs or velocity on, x - dt v is the position before the substep:
 // contact and the strain limit change x and v together.
@@ -32,14 +33,20 @@ class ClothStep {
   const std::vector<Family>& families() const { return families_; }
   const Stages& stages() const { return stages_; }
   Passes& passes() { return *passes_; }
+  // Puts a stage right after the one that moves the particles; takes it away again.
+  void add_stage(std::unique_ptr<Stage> stage);
+  void remove_stage(const Stage* stage);
+  ClothParts parts() const { return parts_; }
   std::size_t bytes() const;
 
  private:
-  void choose_stages(const ClothParts& parts, Method method);
+  void choose_stages(const ClothParts& parts, Method method, std::uint64_t seed);
+  void make_passes();
 
   const Cloth& cloth_;
   std::vector<Family> families_;
   Lattice lattice_;
+  ClothParts parts_;
   std::unique_ptr<Multipliers> multipliers_;
   Stages stages_;
   std::unique_ptr<Passes> passes_;

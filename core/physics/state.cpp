@@ -29,6 +29,17 @@ Simd resolve(Simd simd) {
   return Simd::sse2;
 }
 
+// Without shear springs (or with nothing else) a sheet folds onto a line that stretches nothing, where
+// all its springs pull the same way: up to twice the flat sheet's ω², and no stretch adds to that.
+constexpr double kFolded = 2;
+bool folds_freely(const ClothStep& step) {
+  const auto has = [&](Kind kind) {
+    return std::any_of(step.families().begin(), step.families().end(),
+                       [&](const Family& f) { return f.kind == kind; });
+  };
+  return !has(Kind::structural) || !has(Kind::shear);
+}
+
 std::string number(double v) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", v);
@@ -72,12 +83,16 @@ void Simulation::State::choose_method_and_substeps() {
   double limit = 0;
   if (is_explicit(method)) {
     limit = std::numeric_limits<double>::infinity();
+    double safe = limit;  // for automatic substeps
     for (const auto& c : cloths) {
       spectra.push_back(estimate_spectrum(c->cloth(), c->families(), c->lattice(),
                                           method == Method::spring_friction));
       limit = std::min(limit, spectra.back().largest_substep());
+      Spectrum folded = spectra.back();
+      if (folds_freely(*c)) folded.omega_squared *= kFolded;
+      safe = std::min(safe, folded.largest_substep());
     }
-    const double needed = std::ceil(scene.time.frame / (kLimitShare * limit));
+    const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
     if (count == kAutoSubsteps && needed <= kMostSubsteps) {
       count = std::max(1, int(needed));
       notes.push_back("substeps from the stability limit of " + number(limit) + " s");
@@ -116,7 +131,7 @@ void Simulation::State::shift_velocities(double by, const double* from) {
           if (from) ++from;
         }
   }
-  if (scene.time.substeps != kAutoSubsteps) accelerations_ = {};
+  if (scene.time.substeps != kAutoSubsteps) accelerations_ = std::vector<Vec3>();
 }
 
 void Simulation::State::set_substeps(int count) {
@@ -200,7 +215,7 @@ void Simulation::State::follow_stretch() {
     const double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
     // Springs in all directions: never more than twice the flat sheet's ω² for the families here.
     Spectrum stretched = spectra[c];
-    stretched.omega_squared *= 1 + t;
+    stretched.omega_squared *= folds_freely(step) ? kFolded : 1 + t;
     limit = std::min(limit, stretched.largest_substep());
   }
   const int count = int(std::ceil(scene.time.frame / (kLimitShare * limit)));
@@ -215,7 +230,7 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
   if (positions.size() != 3 * particles || velocities.size() != 3 * particles)
     throw std::invalid_argument("a state needs " + std::to_string(3 * particles) +
                                 " positions and as many velocities");
-  const auto bad = [](double v) { return !std::isfinite(v); };
+  const auto bad = [](double v) { return !(std::abs(v) <= std::numeric_limits<float>::max()); };
   if (std::any_of(positions.begin(), positions.end(), bad) ||
       std::any_of(velocities.begin(), velocities.end(), bad))
     throw std::invalid_argument("a state holds a value that is not finite");
@@ -234,7 +249,10 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
   if (self_collision) self_collision->restart();
   since_collision_ = 0;
   until_collision_ = 1;
-  if (is_explicit(method)) shift_velocities(-dt / 2, velocities.data());
+  if (is_explicit(method)) {
+    shift_velocities(-dt / 2, velocities.data());
+    if (scene.time.substeps == kAutoSubsteps) follow_stretch();
+  }
   ++changes;
 }
 

@@ -7,6 +7,7 @@
 #include "physics/plan.h"
 #include "physics/self_collision/self_collision.h"
 #include "physics/stability.h"
+#include "physics/stages/grab.h"
 #include "physics/threads.h"
 #include "weft/simulation.h"
 
@@ -16,6 +17,9 @@ struct Simulation::State {
   State(Scene given, const Options& given_options);
 
   void advance_frame();
+  void grab(int cloth, int i, int j, const Vec3& target, double stiffness);
+  void release();
+  void hold(int cloth, int i, int j, bool held);
   void set(std::span<const double> positions, std::span<const double> velocities);
   std::size_t backup_bytes() const;
 
@@ -46,6 +50,8 @@ struct Simulation::State {
     physics::Rows x, v;
   };
   std::vector<Backup> backups_;
+  physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
+  int grabbed_ = 0;
   int since_collision_ = 0, until_collision_ = 1;  // substeps
   std::vector<Vec3> accelerations_;  // of one cloth, kept where automatic substeps change (explicit)
 
@@ -55,6 +61,8 @@ struct Simulation::State {
   void shift_velocities(double by, const double* from = nullptr);
   void follow_stretch();
   void run_frame();
+  physics::ClothStep& step_with(int cloth, int i, int j);
+  void plan_changed();
   void run_substeps(int first, int count);
   void save();
   void restore();

@@ -75,23 +75,25 @@ struct FamilyRow {
   SpringConstants spring;
 };
 
-// One family of projected constraints in rows begin … end-1. Which of the optional parts are given
-// picks the rule: a strain limit (inverse_dt > 0), compliance with multipliers, compliance alone, or
-// rigid constraints.
+// One family of projected constraints in rows begin … end-1:
+// Δλ = (|e| - rest + compliance λ)/(weight (w_a + w_b) + compliance). Which of the optional parts are
+// given picks the rule: compliance with multipliers, compliance alone, a one-sided limit, or rigid
+// constraints. All but the rigid add the change of position, over dt, to the velocity.
 struct ProjectRows {
   int begin, end, rows;
   int stride;
-  Row3 x, v;       // row 0; v is used by the strain limit only
+  Row3 x, v;       // row 0
   const float* w;  // inverse mass of row 0 [1/kg]
   int count;       // constraints in a row: a joins lane a+near of row j and lane a+far of row j+dj
   int near, far, dj;
   int colour;                 // between rows: those with j/dj % 2 == colour
   const std::int32_t* lanes;  // along rows: -1 in the lanes of a colour, 0 elsewhere; both colours
   float rest;                 // m; the strain limit's greatest length
-  float share;                // factor on the correction (2 positional_k, Jacobi's relaxation)
+  float weight;               // of w_a + w_b (1/(2 positional_k), 1/Jacobi's relaxation)
   const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
   float* lambda;              // multipliers of row 0 [kg·m], or null
-  float inverse_dt;           // > 0: one-sided; the change of position goes into the velocity too
+  bool limit;                 // nothing happens below `rest`
+  float inverse_dt;           // 1/s
 };
 
 struct AdvanceRow {
@@ -167,6 +169,26 @@ struct Spread {
   float low[3], high[3];
 };
 
+// Gusts: each component of the wind gains three waves, of phase k·x + at.
+inline constexpr int kGusts = 9;  // 3 for each component
+struct Gust {
+  float kx, ky, kz;  // 1/m
+  float at;          // phase at x = 0, in turns
+};
+
+// Air on the triangles between a row and the next; their forces go to both rows' f.
+struct WindRow {
+  int columns;
+  ConstRow3 x, x_next, v, v_next;
+  const float *w, *w_next;
+  Row3 f, f_next;          // N, added to
+  float dt;
+  float wx, wy, wz;        // m/s
+  float drag, lift;        // kg/m³
+  float gust_speed;        // m/s; 0: none
+  Gust gusts[kGusts];
+};
+
 struct KernelTable {
   void (*spring_rows)(const SpringRows&);
   void (*spring_family)(const FamilyRow&);          // f += spring force
@@ -177,10 +199,12 @@ struct KernelTable {
   void (*project)(const ProjectRows&);              // Gauss-Seidel, in place
   // Jacobi: the corrections of one row's constraints added to the sums of rows j and j+dj
   void (*project_jacobi)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
-  void (*apply_corrections)(const AdvanceRow&);     // x += f, f <- 0
+  void (*apply_corrections)(const AdvanceRow&);     // x += f, v += f/dt if inverse_dt > 0, f <- 0
   RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
   RowReach (*below_faces[kShapes])(const FacesRow&);
   void (*near_pairs)(const NearCell&);
+  void (*wind)(const WindRow&);
+  void (*push)(const AdvanceRow&);                  // v += dt f/m, x with it, then f <- 0
   // Widens `spread` by the differences a - b of a row (b null: by a).
   void (*spread)(ConstRow3 a, ConstRow3 b, int columns, Spread& spread);
 };

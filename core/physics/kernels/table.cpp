@@ -13,6 +13,8 @@ const physics::KernelTable kTable = {
      {kBox.collide[0], kBox.collide[1]}},
     {kSphere.below_faces, kPlane.below_faces, kCapsule.below_faces, kBox.below_faces},
     near_pairs,
+    wind,
+    push,
     spread,
 };
 

@@ -33,10 +33,11 @@ class ProjectedFamily {
     rows_.far = family_.far();
     rows_.dj = family_.dj;
     rows_.rest = float(family_.rest);
-    rows_.share = 1;
+    rows_.weight = 1;
+    rows_.inverse_dt = float(1 / dt);
     if (options_.limit > 0) {
       rows_.rest = float(family_.rest * (1 + options_.limit));
-      rows_.inverse_dt = float(1 / dt);
+      rows_.limit = true;
     } else if (options_.compliant) {
       for (int j = 0; j < l.rows; ++j) {
         const double k = family_.stiffness * gradient_factor(parts_.cloth, j, family_.dj);
@@ -45,7 +46,7 @@ class ProjectedFamily {
       rows_.compliance = compliance_.data();
       if (options_.multipliers) rows_.lambda = options_.multipliers->row(index_, 0);
     } else {
-      rows_.share = float(2 * parts_.cloth.positional_k);
+      rows_.weight = float(1 / (2 * parts_.cloth.positional_k));
     }
   }
 
@@ -128,7 +129,9 @@ class BetweenRows final : public RowStage {
 
 // Relaxation of the summed corrections. The largest eigenvalue of the constraint system, relative
 // to its diagonal, is at most half the constraints at a particle for sheets made of these families;
-// 2.7/n keeps the sweep convergent, 0.9 is the bound of a single chain.
+// 2.7/n keeps the sweep convergent, 0.9 is the bound of a single chain. It applies to the part of the
+// system that couples constraints, w_a + w_b: compliance needs none, so that a single sweep of small
+// substeps is a spring of the full stiffness.
 float relaxation(std::size_t families) { return std::min(0.9f, 2.7f / float(2 * families)); }
 
 class Jacobi final : public RowStage {
@@ -136,7 +139,8 @@ class Jacobi final : public RowStage {
   Jacobi(const ClothParts& parts, const SweepOptions& options, int reach)
       : RowStage("jacobi", "all families, corrections added up and relaxed", reach,
                  parts.constraints(), "constraints"),
-        parts_(parts) {
+        parts_(parts),
+        compliant_(options.compliant) {
     for (std::size_t f = 0; f < parts.families.size(); ++f)
       families_.emplace_back(parts, options, f);
   }
@@ -154,18 +158,21 @@ class Jacobi final : public RowStage {
       const int dj = f.family().dj;
       if (j + dj >= l.rows) continue;
       ProjectRows p = f.rows(j, j + 1);
-      p.share *= relaxation(families_.size());
+      p.weight /= relaxation(families_.size());
       parts_.kernels.project_jacobi(p, j, sum(j), sum(j + dj));
     }
     AdvanceRow a{};
     a.columns = l.columns;
     a.x = l.x.row(j);
+    a.v = l.v.row(j);
     a.f = sum(j);
+    a.inverse_dt = compliant_ ? float(1 / s.dt) : 0.0f;
     parts_.kernels.apply_corrections(a);
   }
 
  private:
   ClothParts parts_;
+  bool compliant_;
   std::vector<ProjectedFamily> families_;
   Rows sum_;  // reach+1 rows in turn per slot
 };
