@@ -34,14 +34,20 @@ class ClothStep {
   const std::vector<Family>& families() const { return families_; }
   const Stages& stages() const { return stages_; }
   Passes& passes() { return *passes_; }
+  // Puts a stage right after the one that moves the particles; takes it away again.
+  void add_stage(std::unique_ptr<Stage> stage);
+  void remove_stage(const Stage* stage);
+  ClothParts parts() const { return parts_; }
   std::size_t bytes() const;
 
  private:
-  void choose_stages(const ClothParts& parts, Method method);
+  void choose_stages(const ClothParts& parts, Method method, std::uint64_t seed);
+  void make_passes();
 
   const Cloth& cloth_;
   std::vector<Family> families_;
   Lattice lattice_;
+  ClothParts parts_;
   std::unique_ptr<Multipliers> multipliers_;
   std::unique_ptr<History> history_;
   Stages stages_;

@@ -37,6 +37,8 @@ class Stage {
   // Forgets what it keeps from one substep to the next: the state was set from outside.
   virtual void restart() {}
   virtual std::size_t bytes() const { return 0; }
+  // Share of the rows so far that had nothing to do and were passed over, 0 … 1.
+  virtual double idle() const { return 0; }
 
   const std::string name, detail, item;
   const std::int64_t items;  // touched per substep

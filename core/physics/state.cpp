@@ -72,6 +72,7 @@ void Simulation::State::build_cloths() {
     stage_ns.emplace_back(cloths.back()->stages().size());
     if (options.profile) cloths.back()->passes().profile(stage_ns.back());
   }
+  self_collision = SelfContact::make(scene, cloths, kernel_table(simd));
 }
 
 // Explicit springs: the substep from the stability limit, or the user's if it is inside; beyond it,
@@ -166,11 +167,28 @@ void Simulation::State::advance_frame() {
 }
 
 void Simulation::State::run_frame() {
-  const double time = double(frame) * scene.time.frame;
+  if (!self_collision) return run_substeps(0, substeps);
+  for (int s = 0; s < substeps;) {
+    const int count = std::min(until_collision_ - since_collision_, substeps - s);
+    run_substeps(s, count);
+    s += count;
+    since_collision_ += count;
+    if (since_collision_ < until_collision_) break;
+    const auto start = std::chrono::steady_clock::now();
+    until_collision_ = self_collision->run(dt, since_collision_, threads);
+    since_collision_ = 0;
+    const auto spent = std::chrono::steady_clock::now() - start;
+    self_collision_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+    ++self_collision_runs;
+  }
+}
+
+void Simulation::State::run_substeps(int first, int count) {
+  const double time = double(frame) * scene.time.frame + first * dt;
   for (auto& step : cloths) {
     const Lattice& l = step->lattice();
     const bool small = l.columns * l.rows <= kSmallCloth;
-    step->passes().run(time, dt, substeps, small ? one_thread : threads);
+    step->passes().run(time, dt, count, small ? one_thread : threads);
   }
 }
 
@@ -228,6 +246,9 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
   }
   for (auto& step : cloths)
     for (const auto& stage : step->stages()) stage->restart();
+  if (self_collision) self_collision->restart();
+  since_collision_ = 0;
+  until_collision_ = 1;
   if (is_explicit(method)) {
     shift_velocities(-dt / 2, velocities.data());
     if (scene.time.substeps == kAutoSubsteps) follow_stretch();
@@ -291,6 +312,9 @@ void Simulation::State::find_fault() {
       }
     }
   }
+  // Every stage stays finite by itself: what runs between them does not.
+  status.stage = self_collision ? "self_collision" : "step";
+  status.text = "not finite in frame " + std::to_string(status.frame) + ", stage " + status.stage;
 }
 
 }  // namespace weft

@@ -13,9 +13,11 @@ using physics::Advance;
 using physics::AdvanceRow;
 using physics::CollideRow;
 using physics::ConstRow3;
+using physics::FacesRow;
 using physics::FamilyRow;
 using physics::ProjectRows;
 using physics::Row3;
+using physics::RowReach;
 using physics::SpringConstants;
 using physics::SpringRows;
 
@@ -74,10 +76,6 @@ void velocity(const AdvanceRow&);
 void project(const ProjectRows&);
 void project_jacobi(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
 void apply_corrections(const AdvanceRow&);
-void sphere(const CollideRow&);
-void plane(const CollideRow&);
-void course_sphere(const CollideRow&);
-void course_plane(const CollideRow&);
 void line_strip(const physics::LineStrip&);
 void rows_to_lanes(const physics::TransposeRows&);
 void lanes_to_rows(const physics::TransposeRows&);
@@ -87,5 +85,17 @@ void tethers(const physics::TetherRow&);
 void bend_row(const physics::BendRow&);
 void bend_line(const physics::BendLine&);
 void bend_twist(const physics::TwistRow&);
+
+void wind(const physics::WindRow&);
+void push(const AdvanceRow&);
+void near_pairs(const physics::NearCell&);
+void spread(ConstRow3 a, ConstRow3 b, int columns, physics::Spread&);
+
+// A collider's kernels: its own file in colliders/ defines them by WEFT_COLLIDER (collide.h).
+struct ColliderKernels {
+  RowReach (*collide[physics::kFrictionModels])(const CollideRow&);
+  RowReach (*below_faces)(const FacesRow&);
+};
+extern const ColliderKernels kSphere, kPlane, kCapsule, kBox;
 
 }  // namespace weft::WEFT_KERNELS

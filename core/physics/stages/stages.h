@@ -29,7 +29,9 @@ std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped);
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, struct Multipliers* multipliers);
 std::unique_ptr<RowStage> make_velocity(const ClothParts& parts);
 std::unique_ptr<RowStage> make_keyed_pins(const ClothParts& parts);
+std::unique_ptr<RowStage> make_wind(const ClothParts& parts, std::uint64_t seed);
 std::unique_ptr<RowStage> make_collider(const ClothParts& parts, const Collider& collider);
+std::unique_ptr<RowStage> make_collider_faces(const ClothParts& parts, const Collider& collider);
 
 // Lagrange multipliers of the compliant method, kept over the sweeps of one substep: one lattice of
 // floats per family, null when a single sweep needs none.
