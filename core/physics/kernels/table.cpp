@@ -5,8 +5,8 @@ namespace weft::WEFT_KERNELS {
 
 extern const physics::KernelTable kTable;
 const physics::KernelTable kTable = {
-    spring_rows,    spring_family, damped_spring_family, integrate, predict,
-    velocity,       project,       project_jacobi,       apply_corrections,
+    spring_rows,    spring_family, damped_spring_family, tear, integrate,
+    predict,        velocity,      project,              project_jacobi, apply_corrections,
     {{kSphere.collide[0], kSphere.collide[1]},
      {kPlane.collide[0], kPlane.collide[1]},
      {kCapsule.collide[0], kCapsule.collide[1]},
