@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "physics/bending.h"
 #include "physics/energy.h"
 #include "physics/self_collision/crossings.h"
 #include "weft/shape.h"
@@ -17,7 +18,8 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   const ClothStep& step = *s.cloths[index];
   const Lattice& l = step.lattice();
   const std::vector<Vec3> x = gather(l, l.x), v = velocities_now(s, index);
-  r.energy.elastic += elastic_energy(step.cloth(), step.families(), x);
+  r.energy.elastic +=
+      elastic_energy(step.cloth(), step.families(), x) + bending_energy(step.cloth(), x);
   for (std::size_t p = 0; p < x.size(); ++p) {
     const int i = int(p) % l.columns, j = int(p) / l.columns;
     if (l.w(j, i) == 0) continue;

@@ -50,26 +50,42 @@ void ClothStep::choose_stages() {
   const ClothParts& parts = parts_;
   const Method method = method_;
   const Solver& solver = parts.scene.solver;
+  auto bending = make_bending(parts, method);
   if (is_explicit(method)) {
+    if (bending) stages_.push_back(std::move(bending));
     stages_.push_back(make_springs(parts, method == Method::spring_friction));
     if (auto wind = make_wind(parts, seed_)) stages_.push_back(std::move(wind));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
   } else {
     SweepOptions sweep;
     sweep.compliant = method == Method::compliant;
-    if (sweep.compliant && solver.iterations > 1)
+    // Lines know no torn constraints: a cloth that can tear is swept in colours.
+    const bool lines = solver.sweep == Sweep::line && !topology_;
+    if (sweep.compliant && !lines && solver.iterations > 1)
       multipliers_ = std::make_unique<Multipliers>(lattice_, families_.size());
     sweep.multipliers = multipliers_.get();
-    stages_.push_back(make_predict(parts, multipliers_.get()));
+    if (solver.order == 2) history_ = std::make_unique<History>(lattice_);
+    stages_.push_back(history_
+                          ? make_predict_second_order(parts, *history_, multipliers_.get())
+                          : make_predict(parts, multipliers_.get()));
     if (auto wind = make_wind(parts, seed_)) stages_.push_back(std::move(wind));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
-    for (int n = 0; n < solver.iterations && !families_.empty(); ++n) {
+    if (auto tethers = solver.tethers ? make_tethers(parts, sweep.compliant) : nullptr)
+      stages_.push_back(std::move(tethers));
+    if (bending) stages_.push_back(std::move(bending));
+    if (lines) {
+      const float share = sweep.compliant ? 1.0f : float(2 * cloth_.positional_k);
+      if (auto line = make_line(parts, {sweep.compliant, solver.iterations, share}))
+        stages_.push_back(std::move(line));
+    }
+    for (int n = 0; n < solver.iterations && !families_.empty() && !lines; ++n) {
       if (solver.sweep == Sweep::jacobi)
         stages_.push_back(make_jacobi(parts, sweep));
       else
         append_gauss_seidel(parts, sweep, stages_);
     }
-    if (!sweep.compliant) stages_.push_back(make_velocity(parts));
+    if (history_) stages_.push_back(make_velocity_second_order(parts, *history_));
+    else if (!sweep.compliant) stages_.push_back(make_velocity(parts));
   }
   append_contact();
   if (cloth_.strain_limit > 0) {
@@ -94,7 +110,8 @@ void ClothStep::append_contact() {
 }
 
 std::size_t ClothStep::bytes() const {
-  std::size_t bytes = lattice_.bytes() + (multipliers_ ? multipliers_->bytes() : 0);
+  std::size_t bytes = lattice_.bytes() + (multipliers_ ? multipliers_->bytes() : 0) +
+                      (history_ ? history_->bytes() : 0);
   if (topology_) bytes += topology_->bytes();
   for (const auto& s : stages_) bytes += s->bytes();
   return bytes;
@@ -115,6 +132,16 @@ void describe_skipped(const Scene& scene, Method method, Plan& plan) {
         return std::any_of(c.pins.begin(), c.pins.end(), [](const Pin& p) { return !p.keys.empty(); });
       }))
     skip("keyed_pins", "no pin moves");
+  if (!is_explicit(method)) {
+    const Solver& s = scene.solver;
+    if (!s.tethers) skip("tethers", "off in the scene");
+    else if (std::all_of(scene.cloths.begin(), scene.cloths.end(),
+                         [](const Cloth& c) { return c.pins.empty(); }))
+      skip("tethers", "nothing is pinned");
+    if (s.sweep != Sweep::line) skip("line", "sweep is not line");
+    if (s.order != 2) skip("second order", "order is 1");
+  }
+  if (!any([](const Cloth& c) { return c.bending > 0; })) skip("bending", "bending is 0");
   if (scene.colliders.empty()) skip("collider", "the scene has none");
   const bool faces = std::any_of(plan.stages.begin(), plan.stages.end(),
                                  [](const PlannedStage& s) { return s.name == "collider_faces"; });

@@ -3,10 +3,11 @@
 //
 // A frame is `substeps` substeps; a substep of one cloth is, in this order,
 //
-//   spring, spring_friction:  springs (x, v -> forces -> v, x) - keyed_pins - colliders - strain_limit
-//   positional, compliant:    predict (previous <- x; v, x by gravity) - keyed_pins - sweeps (x)
-//                             - velocity (positional: v <- (x - previous)/dt; compliant sweeps have
-//                             changed v themselves) - colliders - strain_limit
+//   spring, spring_friction:  bending (v) - springs (x, v -> forces -> v, x) - keyed_pins - colliders
+//                             - strain_limit
+//   positional, compliant:    predict (previous <- x; v, x by gravity) - keyed_pins - tethers (x)
+//                             - bending (x) - sweeps (x) - velocity (positional: v <- (x - previous)/dt;
+//                             compliant stages have changed v themselves) - colliders - strain_limit
 //
 // After every stage from springs or velocity on, x - dt v is the position before the substep:
 // contact and the strain limit change x and v together.
@@ -56,6 +57,7 @@ class ClothStep {
   Lattice lattice_;
   ClothParts parts_;
   std::unique_ptr<Multipliers> multipliers_;
+  std::unique_ptr<History> history_;
   Stages stages_;
   std::unique_ptr<Topology> topology_;
   std::unique_ptr<Passes> passes_;

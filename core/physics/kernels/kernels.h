@@ -76,14 +76,13 @@ struct FamilyRow {
   std::int32_t* alive;  // -1 in the lanes of constraints, 0 in those of torn ones; null: cannot tear
 };
 
-// One family of projected constraints in rows begin … end-1:
-// Δλ = (|e| - rest + compliance λ)/(weight (w_a + w_b) + compliance). Which of the optional parts are
-// given picks the rule: compliance with multipliers, compliance alone, a one-sided limit, or rigid
-// constraints. All but the rigid add the change of position, over dt, to the velocity.
+// One family of projected constraints in rows begin … end-1. Which of the optional parts are given
+// picks the rule: a strain limit, compliance with multipliers, compliance alone, or
+// rigid constraints.
 struct ProjectRows {
   int begin, end, rows;
   int stride;
-  Row3 x, v;       // row 0
+  Row3 x, v;       // row 0; v is not used by rigid constraints
   const float* w;  // inverse mass of row 0 [1/kg]
   int count;       // constraints in a row: a joins lane a+near of row j and lane a+far of row j+dj
   int near, far, dj;
@@ -93,9 +92,9 @@ struct ProjectRows {
   float weight;               // of w_a + w_b (1/(2 positional_k), 1/Jacobi's relaxation)
   const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
   float* lambda;              // multipliers of row 0 [kg·m], or null
-  bool limit;                 // nothing happens below `rest`
+  bool limit;                 // one-sided: nothing happens below the rest length
   const std::int32_t* alive;  // of row 0: -1 for constraints, 0 for torn ones; null: cannot tear
-  float inverse_dt;           // 1/s
+  float inverse_dt;           // limit, compliance: the change of position goes into the velocity too
 };
 
 struct AdvanceRow {
@@ -191,6 +190,14 @@ struct WindRow {
   Gust gusts[kGusts];
 };
 
+struct LineStrip;      // kernels/line.h
+struct TransposeRows;
+struct SecondOrderRow;  // kernels/second_order.h
+struct TetherRow;
+struct BendRow;         // kernels/bending.h
+struct BendLine;
+struct TwistRow;
+
 struct KernelTable {
   void (*spring_rows)(const SpringRows&);
   void (*spring_family)(const FamilyRow&);          // f += spring force
@@ -203,6 +210,15 @@ struct KernelTable {
   // Jacobi: the corrections of one row's constraints added to the sums of rows j and j+dj
   void (*project_jacobi)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
   void (*apply_corrections)(const AdvanceRow&);     // x += f, v += f/dt if inverse_dt > 0, f <- 0
+  void (*line_strip)(const LineStrip&);             // a strip of lines, each solved as a whole
+  void (*rows_to_lanes)(const TransposeRows&);
+  void (*lanes_to_rows)(const TransposeRows&);
+  void (*predict_second_order)(const SecondOrderRow&);
+  void (*velocity_second_order)(const SecondOrderRow&);
+  void (*tethers)(const TetherRow&);
+  void (*bend_row)(const BendRow&);                 // v += dt force/mass of the bending energy
+  void (*bend_line)(const BendLine&);               // implicit bending along a strip of lines
+  void (*bend_twist)(const TwistRow&);              // and of every second cell between two rows
   RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
   RowReach (*below_faces[kShapes])(const FacesRow&);
   void (*near_pairs)(const NearCell&);

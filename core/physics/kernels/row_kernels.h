@@ -77,6 +77,15 @@ void velocity(const AdvanceRow&);
 void project(const ProjectRows&);
 void project_jacobi(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
 void apply_corrections(const AdvanceRow&);
+void line_strip(const physics::LineStrip&);
+void rows_to_lanes(const physics::TransposeRows&);
+void lanes_to_rows(const physics::TransposeRows&);
+void predict_second_order(const physics::SecondOrderRow&);
+void velocity_second_order(const physics::SecondOrderRow&);
+void tethers(const physics::TetherRow&);
+void bend_row(const physics::BendRow&);
+void bend_line(const physics::BendLine&);
+void bend_twist(const physics::TwistRow&);
 
 void wind(const physics::WindRow&);
 void push(const AdvanceRow&);

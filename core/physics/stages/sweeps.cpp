@@ -40,10 +40,8 @@ class ProjectedFamily {
       rows_.rest = float(family_.rest * (1 + options_.limit));
       rows_.limit = true;
     } else if (options_.compliant) {
-      for (int j = 0; j < l.rows; ++j) {
-        const double k = family_.stiffness * gradient_factor(parts_.cloth, j, family_.dj);
-        compliance_[j] = float(1 / (std::max(k, 1e-12) * dt * dt));
-      }
+      for (int j = 0; j < l.rows; ++j) compliance_[j] = compliance_of(parts_, family_, j, dt);
+      rows_.inverse_dt = float(1 / (dt * implicit_share(parts_.scene.solver)));
       rows_.compliance = compliance_.data();
       if (options_.multipliers) rows_.lambda = options_.multipliers->row(index_, 0);
     } else {
@@ -167,7 +165,7 @@ class Jacobi final : public RowStage {
     a.x = l.x.row(j);
     a.v = l.v.row(j);
     a.f = sum(j);
-    a.inverse_dt = compliant_ ? float(1 / s.dt) : 0.0f;
+    a.inverse_dt = compliant_ ? float(1 / (s.dt * implicit_share(parts_.scene.solver))) : 0.0f;
     parts_.kernels.apply_corrections(a);
   }
 
@@ -179,6 +177,12 @@ class Jacobi final : public RowStage {
 };
 
 }  // namespace
+
+float compliance_of(const ClothParts& parts, const Family& f, int j, double dt) {
+  const double k = f.stiffness * gradient_factor(parts.cloth, j, f.dj);
+  const double h = dt * implicit_share(parts.scene.solver);
+  return float(1 / (std::max(k, 1e-12) * h * h));
+}
 
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
                          Stages& stages) {
