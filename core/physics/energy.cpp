@@ -65,6 +65,7 @@ void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Fam
     for (int j = 0; j + f.dj < l.rows; ++j) {
       const double k = f.stiffness * gradient_factor(cloth, j, f.dj);
       for (int n = 0; n < f.per_row(l.columns); ++n) {
+        if (!f.alive(j, n)) continue;
         const int near = n + f.near(), far = n + f.far();
         const auto difference = [&](const Rows& rows) {
           Vec3 d;

@@ -18,7 +18,7 @@ void for_each_constraint(const Cloth& cloth, const Family& f, Visit&& visit) {
   for (int j = 0; j + f.dj < rows; ++j) {
     const double k = f.stiffness * gradient_factor(cloth, j, f.dj);
     for (int n = 0; n < f.per_row(columns); ++n)
-      visit(j * columns + n + f.near(), (j + f.dj) * columns + n + f.far(), k);
+      if (f.alive(j, n)) visit(j * columns + n + f.near(), (j + f.dj) * columns + n + f.far(), k);
   }
 }
 

@@ -44,6 +44,11 @@ std::vector<Family> families_of(const Cloth& cloth) {
   return families;
 }
 
+Links::Links(int rows, int stride, int per_row)
+    : stride_(static_cast<std::size_t>(stride)), lanes_(static_cast<std::size_t>(rows) * stride_) {
+  for (int j = 0; j < rows; ++j) std::fill_n(row(j), per_row, -1);
+}
+
 double gradient_factor(const Cloth& cloth, int j, int dj) {
   return 1 - cloth.stiffness_gradient * (j + 0.5 * dj) / (cloth.grid.ny - 1);
 }
@@ -60,6 +65,7 @@ FamilyRow family_row(Lattice& l, const Family& f, int j) {
   r.v_far = l.v.row(j + f.dj);
   r.w = l.w(j);
   r.w_far = l.w(j + f.dj);
+  if (f.links) r.alive = f.links->row(j);
   return r;
 }
 

@@ -13,12 +13,30 @@ namespace weft::physics {
 
 enum class Kind { structural, shear, bend };
 
+// Which constraints of a family are still there: -1, or 0 once torn.
+class Links {
+ public:
+  Links(int rows, int stride, int per_row);
+  std::int32_t* row(int j) { return lanes_.data() + static_cast<std::size_t>(j) * stride_; }
+  bool alive(int j, int a) const {
+    return lanes_[static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(a)] != 0;
+  }
+  std::size_t bytes() const { return lanes_.size() * sizeof(std::int32_t); }
+
+ private:
+  std::size_t stride_;
+  AlignedArray<std::int32_t> lanes_;
+};
+
 struct Family {
   int di = 0, dj = 0;  // dj >= 0; di > 0 when dj = 0
   Kind kind = Kind::structural;
   double rest = 0;       // m, on the flat sheet
   double stiffness = 0;  // N/m, in the first row
   double damping = 0;    // N·s/m
+  Links* links = nullptr;  // null: the cloth cannot tear
+
+  bool alive(int j, int a) const { return !links || links->alive(j, a); }
 
   int near() const { return di < 0 ? -di : 0; }
   int far() const { return di > 0 ? di : 0; }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/colliders/shapes.h"
 #include "physics/state.h"
 
 namespace weft {
@@ -49,6 +50,7 @@ void Simulation::State::grab(int cloth, int i, int j, const Vec3& target, double
   grab_->row = j;
   grab_->target = target;
   grab_->stiffness = stiffness;
+  if (is_explicit(method) && scene.time.substeps == kAutoSubsteps) follow_stretch();
 }
 
 void Simulation::State::release() {
@@ -69,6 +71,57 @@ void Simulation::State::hold(int cloth, int i, int j, bool held) {
     spectra[std::size_t(cloth)] = estimate_spectrum(step.cloth(), step.families(), l,
                                                     method == Method::spring_friction);
   ++changes;
+}
+
+namespace {
+
+// Least squared distance between segments p + s d and q + t e, 0 <= s, t <= 1 (Ericson 5.1.9).
+double segment_distance(const Vec3& p, const Vec3& d, const Vec3& q, const Vec3& e) {
+  const Vec3 r = minus(p, q);
+  const double a = dot(d, d), b = dot(d, e), c = dot(d, r), f = dot(e, r);
+  const double h = std::max(dot(e, e), 1e-300), denominator = a * h - b * b;
+  double s = denominator > 1e-12 * a * h ? std::clamp((b * f - c * h) / denominator, 0.0, 1.0) : 0;
+  double t = (b * s + f) / h;
+  if (t < 0 || t > 1) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = std::clamp((b * t - c) / std::max(a, 1e-300), 0.0, 1.0);
+  }
+  const Vec3 apart = minus(plus(p, times(d, s)), plus(q, times(e, t)));
+  return std::sqrt(dot(apart, apart));
+}
+
+}  // namespace
+
+int Simulation::State::cut(const Vec3& a, const Vec3& b, double width) {
+  const Vec3 d = minus(b, a);
+  std::int64_t cut = 0;
+  for (auto& step : cloths) {
+    const Lattice& l = step->lattice();
+    const auto at = [&](int j, int i) { return Vec3{l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)}; };
+    std::vector<std::array<int, 3>> found;  // family, row, constraint
+    for (std::size_t n = 0; n < step->families().size(); ++n) {
+      const Family& f = step->families()[n];
+      for (int j = 0; j + f.dj < l.rows; ++j)
+        for (int k = 0; k < f.per_row(l.columns); ++k) {
+          const Vec3 from = at(j, k + f.near());
+          if (f.alive(j, k) &&
+              segment_distance(a, d, from, minus(at(j + f.dj, k + f.far()), from)) <= width)
+            found.push_back({int(n), j, k});
+        }
+    }
+    if (found.empty()) continue;
+    if (!step->topology()) {
+      release();
+      step->allow_tearing();
+      plan_changed();
+    }
+    const std::int64_t before = step->topology()->torn();
+    for (const auto& [n, j, k] : found) step->topology()->end(step->families()[std::size_t(n)], j, k);
+    step->topology()->update();
+    cut += step->topology()->torn() - before;
+  }
+  if (cut > 0) ++changes;
+  return int(cut);
 }
 
 }  // namespace weft

@@ -81,7 +81,16 @@ void add_self_contact(const Simulation::State& s, Report& r) {
   std::vector<Face> faces;
   for (const auto& step : s.cloths) {
     const Lattice& l = step->lattice();
-    add_faces(l.columns, l.rows, std::int32_t(x.size()), faces);
+    const Topology* topology = step->topology();
+    if (topology && topology->version() > 0)
+      for (const auto& t : topology->triangles()) {
+        Face f;
+        for (int k = 0; k < 3; ++k)
+          f[k] = std::int32_t(x.size()) + std::int32_t(t[k]) / l.stride * l.columns + std::int32_t(t[k]) % l.stride;
+        faces.push_back(f);
+      }
+    else
+      add_faces(l.columns, l.rows, std::int32_t(x.size()), faces);
     const std::vector<Vec3> of_cloth = gather(l, l.x);
     x.insert(x.end(), of_cloth.begin(), of_cloth.end());
   }
@@ -206,6 +215,7 @@ Report measure(const Simulation::State& s) {
     r.particles += std::int64_t(step.lattice().columns) * step.lattice().rows;
     add_constraints(step, r);
     add_energy(s, c, r);
+    if (step.topology()) r.torn += step.topology()->torn();
     add_penetration(s, step, r);
   }
   r.energy.total = r.energy.kinetic + r.energy.elastic + r.energy.gravity;

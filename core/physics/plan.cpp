@@ -8,10 +8,25 @@ namespace weft::physics {
 ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::uint64_t seed,
                      const KernelTable& kernels)
     : cloth_(scene.cloths[cloth_index]),
+      method_(method),
+      seed_(seed),
       families_(families_of(cloth_)),
       lattice_(make_lattice(cloth_, cloth_index, seed, !is_explicit(method))),
       parts_{scene, cloth_, lattice_, families_, kernels} {
-  choose_stages(parts_, method, seed);
+  const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                               [](const Collider& c) { return c.cuts; });
+  if (cut || cloth_.tear_strain > 0)
+    topology_ = std::make_unique<Topology>(lattice_.columns, lattice_.rows, lattice_.stride, families_);
+  choose_stages();
+  make_passes();
+}
+
+// The same stages with masks; what they carry from substep to substep starts anew.
+void ClothStep::allow_tearing() {
+  if (topology_) return;
+  topology_ = std::make_unique<Topology>(lattice_.columns, lattice_.rows, lattice_.stride, families_);
+  stages_.clear();
+  choose_stages();
   make_passes();
 }
 
@@ -31,18 +46,21 @@ void ClothStep::remove_stage(const Stage* stage) {
   make_passes();
 }
 
-void ClothStep::choose_stages(const ClothParts& parts, Method method, std::uint64_t seed) {
+void ClothStep::choose_stages() {
+  const ClothParts& parts = parts_;
+  const Method method = method_;
   const Solver& solver = parts.scene.solver;
   auto bending = make_bending(parts, method);
   if (is_explicit(method)) {
     if (bending) stages_.push_back(std::move(bending));
     stages_.push_back(make_springs(parts, method == Method::spring_friction));
-    if (auto wind = make_wind(parts, seed)) stages_.push_back(std::move(wind));
+    if (auto wind = make_wind(parts, seed_)) stages_.push_back(std::move(wind));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
   } else {
     SweepOptions sweep;
     sweep.compliant = method == Method::compliant;
-    const bool lines = solver.sweep == Sweep::line;
+    // Lines know no torn constraints: a cloth that can tear is swept in colours.
+    const bool lines = solver.sweep == Sweep::line && !topology_;
     if (sweep.compliant && !lines && solver.iterations > 1)
       multipliers_ = std::make_unique<Multipliers>(lattice_, families_.size());
     sweep.multipliers = multipliers_.get();
@@ -50,7 +68,7 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method, std::uint6
     stages_.push_back(history_
                           ? make_predict_second_order(parts, *history_, multipliers_.get())
                           : make_predict(parts, multipliers_.get()));
-    if (auto wind = make_wind(parts, seed)) stages_.push_back(std::move(wind));
+    if (auto wind = make_wind(parts, seed_)) stages_.push_back(std::move(wind));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
     if (auto tethers = solver.tethers ? make_tethers(parts, sweep.compliant) : nullptr)
       stages_.push_back(std::move(tethers));
@@ -69,12 +87,7 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method, std::uint6
     if (history_) stages_.push_back(make_velocity_second_order(parts, *history_));
     else if (!sweep.compliant) stages_.push_back(make_velocity(parts));
   }
-  for (int n = 0; n < solver.collision_iterations; ++n)
-    for (const Collider& c : parts.scene.colliders) {
-      if (c.cuts) continue;
-      stages_.push_back(make_collider(parts, c));
-      if (auto faces = make_collider_faces(parts, c)) stages_.push_back(std::move(faces));
-    }
+  append_contact();
   if (cloth_.strain_limit > 0) {
     SweepOptions limit;
     limit.limit = cloth_.strain_limit;
@@ -82,9 +95,24 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method, std::uint6
   }
 }
 
+// Colliders, and what tears and cuts.
+void ClothStep::append_contact() {
+  for (int n = 0; n < parts_.scene.solver.collision_iterations; ++n)
+    for (const Collider& c : parts_.scene.colliders) {
+      if (c.cuts) continue;
+      stages_.push_back(make_collider(parts_, c));
+      if (auto faces = make_collider_faces(parts_, c)) stages_.push_back(std::move(faces));
+    }
+  if (!topology_) return;
+  for (const Collider& c : parts_.scene.colliders)
+    if (c.cuts) stages_.push_back(make_cut(parts_, c, *topology_));
+  if (cloth_.tear_strain > 0) stages_.push_back(make_tear(parts_, *topology_));
+}
+
 std::size_t ClothStep::bytes() const {
   std::size_t bytes = lattice_.bytes() + (multipliers_ ? multipliers_->bytes() : 0) +
                       (history_ ? history_->bytes() : 0);
+  if (topology_) bytes += topology_->bytes();
   for (const auto& s : stages_) bytes += s->bytes();
   return bytes;
 }
@@ -124,6 +152,8 @@ void describe_skipped(const Scene& scene, Method method, Plan& plan) {
   if (!any([](const Cloth& c) { return c.self_collision.mode != SelfCollisionMode::off; }))
     skip("self_collision", "off in the scene");
   if (!any([](const Cloth& c) { return c.tear_strain > 0; })) skip("tear", "tear_strain is 0");
+  if (std::none_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.cuts; }))
+    skip("cut", "no collider cuts");
   if (scene.wind.drag == 0 && scene.wind.lift == 0) skip("wind", "drag and lift are 0");
 }
 

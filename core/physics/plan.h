@@ -18,6 +18,7 @@
 
 #include "physics/passes.h"
 #include "physics/stages/stages.h"
+#include "physics/topology.h"
 #include "weft/report.h"
 
 namespace weft::physics {
@@ -38,19 +39,27 @@ class ClothStep {
   void add_stage(std::unique_ptr<Stage> stage);
   void remove_stage(const Stage* stage);
   ClothParts parts() const { return parts_; }
+  // Null while the cloth cannot tear. allow_tearing() lets a cloth tear from now on.
+  Topology* topology() { return topology_.get(); }
+  const Topology* topology() const { return topology_.get(); }
+  void allow_tearing();
   std::size_t bytes() const;
 
  private:
-  void choose_stages(const ClothParts& parts, Method method, std::uint64_t seed);
+  void choose_stages();
+  void append_contact();
   void make_passes();
 
   const Cloth& cloth_;
+  const Method method_;
+  const std::uint64_t seed_;
   std::vector<Family> families_;
   Lattice lattice_;
   ClothParts parts_;
   std::unique_ptr<Multipliers> multipliers_;
   std::unique_ptr<History> history_;
   Stages stages_;
+  std::unique_ptr<Topology> topology_;
   std::unique_ptr<Passes> passes_;
 };
 

@@ -73,6 +73,11 @@ View Simulation::view() const {
     c.vy = l.v.component(1);
     c.vz = l.v.component(2);
     c.inverse_mass = l.inverse_mass.span();
+    if (const Topology* t = step->topology()) {
+      c.topology_version = t->version();
+      c.triangles = t->triangles();
+      c.torn = t->torn() > 0;
+    }
     view.cloths.push_back(c);
   }
   return view;
@@ -103,6 +108,8 @@ void Simulation::grab(int cloth, int i, int j, const Vec3& target, double stiffn
 void Simulation::release() { state_->release(); }
 void Simulation::pin(int cloth, int i, int j) { state_->hold(cloth, i, j, true); }
 void Simulation::unpin(int cloth, int i, int j) { state_->hold(cloth, i, j, false); }
+
+int Simulation::cut(const Vec3& a, const Vec3& b, double width) { return state_->cut(a, b, width); }
 
 Report Simulation::report() const { return measure(*state_); }
 std::uint64_t Simulation::hash() const { return state_hash(*state_); }

@@ -59,6 +59,7 @@ struct Operator {
     const float factor = float(gradient_factor(cloth, j, f.dj));
     const float rest = float(f.rest);
     for (int m = 0; m < f.per_row(l.columns); ++m) {
+      if (!f.alive(j, m)) continue;
       const int ia = m + f.near(), ib = m + f.far();
       const std::size_t a = std::size_t(j) * l.columns + ia;
       const std::size_t b = std::size_t(j + f.dj) * l.columns + ib;

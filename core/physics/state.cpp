@@ -20,6 +20,7 @@ constexpr double kLimitShare = 0.9;      // of the stability limit that an autom
 constexpr int kMostSubsteps = 100000;    // per frame
 constexpr double kProjectionRate = 960;  // automatic substeps a second of the projecting methods
 constexpr int kSmallCloth = 4096;        // particles up to which one thread is faster
+constexpr double kGrabbed = 0.6;         // of follow_stretch's t, room for what a hand may do in a frame
 constexpr float kFarAway = 1e7f;         // m; nothing in a sane scene gets there
 
 Simd resolve(Simd simd) {
@@ -154,6 +155,8 @@ void Simulation::State::advance_frame() {
     restore();
     return;
   }
+  for (auto& step : cloths)
+    if (step->topology()) step->topology()->update();
   ++frame;
   total_substeps += substeps;
   if (is_explicit(method) && scene.time.substeps == kAutoSubsteps) follow_stretch();
@@ -204,6 +207,7 @@ void Simulation::State::follow_stretch() {
       if (f.kind != Kind::structural) continue;
       for (int j = 0; j + f.dj < l.rows; j += 4)
         for (int n = 0; n < f.per_row(l.columns); ++n) {
+          if (!f.alive(j, n)) continue;
           float squared = 0;
           for (int k = 0; k < 3; ++k) {
             const float e = l.x.at(k, j + f.dj, n + f.far()) - l.x.at(k, j, n + f.near());
@@ -212,7 +216,8 @@ void Simulation::State::follow_stretch() {
           most = std::max(most, squared / float(f.rest * f.rest));
         }
     }
-    const double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
+    double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
+    if (grab_) t = std::max(t, kGrabbed);
     // Springs in all directions: never more than twice the flat sheet's ω² for the families here.
     Spectrum stretched = spectra[c];
     stretched.omega_squared *= folds_freely(step) ? kFolded : 1 + t;

@@ -20,6 +20,7 @@ struct Simulation::State {
   void grab(int cloth, int i, int j, const Vec3& target, double stiffness);
   void release();
   void hold(int cloth, int i, int j, bool held);
+  int cut(const Vec3& a, const Vec3& b, double width);
   void set(std::span<const double> positions, std::span<const double> velocities);
   std::size_t backup_bytes() const;
 

@@ -82,7 +82,10 @@ class Simulation {
   // Holds a particle where it is; lets a held one go, be it held by the scene or by pin().
   void pin(int cloth, int i, int j);
   void unpin(int cloth, int i, int j);
-  // All four throw std::out_of_range for a particle that is not there.
+  // Cuts every constraint of any cloth that comes within `width` [m] of the segment from a to b, and
+  // returns how many. A cloth that could not tear so far can from then on.
+  int cut(const Vec3& a, const Vec3& b, double width);
+  // These throw std::out_of_range for a particle that is not there.
 
   // Everything measured so far (weft/report.h). Evaluates energies and strains now.
   Report report() const;

@@ -2,6 +2,7 @@
 // next call that changes the simulation. Copy what must last longer.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,6 +20,10 @@ struct ClothView {
   std::span<const float> vx, vy, vz;  // velocity [m/s]; half a substep behind for `spring` methods
   std::span<const float> inverse_mass;  // 1/kg; 0 = pinned
   std::uint64_t topology_version = 0;   // rises when triangles change (tearing)
+  bool torn = false;                    // whether any constraint is gone
+  // With topology_version > 0: the triangles that are left, corners as j*stride + i. Else all, two of
+  // every square: (i,j) (i+1,j) (i,j+1) and (i+1,j) (i+1,j+1) (i,j+1).
+  std::span<const std::array<std::uint32_t, 3>> triangles;
 };
 
 struct View {

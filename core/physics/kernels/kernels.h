@@ -73,6 +73,7 @@ struct FamilyRow {
   float* scratch;     // 3 rows of `stride` floats, zero in the 16 lanes before each (same_row only)
   int stride;
   SpringConstants spring;
+  std::int32_t* alive;  // -1 in the lanes of constraints, 0 in those of torn ones; null: cannot tear
 };
 
 // One family of projected constraints in rows begin … end-1. Which of the optional parts are given
@@ -92,6 +93,7 @@ struct ProjectRows {
   const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
   float* lambda;              // multipliers of row 0 [kg·m], or null
   bool limit;                 // one-sided: nothing happens below the rest length
+  const std::int32_t* alive;  // of row 0: -1 for constraints, 0 for torn ones; null: cannot tear
   float inverse_dt;           // limit, compliance: the change of position goes into the velocity too
 };
 
@@ -200,6 +202,7 @@ struct KernelTable {
   void (*spring_rows)(const SpringRows&);
   void (*spring_family)(const FamilyRow&);          // f += spring force
   void (*damped_spring_family)(const FamilyRow&);   // f += spring force and damping along it
+  int (*tear)(const FamilyRow&, float longest);     // ends what is longer; returns how many
   void (*integrate)(const AdvanceRow&);             // leapfrog step from f, then f <- 0
   void (*predict)(const AdvanceRow&);               // previous <- x, v and x advanced by gravity
   void (*velocity)(const AdvanceRow&);              // v <- (x - previous)/dt

@@ -81,18 +81,20 @@ WEFT_INLINE bool moves(Wide3 c) {
   return any(some);
 }
 
-WEFT_INLINE WideInt lanes_of(const std::int32_t* lanes) {
-  typedef WideInt Loose __attribute__((aligned(4), may_alias));
-  return *reinterpret_cast<const Loose*>(lanes);
+// Constraints a … of row j that are not torn.
+WEFT_INLINE WideInt alive_lanes(const ProjectRows& p, int j, int a) {
+  return lanes_at(p.alive + std::ptrdiff_t(j) * p.stride + a);
 }
 
-template <Rule R, class DelayType>
+template <Rule R, bool kTorn, class DelayType>
 WEFT_INLINE void along_row(const ProjectRows& p, int j, int first, const std::int32_t* lanes,
                            DelayType delay) {
   const RowAt row = row_at(p, j);
   for (int a = first; a < p.count + p.far; a += kLanes) {
     const Wide wa = load(row.w + a), wb = load(row.w + a + p.far);
-    const Wide3 c = solve_block<R>(p, row, row, wa, wb, j, a, lanes_of(lanes + a));
+    WideInt active = lanes_at(lanes + a);
+    if constexpr (kTorn) active = active & alive_lanes(p, j, a);
+    const Wide3 c = solve_block<R>(p, row, row, wa, wb, j, a, active);
     const Wide3 change = c * wa - delay.next(c * wb);
     if (R == Rule::limit && !moves(change)) continue;
     shift<R>(p, row, a, change);
@@ -173,7 +175,7 @@ WEFT_INLINE int along_row_parted(const ProjectRows& p, int j, int colour) {
 
 // The constraints between rows j and j+dj. Blocks pass three stations (edge, root, shift), each a
 // block behind the one before, so that no root is waited for.
-template <Rule R>
+template <Rule R, bool kTorn>
 WEFT_INLINE void between_rows(const ProjectRows& p, int j) {
   // Lane a of these is an end of constraint a.
   const auto shifted = [](RowAt r, int by) {
@@ -191,8 +193,9 @@ WEFT_INLINE void between_rows(const ProjectRows& p, int j) {
       const Wide wa = load(near.w + i), wb = load(far.w + i);
       Wide lambda{};
       if constexpr (R == Rule::multipliers) lambda = load(lambdas + i);
-      const Wide scale =
-          scale_of<R>(p, rooted.length, wa, wb, j, lambda, lanes_below(count - i));
+      WideInt active = lanes_below(count - i);
+      if constexpr (kTorn) active = active & alive_lanes(p, j, i);
+      const Wide scale = scale_of<R>(p, rooted.length, wa, wb, j, lambda, active);
       if constexpr (R == Rule::multipliers) store(lambdas + i, lambda);
       const Wide3 c = rooted.e * scale;
       if (R != Rule::limit || moves(c)) {
@@ -213,7 +216,7 @@ WEFT_INLINE void between_rows(const ProjectRows& p, int j) {
 
 // Rows begin … end-1 of one family: along the rows one colour after the other, between rows those of
 // one colour.
-template <Rule R>
+template <Rule R, bool kTorn>
 void sweep(const ProjectRows& given) {
   const ProjectRows p = given;
   if (p.dj == 0) {
@@ -221,14 +224,14 @@ void sweep(const ProjectRows& given) {
       for (int j = p.begin; j < p.end; ++j) {
         const std::int32_t* lanes = p.lanes + std::ptrdiff_t(colour) * p.stride;
         int a = 0;
-        if (p.far == 1) a = along_row_parted<R, 1>(p, j, colour);
-        if (p.far == 2 && kLanes > 1) a = along_row_parted<R, kLanes == 1 ? 1 : 2>(p, j, colour);
-        if (a < p.count) along_row<R>(p, j, a, lanes, LongDelay3(p.far));
+        if (p.far == 1 && !kTorn) a = along_row_parted<R, 1>(p, j, colour);
+        if (p.far == 2 && kLanes > 1 && !kTorn) a = along_row_parted<R, kLanes == 1 ? 1 : 2>(p, j, colour);
+        if (a < p.count) along_row<R, kTorn>(p, j, a, lanes, LongDelay3(p.far));
       }
     return;
   }
   for (int j = p.begin; j < p.end; ++j)
-    if (j / p.dj % 2 == p.colour && j + p.dj < p.rows) between_rows<R>(p, j);
+    if (j / p.dj % 2 == p.colour && j + p.dj < p.rows) between_rows<R, kTorn>(p, j);
 }
 
 // Adds the corrections of row j's constraints of one family to the sums of both rows.
@@ -237,7 +240,9 @@ WEFT_INLINE void sum_along(const ProjectRows& p, int j, Row3 sum, DelayType dela
   const RowAt row = row_at(p, j);
   for (int a = 0; a < padded(p.count + p.far); a += kLanes) {
     const Wide wa = load(row.w + a), wb = load(row.w + a + p.far);
-    const Wide3 c = solve_block<R>(p, row, row, wa, wb, j, a, lanes_below(p.count - a));
+    WideInt active = lanes_below(p.count - a);
+    if (p.alive) active = active & alive_lanes(p, j, a);
+    const Wide3 c = solve_block<R>(p, row, row, wa, wb, j, a, active);
     store3(sum, a, load3(sum, a) + (c * wa - delay.next(c * wb)));
   }
 }
@@ -252,7 +257,9 @@ void sum_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
   const RowAt near = row_at(p, j), far = row_at(p, j + p.dj);
   for (int a = 0; a < padded(p.count); a += kLanes) {
     const Wide wa = load(near.w + a + p.near), wb = load(far.w + a + p.far);
-    const Wide3 c = solve_block<R>(p, near, far, wa, wb, j, a, lanes_below(p.count - a));
+    WideInt active = lanes_below(p.count - a);
+    if (p.alive) active = active & alive_lanes(p, j, a);
+    const Wide3 c = solve_block<R>(p, near, far, wa, wb, j, a, active);
     store3(sum, a + p.near, load3(sum, a + p.near) + c * wa);
     store3(sum_far, a + p.far, load3(sum_far, a + p.far) - c * wb);
   }
@@ -260,11 +267,17 @@ void sum_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
 
 }  // namespace
 
+template <bool kTorn>
+WEFT_INLINE void project_by_rule(const ProjectRows& p) {
+  if (p.limit) return sweep<Rule::limit, kTorn>(p);
+  if (p.lambda) return sweep<Rule::multipliers, kTorn>(p);
+  if (p.compliance) return sweep<Rule::compliant, kTorn>(p);
+  sweep<Rule::rigid, kTorn>(p);
+}
+
 void project(const ProjectRows& p) {
-  if (p.limit) return sweep<Rule::limit>(p);
-  if (p.lambda) return sweep<Rule::multipliers>(p);
-  if (p.compliance) return sweep<Rule::compliant>(p);
-  sweep<Rule::rigid>(p);
+  if (p.alive) return project_by_rule<true>(p);
+  project_by_rule<false>(p);
 }
 
 void project_jacobi(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {

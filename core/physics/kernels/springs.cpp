@@ -212,7 +212,7 @@ namespace {
 
 // f_near += F, f_far -= F for every spring of the family. Within one row the difference of
 // neighbouring springs is taken first, so that the sum has the same order at every width.
-template <bool kDamped>
+template <bool kDamped, bool kTorn>
 WEFT_INLINE void add_family(const FamilyRow& r) {
   const SpringConstants& c = r.spring;
   const Row3 scratch{r.scratch, r.scratch + r.stride, r.scratch + 2 * r.stride};
@@ -226,7 +226,9 @@ WEFT_INLINE void add_family(const FamilyRow& r) {
       const Wide3 dv = load3(r.v_far, a + r.far) - load3(r.v, a + r.near);
       scale = scale + c.damping * (dot(e, dv) * (reciprocal * reciprocal));
     }
-    const Wide3 f = select(lanes_below(r.count - a), e * scale, Wide3{});
+    WideInt active = lanes_below(r.count - a);
+    if constexpr (kTorn) active = active & lanes_at(r.alive + a);
+    const Wide3 f = select(active, e * scale, Wide3{});
     if (r.same_row) {
       store3(scratch, a, f);
     } else {
@@ -244,8 +246,28 @@ WEFT_INLINE void add_family(const FamilyRow& r) {
 
 }  // namespace
 
-void spring_family(const FamilyRow& r) { add_family<false>(r); }
-void damped_spring_family(const FamilyRow& r) { add_family<true>(r); }
+void spring_family(const FamilyRow& r) {
+  if (r.alive) return add_family<false, true>(r);
+  add_family<false, false>(r);
+}
+void damped_spring_family(const FamilyRow& r) {
+  if (r.alive) return add_family<true, true>(r);
+  add_family<true, false>(r);
+}
+
+int tear(const FamilyRow& r, float longest) {
+  int torn = 0;
+  for (int a = 0; a < padded(r.count); a += kLanes) {
+    const Wide3 e = load3(r.x_far, a + r.far) - load3(r.x, a + r.near);
+    const WideInt alive = lanes_at(r.alive + a);
+    const WideInt over = alive & (dot(e, e) > longest * longest);
+    if (!any(over)) continue;
+    typedef WideInt Loose __attribute__((aligned(4), may_alias));
+    *reinterpret_cast<Loose*>(r.alive + a) = alive & ~over;
+    torn += __builtin_popcount(bits(over));
+  }
+  return torn;
+}
 
 void integrate(const AdvanceRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {

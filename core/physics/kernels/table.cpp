@@ -5,8 +5,8 @@ namespace weft::WEFT_KERNELS {
 
 extern const physics::KernelTable kTable;
 const physics::KernelTable kTable = {
-    spring_rows,    spring_family, damped_spring_family, integrate, predict,
-    velocity,       project,       project_jacobi,       apply_corrections,
+    spring_rows,    spring_family, damped_spring_family, tear, integrate,
+    predict,        velocity,      project,              project_jacobi, apply_corrections,
     line_strip,     rows_to_lanes, lanes_to_rows,        predict_second_order,
     velocity_second_order, tethers, bend_row, bend_line,
     bend_twist,

@@ -65,6 +65,12 @@ WEFT_INLINE WideInt lane_numbers() {
   return r;
 }
 
+// Lanes of a mask in memory.
+WEFT_INLINE WideInt lanes_at(const std::int32_t* p) {
+  typedef WideInt Loose __attribute__((aligned(4), may_alias));
+  return *reinterpret_cast<const Loose*>(p);
+}
+
 // All ones in the lanes whose number is below `count`.
 WEFT_INLINE WideInt lanes_below(int count) { return lane_numbers() < count; }
 

@@ -5,7 +5,7 @@
 //
 // (drag and lift of a flat plate; Wilson et al. 2014, "Simulating wind effects on cloth"). A force
 // that would take more than the whole relative motion within one substep is softened: F/(1 + q),
-// q the share of the motion it would take.
+// q the share of the motion that it and the five other triangles at a particle would take.
 #include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
@@ -50,7 +50,7 @@ WEFT_INLINE Wide3 third_of_force(const WindRow& r, Wide3 a, Wide3 b, Wide3 c, Wi
   const Wide square = max(dot(u, u), wide(kTinySquare)), speed = sqrt(square);
   const Wide3 across = n - u * (into / square);
   const Wide area = size * 0.5f;
-  const Wide taken = (r.drag * into + r.lift * speed) * area * w3 * (r.dt / 9.0f);
+  const Wide taken = (r.drag * into + r.lift * speed) * area * w3 * (r.dt * 6.0f / 9.0f);
   const Wide scale = area * into * third / (1.0f + taken);
   return n * (scale * (r.drag * into)) + across * (scale * (r.lift * speed));
 }

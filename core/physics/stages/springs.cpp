@@ -128,7 +128,7 @@ Advance advance_of(const ClothParts& parts, double dt) {
 
 std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped) {
   // families_of lists the six of a plain cloth in one order, which PlainSprings takes for granted.
-  if (!damped && parts.cloth.level == 0 && parts.families.size() == 6)
+  if (!damped && parts.cloth.level == 0 && parts.families.size() == 6 && !parts.families[0].links)
     return std::make_unique<PlainSprings>(parts);
   int reach = 0;
   for (const Family& f : parts.families) reach = std::max(reach, f.dj);

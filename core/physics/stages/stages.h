@@ -29,6 +29,10 @@ std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped);
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, struct Multipliers* multipliers);
 std::unique_ptr<RowStage> make_velocity(const ClothParts& parts);
 std::unique_ptr<RowStage> make_keyed_pins(const ClothParts& parts);
+class Topology;
+std::unique_ptr<RowStage> make_tear(const ClothParts& parts, Topology& topology);
+std::unique_ptr<RowStage> make_cut(const ClothParts& parts, const Collider& collider,
+                                   Topology& topology);
 std::unique_ptr<RowStage> make_wind(const ClothParts& parts, std::uint64_t seed);
 std::unique_ptr<RowStage> make_collider(const ClothParts& parts, const Collider& collider);
 std::unique_ptr<RowStage> make_collider_faces(const ClothParts& parts, const Collider& collider);

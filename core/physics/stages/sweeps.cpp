@@ -35,6 +35,7 @@ class ProjectedFamily {
     rows_.rest = float(family_.rest);
     rows_.weight = 1;
     rows_.inverse_dt = float(1 / dt);
+    if (family_.links) rows_.alive = family_.links->row(0);
     if (options_.limit > 0) {
       rows_.rest = float(family_.rest * (1 + options_.limit));
       rows_.limit = true;

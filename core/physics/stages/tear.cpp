@@ -1,0 +1,124 @@
+// Stages "tear" and "cut": constraints beyond their tear strain end, and those that a cutter's
+// surface reaches (seed 000, scene 3).
+#include <cmath>
+
+#include "physics/stages/colliders.h"
+#include "physics/topology.h"
+
+namespace weft::physics {
+namespace {
+
+int longest_reach(const std::vector<Family>& families) {
+  int reach = 0;
+  for (const Family& f : families) reach = std::max(reach, f.dj);
+  return reach;
+}
+
+class TearStage final : public RowStage {
+ public:
+  TearStage(const ClothParts& parts, Topology& topology)
+      : RowStage("tear", "constraints beyond their tear strain end", longest_reach(parts.families),
+                 parts.constraints(), "constraints"),
+        parts_(parts),
+        topology_(topology) {}
+  void run(int j, const Substep&) override {
+    for (const Family& f : parts_.families) {
+      if (j + f.dj >= parts_.lattice.rows) continue;
+      const auto longest = float(f.rest * (1 + parts_.cloth.tear_strain));
+      if (const int torn = parts_.kernels.tear(family_row(parts_.lattice, f, j), longest); torn > 0)
+        topology_.died(j, torn);
+    }
+  }
+
+ private:
+  ClothParts parts_;
+  Topology& topology_;
+};
+
+// A constraint is cut where a point of it comes inside the offset surface. Points are looked at as
+// densely as the cutter is small.
+class CutStage final : public RowStage {
+ public:
+  CutStage(const ClothParts& parts, const Collider& collider, Topology& topology)
+      : RowStage("cut", "constraints in a cutter's way end", longest_reach(parts.families),
+                 parts.constraints(), "constraints"),
+        parts_(parts),
+        collider_(parts, collider),
+        far_(parts, collider_.fastest()),
+        topology_(topology) {
+    for (const Family& f : parts.families) longest_ = std::max(longest_, f.rest);
+  }
+  double idle() const override { return far_.share(); }
+  void reserve_slots(int slots) override {
+    distances_ = AlignedArray<float>(std::size_t(slots) * parts_.lattice.stride);
+  }
+
+  void run(int j, const Substep& s) override {
+    if (far_.skip(j, s)) return;
+    Lattice& l = parts_.lattice;
+    const CollideRow r = collider_.row(parts_, j, s);
+    const Vec3 place{r.cx, r.cy, r.cz};
+    const auto at = [&](int row, int i) {
+      return minus({l.x.at(0, row, i), l.x.at(1, row, i), l.x.at(2, row, i)}, place);
+    };
+    RowReach reach{1e30f, 0};
+    float* const distance = distances_.data() + std::size_t(s.slot) * l.stride;
+    std::visit(
+        [&](const auto& shape) {
+          for (int i = 0; i < l.columns; ++i) {
+            distance[i] = float(nearest_of(shape, at(j, i)).distance - r.offset);
+            reach.clearance = std::min(reach.clearance, distance[i]);
+            double square = 0;
+            for (int k = 0; k < 3; ++k) square += double(l.v.at(k, j, i)) * l.v.at(k, j, i);
+            reach.speed = std::max(reach.speed, float(std::sqrt(square)));
+          }
+          if (reach.clearance < 2 * longest_)
+            for (const Family& f : parts_.families) cut_family(shape, r.offset, f, j, at, distance);
+        },
+        collider_.collider().shape);
+    reach.clearance -= float(2 * longest_);
+    far_.found(j, s, reach);
+  }
+
+ private:
+  template <class Shape, class At>
+  void cut_family(const Shape& shape, double offset, const Family& f, int j, const At& at,
+                  const float* distance) {
+    if (j + f.dj >= parts_.lattice.rows) return;
+    for (int a = 0; a < f.per_row(parts_.lattice.columns); ++a) {
+      if (!f.alive(j, a) || distance[a + f.near()] > 2 * longest_) continue;
+      const Vec3 from = at(j, a + f.near()), e = minus(at(j + f.dj, a + f.far()), from);
+      // Sphere tracing along the constraint: each step as long as nothing can be nearer.
+      const double length = std::sqrt(dot(e, e));
+      for (double t = 0;;) {
+        const double left = nearest_of(shape, plus(from, times(e, t))).distance - offset;
+        if (left <= 0) {
+          topology_.end(f, j, a);
+          break;
+        }
+        if (t >= 1) break;
+        t = std::min(1.0, t + std::max(left, 0.01 * length) / std::max(length, 1e-12));
+      }
+    }
+  }
+
+  ClothParts parts_;
+  MovingCollider collider_;
+  OutOfReach far_;
+  Topology& topology_;
+  double longest_ = 0;  // m, of a constraint at rest
+  AlignedArray<float> distances_;
+};
+
+}  // namespace
+
+std::unique_ptr<RowStage> make_tear(const ClothParts& parts, Topology& topology) {
+  return std::make_unique<TearStage>(parts, topology);
+}
+
+std::unique_ptr<RowStage> make_cut(const ClothParts& parts, const Collider& collider,
+                                   Topology& topology) {
+  return std::make_unique<CutStage>(parts, collider, topology);
+}
+
+}  // namespace weft::physics

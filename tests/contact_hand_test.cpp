@@ -1,0 +1,106 @@
+// What moves cloth besides contact: grabbing, pins at run time, wind.
+#include <cstdio>
+
+#include "contact_scenes.h"
+
+namespace weft {
+namespace {
+
+Scene sheet(Method method) {
+  Scene scene;
+  scene.solver.method = method;
+  scene.cloths.push_back(flat_sheet(12, 0.5, {0, 0, 0}));
+  scene.cloths[0].drag = 2;
+  scene.cloths[0].pins = {{0, 0, {}}, {11, 0, {}}};
+  return scene;
+}
+
+TEST(ContactHand, GrabDrawsAParticleToItsTarget) {
+  for (const Method method : {Method::spring, Method::compliant})
+    for (const double stiffness : {50.0, 1e7}) {
+      Simulation simulation(sheet(method));
+      const std::size_t stages = simulation.plan().stages.size();
+      simulation.grab(0, 6, 11, {0.1, 0.1, 0.2}, stiffness);
+      EXPECT_EQ(simulation.plan().stages.size(), stages + 1);
+      advance(simulation, 3);
+      const Vec3 x = at(simulation.positions(), 11 * 12 + 6);
+      EXPECT_LT(std::hypot(x[0] - 0.1, x[1] - 0.1, x[2] - 0.2), 0.1);
+      simulation.release();
+      EXPECT_EQ(simulation.plan().stages.size(), stages);
+      advance(simulation, 6);
+      EXPECT_LT(at(simulation.positions(), 11 * 12 + 6)[1], -0.3);
+    }
+  Simulation simulation(sheet(Method::spring));
+  EXPECT_THROW(simulation.grab(0, 12, 0, {0, 0, 0}, 1), std::out_of_range);
+  EXPECT_THROW(simulation.grab(1, 0, 0, {0, 0, 0}, 1), std::out_of_range);
+  EXPECT_THROW(simulation.grab(0, 0, 0, {NAN, 0, 0}, 1), std::invalid_argument);
+}
+
+TEST(ContactHand, PinsComeAndGo) {
+  Simulation simulation(sheet(Method::spring));
+  simulation.pin(0, 5, 5);
+  const Vec3 held = at(simulation.positions(), 65);
+  advance(simulation, 0.5);
+  EXPECT_EQ(at(simulation.positions(), 65), held);
+  for (const auto& [i, j] : {std::pair{5, 5}, {0, 0}, {11, 0}}) simulation.unpin(0, i, j);
+  advance(simulation, 1.5);
+  EXPECT_LT(at(simulation.positions(), 65)[1], -1);
+  EXPECT_TRUE(simulation.status().ok);
+}
+
+// A flat sheet in a wind at an angle: the momentum that it gains is that of a flat plate.
+TEST(ContactHand, WindPushesLikeOnAFlatPlate) {
+  Scene scene;
+  scene.gravity = {0, 0, 0};
+  scene.time.frame = 1e-4;
+  scene.time.substeps = 1;
+  scene.cloths.push_back(flat_sheet(21, 0.5, {0, 0, 0}));
+  scene.wind = {{3, 4, 0}, 0.6, 0.3, 0};
+  Simulation simulation(scene);
+  simulation.advance_frame();
+  const Vec3 p = simulation.report().momentum;
+  // A [drag (u·n)² n + lift (u·n) |u| (n - û (û·n))], u·n = 4, |u| = 5
+  const double area = 0.25, dt = 1e-4;
+  const double x = area * 0.3 * 4 * 5 * -(0.6 * 0.8);
+  const double y = area * (0.6 * 16 + 0.3 * 4 * 5 * (1 - 0.8 * 0.8));
+  std::printf("force of the wind %.4f, %.4f N (%.4f, %.4f)\n", p[0] / dt, p[1] / dt, x, y);
+  EXPECT_NEAR(p[0] / dt / x, 1, 0.01);
+  EXPECT_NEAR(p[1] / dt / y, 1, 0.01);
+}
+
+// Air at rest slows a sheet down and never turns it back, however light it is.
+TEST(ContactHand, DragNeverTurnsASheetBack) {
+  Scene scene;
+  scene.gravity = {0, 0, 0};
+  scene.time.substeps = 20;
+  scene.cloths.push_back(flat_sheet(8, 0.5, {0, 0, 0}));
+  scene.cloths[0].density = 0.001;
+  scene.cloths[0].stiffness = {0.1, 0.1, 0};
+  scene.wind.drag = 50;
+  Simulation simulation(scene);
+  std::vector<double> x = simulation.positions(), v(x.size());
+  for (std::size_t k = 1; k < v.size(); k += 3) v[k] = -10;
+  simulation.set_state(x, v);
+  advance(simulation, 0.5);
+  EXPECT_LT(simulation.report().energy.total, 0.5 * 0.00025 * 100);
+  for (std::size_t p = 0; p < 64; ++p) EXPECT_LT(at(simulation.velocities(), p)[1], 0.5);
+}
+
+TEST(ContactHand, GustsFollowTheSeedAndNothingElse) {
+  Scene scene = sheet(Method::spring);
+  scene.cloths[0] = flat_sheet(70, 1, {0, 0, 0});
+  scene.cloths[0].pins = {{0, 0, {}}, {69, 0, {}}};
+  scene.wind = {{4, 0, 2}, 0.5, 0.2, 0.6};
+  std::vector<std::uint64_t> hashes;
+  for (const Options& o : {Options{1, Simd::best, 1, false}, {3, Simd::best, 1, false},
+                           {1, Simd::scalar, 1, false}, {1, Simd::avx2, 1, false}, {1, Simd::best, 2, false}}) {
+    Simulation simulation(scene, o);
+    advance(simulation, 0.3);
+    hashes.push_back(simulation.hash());
+  }
+  for (std::size_t n = 1; n < 4; ++n) EXPECT_EQ(hashes[n], hashes[0]);
+  EXPECT_NE(hashes[4], hashes[0]);
+}
+
+}  // namespace
+}  // namespace weft
