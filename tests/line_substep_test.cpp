@@ -144,7 +144,7 @@ TEST(LineRuns, ThePlanNamesTheStages) {
   std::vector<std::string> names;
   for (const PlannedStage& p : simulation.plan().stages) names.push_back(p.name);
   EXPECT_EQ(names,
-            (std::vector<std::string>{"predict", "tethers", "bending", "line"}));
+            (std::vector<std::string>{"predict", "tethers", "bending", "line", "velocity"}));
 }
 
 }  // namespace

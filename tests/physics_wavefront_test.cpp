@@ -26,6 +26,7 @@ class MixingStage final : public RowStage {
   MixingStage(int number, int reach, std::vector<std::uint64_t>& rows)
       : RowStage("mix", "", reach, 1, "rows"), number_(number), rows_(rows) {}
 
+  using RowStage::run;
   void reserve_slots(int slots) override {
     carried_.assign(std::size_t(slots), 0);
     next_row_.assign(std::size_t(slots), 0);
@@ -38,7 +39,8 @@ class MixingStage final : public RowStage {
     }
     if (next_row_[slot] != j) out_of_order_ = true;
     next_row_[slot] = j + 1;
-    if ((j + 5 * number_) % 61 == 0) std::this_thread::yield();  // lets other threads come in between
+    if ((j + 5 * number_) % 61 == 0)
+      std::this_thread::yield();  // lets other threads come in between
     std::uint64_t value = mixed(carried_[slot], std::bit_cast<std::uint64_t>(s.time));
     value = mixed(value, std::bit_cast<std::uint64_t>(s.dt));
     for (int k = j; k <= std::min(j + reach, int(rows_.size()) - 1); ++k) {

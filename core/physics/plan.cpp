@@ -47,7 +47,7 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method) {
         append_gauss_seidel(parts, sweep, stages_);
     }
     if (history_) stages_.push_back(make_velocity_second_order(parts, *history_));
-    else if (!sweep.compliant) stages_.push_back(make_velocity(parts));
+    else if (!sweep.compliant || lines) stages_.push_back(make_velocity(parts, sweep.compliant));
   }
   for (int n = 0; n < solver.collision_iterations; ++n)
     for (const Collider& c : parts.scene.colliders)

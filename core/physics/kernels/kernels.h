@@ -75,14 +75,13 @@ struct FamilyRow {
   SpringConstants spring;
 };
 
-// One family of projected constraints in rows begin … end-1:
-// Δλ = (|e| - rest + compliance λ)/(weight (w_a + w_b) + compliance). Which of the optional parts are
-// given picks the rule: compliance with multipliers, compliance alone, a one-sided limit, or rigid
-// constraints. All but the rigid add the change of position, over dt, to the velocity.
+// One family of projected constraints in rows begin … end-1. Which of the optional parts are given
+// picks the rule: a strain limit, compliance with multipliers, compliance alone, or
+// rigid constraints.
 struct ProjectRows {
   int begin, end, rows;
   int stride;
-  Row3 x, v;       // row 0
+  Row3 x, v;       // row 0; v is not used by rigid constraints
   const float* w;  // inverse mass of row 0 [1/kg]
   int count;       // constraints in a row: a joins lane a+near of row j and lane a+far of row j+dj
   int near, far, dj;
@@ -92,8 +91,8 @@ struct ProjectRows {
   float weight;               // of w_a + w_b (1/(2 positional_k), 1/Jacobi's relaxation)
   const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
   float* lambda;              // multipliers of row 0 [kg·m], or null
-  bool limit;                 // nothing happens below `rest`
-  float inverse_dt;           // 1/s
+  bool limit;                 // one-sided: nothing happens below the rest length
+  float inverse_dt;           // limit, compliance: the change of position goes into the velocity too
 };
 
 struct AdvanceRow {

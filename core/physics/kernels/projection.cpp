@@ -3,9 +3,6 @@
 //   C = |e| - l,  Δλ = (C + α̃ λ)/(w_a + w_b + α̃),  α̃ = 1/(k dt²),  λ <- λ - Δλ
 //   x_a <- x_a + w_a Δλ e/|e|,  x_b <- x_b - w_b Δλ e/|e|,  e = x_b - x_a
 //
-// Compliant velocities gain each correction over dt as computed: the difference of rounded positions
-// would be off by their rounding over dt, which a small substep's force does not outweigh.
-//
 // (Macklin, Müller, Chentanez 2016, "XPBD"; with α̃ = 0 seed 000's positional constraint for unequal
 // masses. Gauss–Seidel takes one colour of one family at a time, all of whose constraints are
 // disjoint; Jacobi adds up the corrections of all families and applies them at the end of a sweep.)
@@ -278,9 +275,8 @@ void project_jacobi(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
 
 void apply_corrections(const AdvanceRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide3 change = load3(r.f, i);
-    store3(r.x, i, load3(r.x, i) + change);
-    if (r.inverse_dt > 0) store3(r.v, i, load3(r.v, i) + change * wide(r.inverse_dt));
+    store3(r.x, i, load3(r.x, i) + load3(r.f, i));
+    if (r.inverse_dt > 0) store3(r.v, i, load3(r.v, i) + load3(r.f, i) * wide(r.inverse_dt));
     store3(r.f, i, Wide3{});
   }
 }

@@ -69,7 +69,7 @@ class BendingConstraints final : public WholeStage {
     const BendingStiffness k = bending_stiffness(parts_.cloth);
     const double h = s.dt * implicit_share(parts_.scene.solver);
     const auto compliance = [&](double stiffness) { return float(1 / (stiffness * h * h)); };
-    inverse_dt_ = compliant_ ? float(1 / h) : 0;
+    inverse_dt_ = velocity_gain(parts_.scene.solver, compliant_, s.dt);
     strips_.run(threads, [&] {
       along_rows(compliance(k.along));
       along_columns(compliance(k.across));

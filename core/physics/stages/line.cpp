@@ -91,7 +91,7 @@ class Line final : public WholeStage {
                       kConstraintNs * kStripLines * parts_.lattice.columns *
                           double(along_rows_.size()),
                       [&](int group, StripMemory& memory) {
-                        strips_.turned(group, memory, options_.compliant, [&](int rows) {
+                        strips_.turned(group, memory, inverse_dt() > 0, [&](int rows) {
                           solve_rows(group, rows, fresh, memory);
                         });
                       });
@@ -165,7 +165,7 @@ class Line final : public WholeStage {
   }
 
   float inverse_dt() const {
-    return options_.compliant ? float(1 / (dt_ * implicit_share(parts_.scene.solver))) : 0.0f;
+    return velocity_gain(parts_.scene.solver, options_.compliant, dt_);
   }
   void set_compliance(double dt) {
     dt_ = dt;

@@ -108,7 +108,7 @@ class Tethers final : public RowStage {
       r.columns = parts_.lattice.columns;
       r.x = parts_.lattice.x.row(j);
       r.v = parts_.lattice.v.row(j);
-      if (compliant_) r.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
+      r.inverse_dt = velocity_gain(parts_.scene.solver, compliant_, s.dt);
       r.pin = slot.pin.row(j);
       r.reach = slot.reach.data() + std::size_t(j) * parts_.lattice.stride;
       parts_.kernels.tethers(r);
