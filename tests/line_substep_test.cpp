@@ -52,8 +52,8 @@ TEST(SecondOrder, ErrorFallsWithTheSquareOfTheSubstep) {
     std::vector<double> error;
     for (const int substeps : {2, 4, 8}) error.push_back(rms(second_order(substeps), truth));
     const double slope = std::log2(error.front() / error.back()) / 2;
-    std::printf("drag %g: errors %.2e %.2e %.2e m, slope %.2f\n", drag, error[0], error[1], error[2],
-                slope);
+    std::printf("drag %g: errors %.2e %.2e %.2e m, slope %.2f\n", drag, error[0], error[1],
+                error[2], slope);
     EXPECT_GT(slope, 1.8);
   }
 }
@@ -143,8 +143,7 @@ TEST(LineRuns, ThePlanNamesTheStages) {
   const Simulation simulation(s);
   std::vector<std::string> names;
   for (const PlannedStage& p : simulation.plan().stages) names.push_back(p.name);
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"predict", "tethers", "bending", "line", "velocity"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"predict", "tethers", "bending", "line", "velocity"}));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What the kernels of the second-order substep and of the tethers work on (kernels/second_order.cpp,
-// kernels/tethers.cpp).
+// What the kernels of the second-order substep and of the tethers work on
+// (kernels/second_order.cpp, kernels/tethers.cpp).
 #pragma once
 
 #include "physics/kernels/kernels.h"

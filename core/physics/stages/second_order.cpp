@@ -1,5 +1,6 @@
 // Stages "predict" and "velocity" of the second-order substep (kernels/second_order.cpp).
 #include "physics/kernels/second_order.h"
+
 #include "physics/stages/stages.h"
 
 namespace weft::physics {
@@ -38,6 +39,7 @@ class Predict final : public RowStage {
     r.fresh = dt_[j] != s.dt;
     dt_[j] = s.dt;
     r.dt = float(s.dt);
+    r.from_star = velocity_from_positions(parts_.scene.solver, true, s.dt);
     r.gx = float(g[0]);
     r.gy = float(g[1]);
     r.gz = float(g[2]);
@@ -92,7 +94,9 @@ float velocity_gain(const Solver& solver, bool compliant, double dt) {
   return float(1 / (dt * implicit_share(solver)));
 }
 
-double implicit_share(const Solver& solver) { return solver.order == 2 ? 2.0 / 3.0 : 1.0; }
+double implicit_share(const Solver& solver) {
+  return solver.order == 2 ? 2.0 / 3.0 : 1.0;
+}
 
 std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
                                                     Multipliers* multipliers) {
