@@ -1,9 +1,11 @@
 // The second-order substep, tethers, and whole runs of line sweeps.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "weft/read_scene.h"
 #include "weft/simulation.h"
 
 namespace weft {
@@ -134,6 +136,19 @@ TEST(LineRuns, HashesDependOnNeitherThreadsNorInstructionSet) {
         EXPECT_EQ(simulation.hash(), expected) << simd_name(simd) << ", " << threads << " threads";
       }
   }
+}
+
+TEST(LineRuns, TheInextensibleSceneHardlyStretches) {
+  Simulation simulation(read_scene("inextensible").scene);
+  double greatest = 0;
+  for (int f = 0; f < 120; ++f) {
+    simulation.advance_frame();
+    if (f >= 30) greatest = std::max(greatest, simulation.report().strain.max);
+  }
+  ASSERT_TRUE(simulation.status().ok) << simulation.status().text;
+  std::printf("greatest strain %.2f %% from 0.5 s on, %.2f %% at the end\n", 100 * greatest,
+              100 * simulation.report().strain.max);
+  EXPECT_LT(greatest, 0.01);
 }
 
 TEST(LineRuns, ThePlanNamesTheStages) {
