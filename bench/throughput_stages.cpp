@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "physics/plan.h"
+#include "physics/threads.h"
 #include "throughput.h"
 
 namespace bench {
@@ -19,7 +20,10 @@ struct Bench {
   Bench(weft::Scene s, weft::Simd simd_) : scene(std::move(s)), simd(simd_) {
     step = std::make_unique<ClothStep>(scene, 0, scene.solver.method, 1,
                                        weft::physics::kernel_table(simd));
-    for (const auto& stage : step->stages()) stage->reserve_slots(1);
+    for (const auto& stage : step->stages()) {
+      stage->prepare(scene.time.frame / scene.time.substeps);
+      if (auto* rows = dynamic_cast<weft::physics::RowStage*>(stage.get())) rows->reserve_slots(1);
+    }
   }
 };
 
@@ -30,9 +34,14 @@ void run_stage(benchmark::State& state, Bench& bench, std::size_t index) {
   const weft::physics::Substep substep{dt, dt, 0};
   // Many passes a measurement, so that reading the clock does not count.
   const int passes = 4;
+  weft::physics::Threads threads(1);
+  auto* row_stage = dynamic_cast<weft::physics::RowStage*>(&stage);
+  auto* whole_stage = dynamic_cast<weft::physics::WholeStage*>(&stage);
   const double ns = fastest_ns(state, [&] {
-    for (int pass = 0; pass < passes; ++pass)
-      for (int j = 0; j < rows; ++j) stage.run(j, substep);
+    for (int pass = 0; pass < passes; ++pass) {
+      if (row_stage) row_stage->run(0, rows, substep);
+      if (whole_stage) whole_stage->run(substep, threads);
+    }
   });
   const bool particles = stage.item == "particles";
   count_work(state, bench.simd, ns,

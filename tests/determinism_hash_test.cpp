@@ -16,8 +16,7 @@ std::vector<std::string> scene_names() {
   return names;
 }
 
-// Enough frames for the start, a few changes of the automatic substeps, and some contact.
-constexpr int kFrames = 4;
+constexpr int kFrames = 3;
 
 std::uint64_t hash_of(const Scene& scene, const Options& options = {}, int frames = kFrames) {
   Simulation simulation(scene, options);

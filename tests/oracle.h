@@ -188,7 +188,7 @@ class Cloth {
     const double alpha = compliant ? 1 / (link.k * dt() * dt()) : 0;
     if (a.w + b.w + alpha == 0) return 0;
     const double violation = length(b.x - a.x) - link.rest + alpha * link.lambda;
-    const double step = share * violation / (a.w + b.w + alpha);
+    const double step = violation / ((a.w + b.w) / share + alpha);
     link.lambda -= step;
     return step;
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/bending.h"
+
 namespace weft::physics {
 namespace {
 
@@ -75,6 +77,8 @@ void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Fam
                    a[std::size_t(j + f.dj) * l.columns + far]);
       }
     }
+  add_bending_forces(
+      cloth, [&](int p, int c) { return double(l.x.at(c, p / l.columns, p % l.columns)); }, a);
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i) {
       const double w = l.w(j, i);

@@ -59,6 +59,7 @@ class Rows {
     return data_[axis * plane_ + static_cast<std::size_t>(j) * stride_ + i];
   }
   std::size_t bytes() const { return data_.size() * sizeof(float); }
+  void clear() { std::fill_n(data_.data(), data_.size(), 0.0f); }
   // Takes over the values of rows of the same shape.
   void copy(const Rows& from) { std::copy_n(from.data_.data(), data_.size(), data_.data()); }
   // Whether every value is a number of size below `bound`.

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 
+#include "physics/bending.h"
 #include "physics/energy.h"
-#include "physics/path.h"
+#include "physics/self_collision/crossings.h"
+#include "weft/shape.h"
 
 namespace weft::physics {
 namespace {
@@ -15,7 +18,8 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   const ClothStep& step = *s.cloths[index];
   const Lattice& l = step.lattice();
   const std::vector<Vec3> x = gather(l, l.x), v = velocities_now(s, index);
-  r.energy.elastic += elastic_energy(step.cloth(), step.families(), x);
+  r.energy.elastic +=
+      elastic_energy(step.cloth(), step.families(), x) + bending_energy(step.cloth(), x);
   for (std::size_t p = 0; p < x.size(); ++p) {
     const int i = int(p) % l.columns, j = int(p) / l.columns;
     if (l.w(j, i) == 0) continue;
@@ -42,29 +46,13 @@ void add_constraints(const ClothStep& step, Report& r) {
   }
 }
 
-// How deep a point lies below a collider's surface [m], negative above it.
-double depth_below(const Collider& c, double time, const Vec3& x) {
-  const auto from = [&](const Vec3& start) {
-    const Vec3 p = c.keys.empty() ? start : position_at(c.keys, time);
-    return Vec3{x[0] - p[0], x[1] - p[1], x[2] - p[2]};
-  };
-  if (const auto* sphere = std::get_if<Sphere>(&c.shape)) {
-    const Vec3 d = from(sphere->center);
-    return sphere->radius - std::hypot(d[0], d[1], d[2]);
-  }
-  if (const auto* plane = std::get_if<Plane>(&c.shape)) {
-    const Vec3 d = from(plane->point);
-    const Vec3& n = plane->normal;
-    return -(d[0] * n[0] + d[1] * n[1] + d[2] * n[2]) / std::hypot(n[0], n[1], n[2]);
-  }
-  return 0;
-}
-
 void add_penetration(const Simulation::State& s, const ClothStep& step, Report& r) {
   const double time = double(s.frame) * s.scene.time.frame;
   for (const Vec3& x : gather(step.lattice(), step.lattice().x))
     for (const Collider& c : s.scene.colliders)
-      r.penetration.collider_max = std::max(r.penetration.collider_max, depth_below(c, time, x));
+      if (!c.cuts)
+        r.penetration.collider_max =
+            std::max(r.penetration.collider_max, -signed_distance(c, time, x));
 }
 
 // Strain over all cloths: the largest, and the mean weighted by constraints.
@@ -86,6 +74,42 @@ void add_strain(const Simulation::State& s, Report& r) {
   }
   r.strain.max = largest;
   r.strain.mean = count > 0 ? sum / count : 0;
+}
+
+void add_self_contact(const Simulation::State& s, Report& r) {
+  std::vector<Vec3> x;
+  std::vector<Face> faces;
+  for (const auto& step : s.cloths) {
+    const Lattice& l = step->lattice();
+    add_faces(l.columns, l.rows, std::int32_t(x.size()), faces);
+    const std::vector<Vec3> of_cloth = gather(l, l.x);
+    x.insert(x.end(), of_cloth.begin(), of_cloth.end());
+  }
+  r.penetration.crossings = count_crossings(x, faces);
+  if (!s.self_collision) return;
+  // By a search of its own: the one that runs must not notice.
+  const SelfContact::Overlaps overlaps =
+      SelfContact::make(s.scene, s.cloths, kernel_table(s.simd))->overlaps();
+  r.penetration.self_pairs = overlaps.pairs;
+  r.penetration.self_max = overlaps.deepest;
+}
+
+// What the stages passed over while they ran.
+void add_idle(const Simulation::State& s, Report& r) {
+  for (const auto& step : s.cloths)
+    for (const auto& stage : step->stages())
+      if (const double idle = stage->idle(); idle > 0) {
+        char why[64];
+        std::snprintf(why, sizeof why, "%.1f %% of the rows were out of reach", 100 * idle);
+        r.skipped.push_back({stage->name, stage->detail + ": " + why});
+      }
+  if (s.self_collision && s.self_collision_runs > 0) {
+    char why[96];
+    std::snprintf(why, sizeof why, "ran after %.1f %% of the substeps, searched in %.1f %% of those",
+                  100 * double(s.self_collision_runs) / double(std::max<std::int64_t>(s.total_substeps, 1)),
+                  100 * (1 - s.self_collision->kept()));
+    r.skipped.push_back({"self_collision", why});
+  }
 }
 
 void add_wall_time(const Simulation::State& s, Report& r) {
@@ -118,6 +142,11 @@ void add_stages(const Simulation::State& s, Report& r) {
       at->calls += s.total_substeps;
       sum += ms;
     }
+  }
+  if (s.self_collision) {
+    const double ms = double(s.self_collision_ns) * 1e-6;
+    r.stages.push_back({"self_collision", ms, s.self_collision_runs});
+    sum += ms;
   }
   // Several threads spend more than passes on the clock: shares of the work, not of the wall.
   const double scale = sum > s.total_ms ? s.total_ms / sum : 1;
@@ -181,6 +210,8 @@ Report measure(const Simulation::State& s) {
   }
   r.energy.total = r.energy.kinetic + r.energy.elastic + r.energy.gravity;
   add_strain(s, r);
+  if (s.status.ok) add_self_contact(s, r);
+  add_idle(s, r);
   add_wall_time(s, r);
   add_stages(s, r);
   r.hash = state_hash(s);

@@ -4,56 +4,77 @@
 #include <algorithm>
 
 namespace weft::physics {
-namespace {
-
-// Rough cost of a row, for sizing tasks only: nanoseconds per constraint and per particle.
-constexpr double kConstraintNs = 0.5, kParticleNs = 0.5;
-
-double row_nanoseconds(const std::vector<std::unique_ptr<RowStage>>& stages, int rows) {
-  double ns = 0;
-  for (const auto& s : stages)
-    ns += double(s->items) * (s->item == "constraints" ? kConstraintNs : kParticleNs);
-  return ns / rows;
-}
-
-}  // namespace
 
 ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::uint64_t seed,
                      const KernelTable& kernels)
     : cloth_(scene.cloths[cloth_index]),
       families_(families_of(cloth_)),
-      lattice_(make_lattice(cloth_, cloth_index, seed, !is_explicit(method))) {
-  choose_stages({scene, cloth_, lattice_, families_, kernels}, method);
-  std::vector<RowStage*> stages;
-  for (const auto& s : stages_) stages.push_back(s.get());
-  wavefront_ = std::make_unique<Wavefront>(stages, lattice_.rows, lattice_.bytes() / lattice_.rows,
-                                           row_nanoseconds(stages_, lattice_.rows));
+      lattice_(make_lattice(cloth_, cloth_index, seed, !is_explicit(method))),
+      parts_{scene, cloth_, lattice_, families_, kernels} {
+  choose_stages(parts_, method, seed);
+  make_passes();
 }
 
-void ClothStep::choose_stages(const ClothParts& parts, Method method) {
+void ClothStep::make_passes() {
+  passes_ = std::make_unique<Passes>(stages_, lattice_.rows, lattice_.bytes() / lattice_.rows);
+}
+
+void ClothStep::add_stage(std::unique_ptr<Stage> stage) {
+  std::size_t at = 0;
+  while (at < stages_.size() && stages_[at]->name != "springs" && stages_[at]->name != "predict") ++at;
+  stages_.insert(stages_.begin() + std::ptrdiff_t(std::min(at + 1, stages_.size())), std::move(stage));
+  make_passes();
+}
+
+void ClothStep::remove_stage(const Stage* stage) {
+  std::erase_if(stages_, [&](const auto& s) { return s.get() == stage; });
+  make_passes();
+}
+
+void ClothStep::choose_stages(const ClothParts& parts, Method method, std::uint64_t seed) {
   const Solver& solver = parts.scene.solver;
+  auto bending = make_bending(parts, method);
   if (is_explicit(method)) {
+    if (bending) stages_.push_back(std::move(bending));
     stages_.push_back(make_springs(parts, method == Method::spring_friction));
+    if (auto wind = make_wind(parts, seed)) stages_.push_back(std::move(wind));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
   } else {
     SweepOptions sweep;
     sweep.compliant = method == Method::compliant;
-    if (sweep.compliant && solver.iterations > 1)
+    const bool lines = solver.sweep == Sweep::line;
+    if (sweep.compliant && !lines && solver.iterations > 1)
       multipliers_ = std::make_unique<Multipliers>(lattice_, families_.size());
     sweep.multipliers = multipliers_.get();
-    stages_.push_back(make_predict(parts, multipliers_.get()));
+    if (solver.order == 2) history_ = std::make_unique<History>(lattice_);
+    stages_.push_back(history_
+                          ? make_predict_second_order(parts, *history_, multipliers_.get())
+                          : make_predict(parts, multipliers_.get()));
+    if (auto wind = make_wind(parts, seed)) stages_.push_back(std::move(wind));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
-    for (int n = 0; n < solver.iterations && !families_.empty(); ++n) {
+    if (auto tethers = solver.tethers ? make_tethers(parts, sweep.compliant) : nullptr)
+      stages_.push_back(std::move(tethers));
+    if (bending) stages_.push_back(std::move(bending));
+    if (lines) {
+      const float share = sweep.compliant ? 1.0f : float(2 * cloth_.positional_k);
+      if (auto line = make_line(parts, {sweep.compliant, solver.iterations, share}))
+        stages_.push_back(std::move(line));
+    }
+    for (int n = 0; n < solver.iterations && !families_.empty() && !lines; ++n) {
       if (solver.sweep == Sweep::jacobi)
         stages_.push_back(make_jacobi(parts, sweep));
       else
         append_gauss_seidel(parts, sweep, stages_);
     }
-    stages_.push_back(make_velocity(parts));
+    if (history_) stages_.push_back(make_velocity_second_order(parts, *history_));
+    else if (!sweep.compliant) stages_.push_back(make_velocity(parts));
   }
   for (int n = 0; n < solver.collision_iterations; ++n)
-    for (const Collider& c : parts.scene.colliders)
-      if (auto stage = make_collider(parts, c)) stages_.push_back(std::move(stage));
+    for (const Collider& c : parts.scene.colliders) {
+      if (c.cuts) continue;
+      stages_.push_back(make_collider(parts, c));
+      if (auto faces = make_collider_faces(parts, c)) stages_.push_back(std::move(faces));
+    }
   if (cloth_.strain_limit > 0) {
     SweepOptions limit;
     limit.limit = cloth_.strain_limit;
@@ -62,7 +83,8 @@ void ClothStep::choose_stages(const ClothParts& parts, Method method) {
 }
 
 std::size_t ClothStep::bytes() const {
-  std::size_t bytes = lattice_.bytes() + (multipliers_ ? multipliers_->bytes() : 0);
+  std::size_t bytes = lattice_.bytes() + (multipliers_ ? multipliers_->bytes() : 0) +
+                      (history_ ? history_->bytes() : 0);
   for (const auto& s : stages_) bytes += s->bytes();
   return bytes;
 }
@@ -82,7 +104,21 @@ void describe_skipped(const Scene& scene, Method method, Plan& plan) {
         return std::any_of(c.pins.begin(), c.pins.end(), [](const Pin& p) { return !p.keys.empty(); });
       }))
     skip("keyed_pins", "no pin moves");
+  if (!is_explicit(method)) {
+    const Solver& s = scene.solver;
+    if (!s.tethers) skip("tethers", "off in the scene");
+    else if (std::all_of(scene.cloths.begin(), scene.cloths.end(),
+                         [](const Cloth& c) { return c.pins.empty(); }))
+      skip("tethers", "nothing is pinned");
+    if (s.sweep != Sweep::line) skip("line", "sweep is not line");
+    if (s.order != 2) skip("second order", "order is 1");
+  }
+  if (!any([](const Cloth& c) { return c.bending > 0; })) skip("bending", "bending is 0");
   if (scene.colliders.empty()) skip("collider", "the scene has none");
+  const bool faces = std::any_of(plan.stages.begin(), plan.stages.end(),
+                                 [](const PlannedStage& s) { return s.name == "collider_faces"; });
+  if (!scene.colliders.empty() && !faces)
+    skip("collider_faces", "no collider is small against the mesh");
   if (!any([](const Cloth& c) { return c.strain_limit > 0; }))
     skip("strain_limit", "strain_limit is 0");
   if (!any([](const Cloth& c) { return c.self_collision.mode != SelfCollisionMode::off; }))
@@ -103,6 +139,13 @@ Plan describe(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>&
       const std::string which = cloths.size() > 1 ? "cloth " + std::to_string(c) + ": " : "";
       plan.stages.push_back({s->name, which + s->detail, double(substeps), s->items, s->item});
     }
+  std::int64_t particles = 0;
+  for (const Cloth& c : scene.cloths)
+    if (c.self_collision.mode != SelfCollisionMode::off)
+      particles += std::int64_t(c.grid.nx) * c.grid.ny;
+  if (particles > 0)
+    plan.stages.push_back({"self_collision", "all cloths together, as often as they move",
+                           double(substeps), particles, "particles"});
   describe_skipped(scene, scene.solver.method, plan);
   return plan;
 }

@@ -3,9 +3,11 @@
 //
 // A frame is `substeps` substeps; a substep of one cloth is, in this order,
 //
-//   spring, spring_friction:  springs (x, v -> forces -> v, x) - keyed_pins - colliders - strain_limit
-//   positional, compliant:    predict (previous <- x; v, x by gravity) - keyed_pins - sweeps (x)
-//                             - velocity (v <- (x - previous)/dt) - colliders - strain_limit
+//   spring, spring_friction:  bending (v) - springs (x, v -> forces -> v, x) - keyed_pins - colliders
+//                             - strain_limit
+//   positional, compliant:    predict (previous <- x; v, x by gravity) - keyed_pins - tethers (x)
+//                             - bending (x) - sweeps (x) - velocity (positional: v <- (x - previous)/dt;
+//                             compliant stages have changed v themselves) - colliders - strain_limit
 //
 // After every stage from springs or velocity on, x - dt v is the position before the substep:
 // contact and the strain limit change x and v together.
@@ -14,8 +16,8 @@
 #include <memory>
 #include <vector>
 
+#include "physics/passes.h"
 #include "physics/stages/stages.h"
-#include "physics/wavefront.h"
 #include "weft/report.h"
 
 namespace weft::physics {
@@ -30,19 +32,26 @@ class ClothStep {
   Lattice& lattice() { return lattice_; }
   const Lattice& lattice() const { return lattice_; }
   const std::vector<Family>& families() const { return families_; }
-  const std::vector<std::unique_ptr<RowStage>>& stages() const { return stages_; }
-  Wavefront& wavefront() { return *wavefront_; }
+  const Stages& stages() const { return stages_; }
+  Passes& passes() { return *passes_; }
+  // Puts a stage right after the one that moves the particles; takes it away again.
+  void add_stage(std::unique_ptr<Stage> stage);
+  void remove_stage(const Stage* stage);
+  ClothParts parts() const { return parts_; }
   std::size_t bytes() const;
 
  private:
-  void choose_stages(const ClothParts& parts, Method method);
+  void choose_stages(const ClothParts& parts, Method method, std::uint64_t seed);
+  void make_passes();
 
   const Cloth& cloth_;
   std::vector<Family> families_;
   Lattice lattice_;
+  ClothParts parts_;
   std::unique_ptr<Multipliers> multipliers_;
-  std::vector<std::unique_ptr<RowStage>> stages_;
-  std::unique_ptr<Wavefront> wavefront_;
+  std::unique_ptr<History> history_;
+  Stages stages_;
+  std::unique_ptr<Passes> passes_;
 };
 
 // Whether a method integrates springs as forces, and so has a stability limit.

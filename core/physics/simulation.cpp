@@ -97,6 +97,13 @@ void Simulation::set_state(std::span<const double> positions, std::span<const do
   state_->set(positions, velocities);
 }
 
+void Simulation::grab(int cloth, int i, int j, const Vec3& target, double stiffness) {
+  state_->grab(cloth, i, j, target, stiffness);
+}
+void Simulation::release() { state_->release(); }
+void Simulation::pin(int cloth, int i, int j) { state_->hold(cloth, i, j, true); }
+void Simulation::unpin(int cloth, int i, int j) { state_->hold(cloth, i, j, false); }
+
 Report Simulation::report() const { return measure(*state_); }
 std::uint64_t Simulation::hash() const { return state_hash(*state_); }
 

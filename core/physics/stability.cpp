@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/bending.h"
 #include "physics/random.h"
 
 namespace weft::physics {
@@ -25,6 +26,7 @@ struct Operator {
   const Cloth& cloth;
   const std::vector<Family>& families;
   const Lattice& l;
+  bool bending;  // the curvature energy's share too
   Field root_w;
   Coefficients coefficients;
 
@@ -36,8 +38,20 @@ struct Operator {
     std::fill(y.begin(), y.end(), 0.0f);
     for (const Family& f : families)
       for (int j = 0; j + f.dj < l.rows; ++j) apply_row(f, j, scaled, y);
+    if (bending) apply_bending(scaled, y);
     for (int c = 0; c < 3; ++c)
       for (std::size_t p = 0; p < n; ++p) y[c * n + p] *= root_w[p];
+  }
+
+  void apply_bending(const Field& x, Field& y) const {
+    const std::size_t n = root_w.size();
+    for_each_bend(cloth, [&](double k, int count, const int* particles, const double* factor) {
+      for (int c = 0; c < 3; ++c) {
+        double d = 0;
+        for (int q = 0; q < count; ++q) d += factor[q] * x[c * n + particles[q]];
+        for (int q = 0; q < count; ++q) y[c * n + particles[q]] += float(k * factor[q] * d);
+      }
+    });
   }
 
   void apply_row(const Family& f, int j, const Field& x, Field& y) const {
@@ -108,8 +122,8 @@ double largest_eigenvalue(const Operator& op) {
 
 template <class Coefficients>
 double largest(const Cloth& cloth, const std::vector<Family>& families, const Lattice& l,
-               Coefficients coefficients) {
-  Operator<Coefficients> op{cloth, families, l, {}, coefficients};
+               bool bending, Coefficients coefficients) {
+  Operator<Coefficients> op{cloth, families, l, bending, {}, coefficients};
   op.root_w.reserve(std::size_t(l.columns) * l.rows);
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i) op.root_w.push_back(std::sqrt(l.w(j, i)));
@@ -131,12 +145,12 @@ Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Family>& famili
   };
   Spectrum spectrum;
   spectrum.omega_squared =
-      largest(cloth, families, l, [](const Family& f, float factor, float ratio) {
+      largest(cloth, families, l, cloth.bending > 0, [](const Family& f, float factor, float ratio) {
         const float k = float(f.stiffness) * factor;
         return Pair{k, k * std::max(0.0f, 1 - ratio)};
       });
   if (damped)
-    spectrum.damping = largest(cloth, families, l, [](const Family& f, float factor, float) {
+    spectrum.damping = largest(cloth, families, l, false, [](const Family& f, float factor, float) {
       return Pair{float(f.damping) * factor, 0};
     });
   return spectrum;

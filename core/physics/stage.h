@@ -1,11 +1,15 @@
-// A stage of the step: work on the rows of one cloth, one row after another. Stages are the pieces
-// that a step plan is made of (plan.h); the wavefront (wavefront.h) runs them.
+// A stage of the step: a piece of the work on one cloth in one substep. Stages are what a step plan
+// is made of (plan.h); passes.h runs them in order.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace weft::physics {
+
+class Threads;
 
 struct Substep {
   double dt = 0;            // s
@@ -13,34 +17,71 @@ struct Substep {
   int slot = 0;             // which of a stage's carried buffers this substep uses
 };
 
-// Work on row j may read and write rows j … j+reach of the lattice, and comes in the order j = 0, 1,
-// 2 … within a substep. A stage may carry data from row to row in buffers of its own, one set per
-// slot. It overrides either run for one row or run for a range of rows.
-class RowStage {
+// One stage of the plan.
+class Stage {
  public:
-  RowStage(std::string name, std::string detail, int reach, std::int64_t items, std::string item)
-      : name(std::move(name)),
-        detail(std::move(detail)),
-        item(std::move(item)),
-        items(items),
-        reach(reach) {}
-  virtual ~RowStage() = default;
-  RowStage(const RowStage&) = delete;
-  RowStage& operator=(const RowStage&) = delete;
+  Stage(std::string stage_name, std::string stage_detail, std::int64_t touched,
+        std::string touched_item)
+      : name(std::move(stage_name)),
+        detail(std::move(stage_detail)),
+        item(std::move(touched_item)),
+        items(touched) {}
+  virtual ~Stage() = default;
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+  // Called before substeps of a new length.
+  virtual void prepare(double dt) { (void)dt; }
+  // The whole stage at once, for those who look between two stages.
+  virtual void run_alone(int rows, const Substep& substep, Threads& threads) = 0;
+  // Forgets what it keeps from one substep to the next: the state was set from outside.
+  virtual void restart() {}
+  virtual std::size_t bytes() const { return 0; }
+  // Share of the rows so far that had nothing to do and were passed over, 0 … 1.
+  virtual double idle() const { return 0; }
+
+  const std::string name, detail, item;
+  const std::int64_t items;  // touched per substep
+};
+
+using Stages = std::vector<std::unique_ptr<Stage>>;
+
+// Works on one row after another: work on row j may read and write rows j … j+reach of the lattice,
+// and comes in the order j = 0, 1, 2 … within a substep. A stage may carry data from row to row in
+// buffers of its own, one set per slot. It overrides run for one row, or for a range of rows.
+class RowStage : public Stage {
+ public:
+  RowStage(std::string stage_name, std::string stage_detail, int rows_reached,
+           std::int64_t touched, std::string touched_item)
+      : Stage(std::move(stage_name), std::move(stage_detail), touched, std::move(touched_item)),
+        reach(rows_reached) {}
 
   virtual void run(int row, const Substep& substep) { run(row, row + 1, substep); }
   virtual void run(int begin, int end, const Substep& substep) {
     for (int j = begin; j < end; ++j) run(j, substep);
   }
-  // Called before substeps of a new length.
-  virtual void prepare(double dt) { (void)dt; }
   // Makes room for substeps of slots 0 … slots-1.
   virtual void reserve_slots(int slots) { (void)slots; }
-  virtual std::size_t bytes() const { return 0; }
 
-  const std::string name, detail, item;
-  const std::int64_t items;  // touched per substep
+  void run_alone(int rows, const Substep& substep, Threads&) final {
+    reserve_slots(1);
+    prepare(substep.dt);
+    run(0, rows, substep);
+  }
+
   const int reach;
+};
+
+// Works on the whole lattice at once, after all that comes before it in the substep and before all
+// that follows; shares its work out to the threads itself.
+class WholeStage : public Stage {
+ public:
+  using Stage::Stage;
+  virtual void run(const Substep& substep, Threads& threads) = 0;
+  void run_alone(int, const Substep& substep, Threads& threads) final {
+    prepare(substep.dt);
+    run(substep, threads);
+  }
 };
 
 }  // namespace weft::physics

@@ -29,6 +29,17 @@ Simd resolve(Simd simd) {
   return Simd::sse2;
 }
 
+// Without shear springs (or with nothing else) a sheet folds onto a line that stretches nothing, where
+// all its springs pull the same way: up to twice the flat sheet's ω², and no stretch adds to that.
+constexpr double kFolded = 2;
+bool folds_freely(const ClothStep& step) {
+  const auto has = [&](Kind kind) {
+    return std::any_of(step.families().begin(), step.families().end(),
+                       [&](const Family& f) { return f.kind == kind; });
+  };
+  return !has(Kind::structural) || !has(Kind::shear);
+}
+
 std::string number(double v) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", v);
@@ -59,8 +70,9 @@ void Simulation::State::build_cloths() {
     const Lattice& l = cloths.back()->lattice();
     backups_.push_back({Rows(l.rows, l.stride), Rows(l.rows, l.stride)});
     stage_ns.emplace_back(cloths.back()->stages().size());
-    if (options.profile) cloths.back()->wavefront().profile(stage_ns.back());
+    if (options.profile) cloths.back()->passes().profile(stage_ns.back());
   }
+  self_collision = SelfContact::make(scene, cloths, kernel_table(simd));
 }
 
 // Explicit springs: the substep from the stability limit, or the user's if it is inside; beyond it,
@@ -71,12 +83,16 @@ void Simulation::State::choose_method_and_substeps() {
   double limit = 0;
   if (is_explicit(method)) {
     limit = std::numeric_limits<double>::infinity();
+    double safe = limit;  // for automatic substeps
     for (const auto& c : cloths) {
       spectra.push_back(estimate_spectrum(c->cloth(), c->families(), c->lattice(),
                                           method == Method::spring_friction));
       limit = std::min(limit, spectra.back().largest_substep());
+      Spectrum folded = spectra.back();
+      if (folds_freely(*c)) folded.omega_squared *= kFolded;
+      safe = std::min(safe, folded.largest_substep());
     }
-    const double needed = std::ceil(scene.time.frame / (kLimitShare * limit));
+    const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
     if (count == kAutoSubsteps && needed <= kMostSubsteps) {
       count = std::max(1, int(needed));
       notes.push_back("substeps from the stability limit of " + number(limit) + " s");
@@ -115,7 +131,7 @@ void Simulation::State::shift_velocities(double by, const double* from) {
           if (from) ++from;
         }
   }
-  if (scene.time.substeps != kAutoSubsteps) accelerations_ = {};
+  if (scene.time.substeps != kAutoSubsteps) accelerations_ = std::vector<Vec3>();
 }
 
 void Simulation::State::set_substeps(int count) {
@@ -151,11 +167,28 @@ void Simulation::State::advance_frame() {
 }
 
 void Simulation::State::run_frame() {
-  const double time = double(frame) * scene.time.frame;
+  if (!self_collision) return run_substeps(0, substeps);
+  for (int s = 0; s < substeps;) {
+    const int count = std::min(until_collision_ - since_collision_, substeps - s);
+    run_substeps(s, count);
+    s += count;
+    since_collision_ += count;
+    if (since_collision_ < until_collision_) break;
+    const auto start = std::chrono::steady_clock::now();
+    until_collision_ = self_collision->run(dt, since_collision_, threads);
+    since_collision_ = 0;
+    const auto spent = std::chrono::steady_clock::now() - start;
+    self_collision_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+    ++self_collision_runs;
+  }
+}
+
+void Simulation::State::run_substeps(int first, int count) {
+  const double time = double(frame) * scene.time.frame + first * dt;
   for (auto& step : cloths) {
     const Lattice& l = step->lattice();
     const bool small = l.columns * l.rows <= kSmallCloth;
-    step->wavefront().run(time, dt, substeps, small ? one_thread : threads);
+    step->passes().run(time, dt, count, small ? one_thread : threads);
   }
 }
 
@@ -182,7 +215,7 @@ void Simulation::State::follow_stretch() {
     const double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
     // Springs in all directions: never more than twice the flat sheet's ω² for the families here.
     Spectrum stretched = spectra[c];
-    stretched.omega_squared *= 1 + t;
+    stretched.omega_squared *= folds_freely(step) ? kFolded : 1 + t;
     limit = std::min(limit, stretched.largest_substep());
   }
   const int count = int(std::ceil(scene.time.frame / (kLimitShare * limit)));
@@ -197,7 +230,7 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
   if (positions.size() != 3 * particles || velocities.size() != 3 * particles)
     throw std::invalid_argument("a state needs " + std::to_string(3 * particles) +
                                 " positions and as many velocities");
-  const auto bad = [](double v) { return !std::isfinite(v); };
+  const auto bad = [](double v) { return !(std::abs(v) <= std::numeric_limits<float>::max()); };
   if (std::any_of(positions.begin(), positions.end(), bad) ||
       std::any_of(velocities.begin(), velocities.end(), bad))
     throw std::invalid_argument("a state holds a value that is not finite");
@@ -211,7 +244,15 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
           l.v.at(c, j, i) = l.w(j, i) > 0 ? float(velocities[3 * p + c]) : 0;
         }
   }
-  if (is_explicit(method)) shift_velocities(-dt / 2, velocities.data());
+  for (auto& step : cloths)
+    for (const auto& stage : step->stages()) stage->restart();
+  if (self_collision) self_collision->restart();
+  since_collision_ = 0;
+  until_collision_ = 1;
+  if (is_explicit(method)) {
+    shift_velocities(-dt / 2, velocities.data());
+    if (scene.time.substeps == kAutoSubsteps) follow_stretch();
+  }
   ++changes;
 }
 
@@ -249,11 +290,10 @@ void Simulation::State::find_fault() {
   status.stage = "step";
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     Lattice& l = cloths[c]->lattice();
-    for (const auto& stage : cloths[c]->stages()) stage->reserve_slots(1);
     for (int s = 0; s < substeps; ++s) {
       const Substep substep{dt, double(frame) * scene.time.frame + (s + 1) * dt, 0};
       for (const auto& stage : cloths[c]->stages()) {
-        stage->run(0, l.rows, substep);
+        stage->run_alone(l.rows, substep, threads);
         for (int j = 0; j < l.rows && status.text == "ok"; ++j)
           for (int i = 0; i < l.columns && status.text == "ok"; ++i)
             for (int k = 0; k < 3; ++k)
@@ -272,6 +312,9 @@ void Simulation::State::find_fault() {
       }
     }
   }
+  // Every stage stays finite by itself: what runs between them does not.
+  status.stage = self_collision ? "self_collision" : "step";
+  status.text = "not finite in frame " + std::to_string(status.frame) + ", stage " + status.stage;
 }
 
 }  // namespace weft

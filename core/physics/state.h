@@ -5,7 +5,9 @@
 #include <deque>
 
 #include "physics/plan.h"
+#include "physics/self_collision/self_collision.h"
 #include "physics/stability.h"
+#include "physics/stages/grab.h"
 #include "physics/threads.h"
 #include "weft/simulation.h"
 
@@ -15,6 +17,9 @@ struct Simulation::State {
   State(Scene given, const Options& given_options);
 
   void advance_frame();
+  void grab(int cloth, int i, int j, const Vec3& target, double stiffness);
+  void release();
+  void hold(int cloth, int i, int j, bool held);
   void set(std::span<const double> positions, std::span<const double> velocities);
   std::size_t backup_bytes() const;
 
@@ -25,6 +30,7 @@ struct Simulation::State {
   physics::Threads one_thread;  // for cloths too small to share out
   Method method;                // the scene's, or the stable one put in its place
   std::vector<std::unique_ptr<physics::ClothStep>> cloths;
+  std::unique_ptr<physics::SelfContact> self_collision;  // over all cloths; null when all are off
   Plan plan;
   Status status;
   std::int64_t frame = 0, total_substeps = 0;
@@ -37,12 +43,16 @@ struct Simulation::State {
   std::vector<float> frame_ms;
   double total_ms = 0;
   std::deque<std::vector<std::atomic<std::int64_t>>> stage_ns;  // per cloth, per stage (profile)
+  std::int64_t self_collision_ns = 0, self_collision_runs = 0;
 
  private:
   struct Backup {
     physics::Rows x, v;
   };
   std::vector<Backup> backups_;
+  physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
+  int grabbed_ = 0;
+  int since_collision_ = 0, until_collision_ = 1;  // substeps
   std::vector<Vec3> accelerations_;  // of one cloth, kept where automatic substeps change (explicit)
 
   void choose_method_and_substeps();
@@ -51,6 +61,9 @@ struct Simulation::State {
   void shift_velocities(double by, const double* from = nullptr);
   void follow_stretch();
   void run_frame();
+  physics::ClothStep& step_with(int cloth, int i, int j);
+  void plan_changed();
+  void run_substeps(int first, int count);
   void save();
   void restore();
   bool finite() const;

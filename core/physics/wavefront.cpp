@@ -65,7 +65,9 @@ void Wavefront::choose_tiles(int count, int threads) {
 
 void Wavefront::run(double time, double dt, int count, Threads& threads) {
   choose_tiles(count, threads.count());
-  for (RowStage* s : stages_) s->prepare(dt);
+  if (dt != prepared_dt_)
+    for (RowStage* s : stages_) s->prepare(dt);
+  prepared_dt_ = dt;
   const Run r{time, dt, count, (count + chunk_substeps_ - 1) / chunk_substeps_};
   if (const int slots = chunk_substeps_ * ring_; slots > slots_) {
     for (RowStage* s : stages_) s->reserve_slots(slots);

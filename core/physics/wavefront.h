@@ -45,6 +45,7 @@ class Wavefront {
   double row_nanoseconds_;
   std::span<std::atomic<std::int64_t>> profile_;
 
+  double prepared_dt_ = 0;
   int chunk_substeps_ = 1, height_ = 1, tiles_ = 1, span_ = 1, ring_ = 1, slots_ = 0;
   std::vector<int> offset_;  // of every stage of every substep of a chunk
   std::unique_ptr<std::atomic<int>[]> waits_;

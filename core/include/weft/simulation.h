@@ -75,6 +75,15 @@ class Simulation {
   // std::invalid_argument when the sizes differ or a value is not finite.
   void set_state(std::span<const double> positions, std::span<const double> velocities);
 
+  // Draws a particle to a target by a spring of so many N/m, critically damped, until release();
+  // another grab moves the target or takes another particle. Any stiffness is stable.
+  void grab(int cloth, int i, int j, const Vec3& target, double stiffness = 200);
+  void release();
+  // Holds a particle where it is; lets a held one go, be it held by the scene or by pin().
+  void pin(int cloth, int i, int j);
+  void unpin(int cloth, int i, int j);
+  // All four throw std::out_of_range for a particle that is not there.
+
   // Everything measured so far (weft/report.h). Evaluates energies and strains now.
   Report report() const;
 

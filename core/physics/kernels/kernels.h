@@ -76,22 +76,23 @@ struct FamilyRow {
 };
 
 // One family of projected constraints in rows begin … end-1. Which of the optional parts are given
-// picks the rule: a strain limit (inverse_dt > 0), compliance with multipliers, compliance alone, or
+// picks the rule: a strain limit, compliance with multipliers, compliance alone, or
 // rigid constraints.
 struct ProjectRows {
   int begin, end, rows;
   int stride;
-  Row3 x, v;       // row 0; v is used by the strain limit only
+  Row3 x, v;       // row 0; v is not used by rigid constraints
   const float* w;  // inverse mass of row 0 [1/kg]
   int count;       // constraints in a row: a joins lane a+near of row j and lane a+far of row j+dj
   int near, far, dj;
   int colour;                 // between rows: those with j/dj % 2 == colour
   const std::int32_t* lanes;  // along rows: -1 in the lanes of a colour, 0 elsewhere; both colours
   float rest;                 // m; the strain limit's greatest length
-  float share;                // factor on the correction (2 positional_k, Jacobi's relaxation)
+  float weight;               // of w_a + w_b (1/(2 positional_k), 1/Jacobi's relaxation)
   const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
   float* lambda;              // multipliers of row 0 [kg·m], or null
-  float inverse_dt;           // > 0: one-sided; the change of position goes into the velocity too
+  bool limit;                 // one-sided: nothing happens below the rest length
+  float inverse_dt;           // limit, compliance: the change of position goes into the velocity too
 };
 
 struct AdvanceRow {
@@ -104,19 +105,96 @@ struct AdvanceRow {
   float inverse_dt;
 };
 
+// Constants of a collider's shape, about its place (colliders/).
+struct ShapeConstants {
+  float radius = 0;           // sphere, capsule; the box's rounding [m]
+  float thin = 0;             // half of the least thickness; infinite for the plane [m]
+  float axis[3] = {0, 1, 0};  // plane: unit normal; capsule: from a to b [m]
+  float inverse_square = 0;   // capsule: 1/|axis|² [1/m²]
+  float half[3] = {};         // box: half-sizes less the rounding [m]
+  float turn[9] = {};         // box: its axes as rows
+};
+
 // One collider and one row: particles below the surface are put onto it, with friction.
 struct CollideRow {
   int columns;
   Row3 x, v;
   const float* w;
   float dt, inverse_dt;
-  float cx, cy, cz;        // center, or a point on the plane [m]
-  float nx, ny, nz;        // plane's unit normal
-  float radius;            // sphere's, with the offset [m]
-  float offset;            // plane's [m]
+  float cx, cy, cz;        // where the shape is at the end of the substep [m]
   float ux, uy, uz;        // velocity of the surface [m/s]
+  float offset;            // kept off the surface [m]
   float friction_static, friction_dynamic;
+  ShapeConstants shape;
 };
+
+// The triangles between a row and the next, and one collider. bound[a] becomes a lower bound of the
+// distance from the offset surface to the two triangles between lanes a and a+1 [m].
+struct FacesRow {
+  CollideRow row;
+  ConstRow3 x_next, v_next;
+  float* bound;
+};
+
+// How a row lies to a collider.
+struct RowReach {
+  float clearance;  // least distance of a free particle from the offset surface [m]
+  float speed;      // greatest speed of a free particle, seen from the collider [m/s]
+};
+
+// Shapes and responses, in the order of weft::Shape and weft::FrictionModel.
+inline constexpr int kShapes = 4, kFrictionModels = 2;
+
+// A run of particles that follow each other.
+struct Run {
+  std::int32_t first, last;
+};
+
+// The particles of one cell against those in the 27 cells about it.
+struct NearCell {
+  ConstRow3 sorted;           // all particles, cell by cell, with 16 lanes of padding
+  Run members;                // of the cell
+  const Run* runs;            // the 27 cells
+  int run_count;
+  Row3 candidates;            // room for all particles of the runs, 16 lanes more for each run
+  std::int32_t* numbers;      // the same
+  float range_squared;        // m²
+  std::int32_t* counts;       // out, per member: how many candidates are in range, itself included
+  std::int32_t* hits;         // out, member after member: their numbers
+};
+
+// Least and greatest of some values, component by component.
+struct Spread {
+  float low[3], high[3];
+};
+
+// Gusts: each component of the wind gains three waves, of phase k·x + at.
+inline constexpr int kGusts = 9;  // 3 for each component
+struct Gust {
+  float kx, ky, kz;  // 1/m
+  float at;          // phase at x = 0, in turns
+};
+
+// Air on the triangles between a row and the next; their forces go to both rows' f.
+struct WindRow {
+  int columns;
+  ConstRow3 x, x_next, v, v_next;
+  const float *w, *w_next;
+  Row3 f, f_next;          // N, added to
+  float dt;
+  float wx, wy, wz;        // m/s
+  float drag, lift;        // kg/m³
+  float gust_speed;        // m/s; 0: none
+  Gust gusts[kGusts];
+};
+
+struct LineStrip;      // kernels/line.h
+struct TransposeRows;
+struct SecondOrderRow;  // kernels/second_order.h
+struct TetherRow;
+struct BendRow;         // kernels/bending.h
+struct BendLine;
+struct TwistRow;
 
 struct KernelTable {
   void (*spring_rows)(const SpringRows&);
@@ -128,11 +206,23 @@ struct KernelTable {
   void (*project)(const ProjectRows&);              // Gauss-Seidel, in place
   // Jacobi: the corrections of one row's constraints added to the sums of rows j and j+dj
   void (*project_jacobi)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
-  void (*apply_corrections)(const AdvanceRow&);     // x += f, f <- 0
-  void (*sphere)(const CollideRow&);
-  void (*plane)(const CollideRow&);
-  void (*course_sphere)(const CollideRow&);
-  void (*course_plane)(const CollideRow&);
+  void (*apply_corrections)(const AdvanceRow&);     // x += f, v += f/dt if inverse_dt > 0, f <- 0
+  void (*line_strip)(const LineStrip&);             // a strip of lines, each solved as a whole
+  void (*rows_to_lanes)(const TransposeRows&);
+  void (*lanes_to_rows)(const TransposeRows&);
+  void (*predict_second_order)(const SecondOrderRow&);
+  void (*velocity_second_order)(const SecondOrderRow&);
+  void (*tethers)(const TetherRow&);
+  void (*bend_row)(const BendRow&);                 // v += dt force/mass of the bending energy
+  void (*bend_line)(const BendLine&);               // implicit bending along a strip of lines
+  void (*bend_twist)(const TwistRow&);              // and of every second cell between two rows
+  RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
+  RowReach (*below_faces[kShapes])(const FacesRow&);
+  void (*near_pairs)(const NearCell&);
+  void (*wind)(const WindRow&);
+  void (*push)(const AdvanceRow&);                  // v += dt f/m, x with it, then f <- 0
+  // Widens `spread` by the differences a - b of a row (b null: by a).
+  void (*spread)(ConstRow3 a, ConstRow3 b, int columns, Spread& spread);
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

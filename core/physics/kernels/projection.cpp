@@ -32,14 +32,14 @@ enum class Rule { rigid, compliant, multipliers, limit };
 template <Rule R>
 WEFT_INLINE Wide scale_of(const ProjectRows& p, Wide length, Wide wa, Wide wb, int j, Wide& lambda,
                           WideInt active) {
-  Wide violation = length - p.rest, inertia = wa + wb;
+  Wide violation = length - p.rest, inertia = (wa + wb) * p.weight;
   if constexpr (R == Rule::compliant || R == Rule::multipliers)
     inertia = inertia + p.compliance[j];
   else
     active = active & (inertia > 0.0f);  // two pinned ends have nothing to move
   if constexpr (R == Rule::limit) active = active & (violation > 0.0f);
   if constexpr (R == Rule::multipliers) violation = violation + p.compliance[j] * lambda;
-  const Wide scale = select(active, violation * p.share / (inertia * length), Wide{});
+  const Wide scale = select(active, violation / (inertia * length), Wide{});
   if constexpr (R == Rule::multipliers) lambda = lambda - scale * length;
   return scale;
 }
@@ -71,7 +71,7 @@ WEFT_INLINE Wide3 solve_block(const ProjectRows& p, const RowAt& near, const Row
 template <Rule R>
 WEFT_INLINE void shift(const ProjectRows& p, const RowAt& row, int i, Wide3 change) {
   store3(row.x, i, load3(row.x, i) + change);
-  if constexpr (R == Rule::limit)
+  if constexpr (R != Rule::rigid)
     store3(row.v, i, load3(row.v, i) + change * wide(p.inverse_dt));
 }
 
@@ -160,7 +160,7 @@ WEFT_INLINE int along_row_parted(const ProjectRows& p, int j, int colour) {
     Parting<N>(x.near + near.x, x.far - far.x).weave(axes[0] + a);
     Parting<N>(y.near + near.y, y.far - far.y).weave(axes[1] + a);
     Parting<N>(z.near + near.z, z.far - far.z).weave(axes[2] + a);
-    if constexpr (R == Rule::limit) {
+    if constexpr (R != Rule::rigid) {
       const Wide3 change[2] = {near * wide(p.inverse_dt), far * wide(p.inverse_dt)};
       const Parting<N> vx(velocities[0] + a), vy(velocities[1] + a), vz(velocities[2] + a);
       Parting<N>(vx.near + change[0].x, vx.far - change[1].x).weave(velocities[0] + a);
@@ -261,7 +261,7 @@ void sum_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
 }  // namespace
 
 void project(const ProjectRows& p) {
-  if (p.inverse_dt > 0) return sweep<Rule::limit>(p);
+  if (p.limit) return sweep<Rule::limit>(p);
   if (p.lambda) return sweep<Rule::multipliers>(p);
   if (p.compliance) return sweep<Rule::compliant>(p);
   sweep<Rule::rigid>(p);
@@ -276,6 +276,7 @@ void project_jacobi(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
 void apply_corrections(const AdvanceRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     store3(r.x, i, load3(r.x, i) + load3(r.f, i));
+    if (r.inverse_dt > 0) store3(r.v, i, load3(r.v, i) + load3(r.f, i) * wide(r.inverse_dt));
     store3(r.f, i, Wide3{});
   }
 }

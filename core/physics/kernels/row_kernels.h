@@ -2,6 +2,8 @@
 // table.cpp collects.
 #pragma once
 
+#include <cstddef>
+
 #include "physics/kernels/kernels.h"
 #include "physics/kernels/wide.h"
 
@@ -11,14 +13,18 @@ using physics::Advance;
 using physics::AdvanceRow;
 using physics::CollideRow;
 using physics::ConstRow3;
+using physics::FacesRow;
 using physics::FamilyRow;
 using physics::ProjectRows;
 using physics::Row3;
+using physics::RowReach;
 using physics::SpringConstants;
 using physics::SpringRows;
 
-WEFT_INLINE Wide3 load3(ConstRow3 r, int i) { return {load(r.x + i), load(r.y + i), load(r.z + i)}; }
-WEFT_INLINE void store3(Row3 r, int i, Wide3 v) {
+WEFT_INLINE Wide3 load3(ConstRow3 r, std::ptrdiff_t i) {
+  return {load(r.x + i), load(r.y + i), load(r.z + i)};
+}
+WEFT_INLINE void store3(Row3 r, std::ptrdiff_t i, Wide3 v) {
   store(r.x + i, v.x);
   store(r.y + i, v.y);
   store(r.z + i, v.z);
@@ -49,7 +55,8 @@ class LongDelay3 {
 WEFT_INLINE int padded(int count) { return (count + 15) & ~15; }
 
 // v <- c v + dt (f/m + g), x <- x + dt v; a pinned particle's inverse mass of 0 keeps it in place.
-WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const Advance& a, int i) {
+WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const Advance& a,
+                      std::ptrdiff_t i) {
   const Wide w = load(inverse_mass + i);
   const WideInt free = w > 0.0f;
   const Wide w_dt = w * a.dt;
@@ -69,9 +76,26 @@ void velocity(const AdvanceRow&);
 void project(const ProjectRows&);
 void project_jacobi(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
 void apply_corrections(const AdvanceRow&);
-void sphere(const CollideRow&);
-void plane(const CollideRow&);
-void course_sphere(const CollideRow&);
-void course_plane(const CollideRow&);
+void line_strip(const physics::LineStrip&);
+void rows_to_lanes(const physics::TransposeRows&);
+void lanes_to_rows(const physics::TransposeRows&);
+void predict_second_order(const physics::SecondOrderRow&);
+void velocity_second_order(const physics::SecondOrderRow&);
+void tethers(const physics::TetherRow&);
+void bend_row(const physics::BendRow&);
+void bend_line(const physics::BendLine&);
+void bend_twist(const physics::TwistRow&);
+
+void wind(const physics::WindRow&);
+void push(const AdvanceRow&);
+void near_pairs(const physics::NearCell&);
+void spread(ConstRow3 a, ConstRow3 b, int columns, physics::Spread&);
+
+// A collider's kernels: its own file in colliders/ defines them by WEFT_COLLIDER (collide.h).
+struct ColliderKernels {
+  RowReach (*collide[physics::kFrictionModels])(const CollideRow&);
+  RowReach (*below_faces)(const FacesRow&);
+};
+extern const ColliderKernels kSphere, kPlane, kCapsule, kBox;
 
 }  // namespace weft::WEFT_KERNELS

@@ -33,29 +33,29 @@ WEFT_INLINE void pin_order(Wide3& v) {
 enum Family { kRight, kDown, kDiagonal, kAntidiagonal, kRight2, kDown2, kFamilies };
 static_assert(kFamilies == physics::kPlainFamilies);
 
-// One row as the fused kernel sees it.
-struct RowView {
-  Row3 x, v, carry, carry2;
-  ConstRow3 below, below2;
-  const float* w;
+// Where a block of lanes lies: the offsets of its first lane in the arrays, in the same column one
+// and two rows below, and in the row.
+struct Block {
+  std::ptrdiff_t here, below, below2;
+  int i;
+  int parity;  // of the row: which of the two carries from two rows above
   const SpringConstants* springs;
 };
 
-RowView view_row(const SpringRows& s, int j) {
-  const auto row = [&](Row3 r, int k) {
-    const std::ptrdiff_t at = std::ptrdiff_t(k < s.rows ? k : s.rows - 1) * s.stride;
-    return Row3{r.x + at, r.y + at, r.z + at};
-  };
-  RowView view;
-  view.x = row(s.x, j);
-  view.v = row(s.v, j);
-  view.below = row(s.x, j + 1);
-  view.below2 = row(s.x, j + 2);
-  view.w = s.w + std::ptrdiff_t(j) * s.stride;
-  view.carry = s.carry[0];
-  view.carry2 = s.carry[1 + j % 2];
-  view.springs = s.springs + std::ptrdiff_t(j) * kFamilies;
-  return view;
+// The first block of row j. Rows past the last stand for themselves; their springs have no stiffness.
+WEFT_INLINE Block first_block(const SpringRows& s, int j) {
+  const std::ptrdiff_t here = std::ptrdiff_t(j) * s.stride;
+  const std::ptrdiff_t last = std::ptrdiff_t(s.rows - 1) * s.stride;
+  const std::ptrdiff_t below = here + s.stride, below2 = below + s.stride;
+  return {here,  below < last ? below : last, below2 < last ? below2 : last, 0, j % 2,
+          s.springs + std::ptrdiff_t(j) * kFamilies};
+}
+
+WEFT_INLINE void advance(Block& b) {
+  b.here += kLanes;
+  b.below += kLanes;
+  b.below2 += kLanes;
+  b.i += kLanes;
 }
 
 // The fused kernel works block by block, row after row. Each of the six springs of a block passes
@@ -72,14 +72,14 @@ struct Pipeline {
   Delay3<2> right2;
 
   template <Family F>
-  WEFT_INLINE void square(const RowView& r, int i) {
-    const Wide3 near = load3(r.x, F == kAntidiagonal ? i + 1 : i);
+  WEFT_INLINE void square(const SpringRows& s, const Block& b) {
+    const Wide3 near = load3(s.x, F == kAntidiagonal ? b.here + 1 : b.here);
     Wide3 far;
-    if constexpr (F == kRight) far = load3(r.x, i + 1);
-    if constexpr (F == kRight2) far = load3(r.x, i + 2);
-    if constexpr (F == kDown || F == kAntidiagonal) far = load3(r.below, i);
-    if constexpr (F == kDiagonal) far = load3(r.below, i + 1);
-    if constexpr (F == kDown2) far = load3(r.below2, i);
+    if constexpr (F == kRight) far = load3(s.x, b.here + 1);
+    if constexpr (F == kRight2) far = load3(s.x, b.here + 2);
+    if constexpr (F == kDown || F == kAntidiagonal) far = load3(s.x, b.below);
+    if constexpr (F == kDiagonal) far = load3(s.x, b.below + 1);
+    if constexpr (F == kDown2) far = load3(s.x, b.below2);
     edge[F] = far - near;
     length[F] = max(dot(edge[F], edge[F]), wide(kTiny));
     pin_order(length[F]);
@@ -90,97 +90,90 @@ struct Pipeline {
     pin_order(length[F]);
   }
   template <Family F>
-  WEFT_INLINE void quotient(const RowView& r) {
-    length[F] = r.springs[F].kl / length[F];
+  WEFT_INLINE void quotient(const Block& b) {
+    length[F] = b.springs[F].kl / length[F];
     pin_order(length[F]);
   }
   // Force of family F on its near end; lanes past the last spring of the row are zero.
   template <Family F, bool kLast>
-  WEFT_INLINE Wide3 spring(const RowView& r, int columns, int i) const {
-    const Wide3 f = edge[F] * (r.springs[F].k - length[F]);
+  WEFT_INLINE Wide3 spring(const SpringRows& s, const Block& b) const {
+    const Wide3 f = edge[F] * (b.springs[F].k - length[F]);
     if constexpr (!kLast || F == kDown || F == kDown2) return f;
-    return select(lanes_below(columns - (F == kRight2 ? 2 : 1) - i), f, Wide3{});
+    return select(lanes_below(s.columns - (F == kRight2 ? 2 : 1) - b.i), f, Wide3{});
   }
 
   template <bool kLast>
-  WEFT_INLINE void force_right(const RowView& r, int columns, int i) {
-    const Wide3 f = spring<kRight, kLast>(r, columns, i);
+  WEFT_INLINE void force_right(const SpringRows& s, const Block& b) {
+    const Wide3 f = spring<kRight, kLast>(s, b);
     own = f - right.next(f);
     pin_order(own);
   }
   template <bool kLast>
-  WEFT_INLINE void force_right2(const RowView& r, int columns, int i) {
-    const Wide3 f = spring<kRight2, kLast>(r, columns, i);
+  WEFT_INLINE void force_right2(const SpringRows& s, const Block& b) {
+    const Wide3 f = spring<kRight2, kLast>(s, b);
     own = own + (f - right2.next(f));
     pin_order(own);
   }
   template <bool kLast>
-  WEFT_INLINE void force_down(const RowView& r, int columns, int i) {
-    below = spring<kDown, kLast>(r, columns, i);
+  WEFT_INLINE void force_down(const SpringRows& s, const Block& b) {
+    below = spring<kDown, kLast>(s, b);
     own = own + below;
     pin_order(own);
   }
   template <bool kLast>
-  WEFT_INLINE void force_diagonal(const RowView& r, int columns, int i) {
-    const Wide3 f = spring<kDiagonal, kLast>(r, columns, i);
+  WEFT_INLINE void force_diagonal(const SpringRows& s, const Block& b) {
+    const Wide3 f = spring<kDiagonal, kLast>(s, b);
     own = own + f;
     below = below + diagonal.next(f);
     pin_order(own);
     pin_order(below);
   }
   template <bool kLast>
-  WEFT_INLINE void force_antidiagonal(const RowView& r, int columns, int i) {
-    const Wide3 f = spring<kAntidiagonal, kLast>(r, columns, i);
+  WEFT_INLINE void force_antidiagonal(const SpringRows& s, const Block& b) {
+    const Wide3 f = spring<kAntidiagonal, kLast>(s, b);
     below = below + f;
-    own = own + antidiagonal.next(f) - load3(r.carry, i);
-    store3(r.carry, i, below);
+    own = own + antidiagonal.next(f) - load3(s.carry[0], b.i);
+    store3(s.carry[0], b.i, below);
     pin_order(own);
   }
   template <bool kLast>
-  WEFT_INLINE void force_down2(const RowView& r, int columns, int i) {
-    const Wide3 f = spring<kDown2, kLast>(r, columns, i);
-    own = own + (f - load3(r.carry2, i));
-    store3(r.carry2, i, f);
+  WEFT_INLINE void force_down2(const SpringRows& s, const Block& b) {
+    const Wide3 f = spring<kDown2, kLast>(s, b);
+    own = own + (f - load3(s.carry[1 + b.parity], b.i));
+    store3(s.carry[1 + b.parity], b.i, f);
     pin_order(own);
   }
-};
-
-// Where a block lies.
-struct Block {
-  RowView row;
-  int i;
 };
 
 // Squares block b and gives it its first two forces, while the block before, a, gets the other four
 // and moves. a_last and b_last: the row's last spring to the right lies in or before the block.
 template <bool kA, bool kALast, bool kB, bool kBLast>
-WEFT_INLINE void turn(Pipeline& p, const Block& a, const Block& b, const SpringRows& s) {
-  const int n = s.columns;
-  if constexpr (kA) p.quotient<kDiagonal>(a.row);
-  if constexpr (kB) p.square<kRight>(b.row, b.i);
+WEFT_INLINE void turn(Pipeline& p, const SpringRows& s, const Block& a, const Block& b) {
+  if constexpr (kA) p.quotient<kDiagonal>(a);
+  if constexpr (kB) p.square<kRight>(s, b);
   if constexpr (kA) p.root<kDown2>();
-  if constexpr (kA) p.force_down<kALast>(a.row, n, a.i);
-  if constexpr (kA) p.quotient<kAntidiagonal>(a.row);
-  if constexpr (kB) p.square<kRight2>(b.row, b.i);
+  if constexpr (kA) p.force_down<kALast>(s, a);
+  if constexpr (kA) p.quotient<kAntidiagonal>(a);
+  if constexpr (kB) p.square<kRight2>(s, b);
   if constexpr (kB) p.root<kRight>();
-  if constexpr (kA) p.force_diagonal<kALast>(a.row, n, a.i);
-  if constexpr (kA) p.quotient<kDown2>(a.row);
-  if constexpr (kB) p.square<kDown>(b.row, b.i);
+  if constexpr (kA) p.force_diagonal<kALast>(s, a);
+  if constexpr (kA) p.quotient<kDown2>(a);
+  if constexpr (kB) p.square<kDown>(s, b);
   if constexpr (kB) p.root<kRight2>();
-  if constexpr (kA) p.force_antidiagonal<kALast>(a.row, n, a.i);
-  if constexpr (kB) p.quotient<kRight>(b.row);
-  if constexpr (kB) p.square<kDiagonal>(b.row, b.i);
+  if constexpr (kA) p.force_antidiagonal<kALast>(s, a);
+  if constexpr (kB) p.quotient<kRight>(b);
+  if constexpr (kB) p.square<kDiagonal>(s, b);
   if constexpr (kB) p.root<kDown>();
-  if constexpr (kA) p.force_down2<kALast>(a.row, n, a.i);
-  if constexpr (kA) move(a.row.x, a.row.v, a.row.w, p.own, s.advance, a.i);
-  if constexpr (kB) p.quotient<kRight2>(b.row);
-  if constexpr (kB) p.square<kAntidiagonal>(b.row, b.i);
+  if constexpr (kA) p.force_down2<kALast>(s, a);
+  if constexpr (kA) move(s.x, s.v, s.w, p.own, s.advance, a.here);
+  if constexpr (kB) p.quotient<kRight2>(b);
+  if constexpr (kB) p.square<kAntidiagonal>(s, b);
   if constexpr (kB) p.root<kDiagonal>();
-  if constexpr (kB) p.force_right<kBLast>(b.row, n, b.i);
-  if constexpr (kB) p.quotient<kDown>(b.row);
-  if constexpr (kB) p.square<kDown2>(b.row, b.i);
+  if constexpr (kB) p.force_right<kBLast>(s, b);
+  if constexpr (kB) p.quotient<kDown>(b);
+  if constexpr (kB) p.square<kDown2>(s, b);
   if constexpr (kB) p.root<kAntidiagonal>();
-  if constexpr (kB) p.force_right2<kBLast>(b.row, n, b.i);
+  if constexpr (kB) p.force_right2<kBLast>(s, b);
 }
 
 }  // namespace
@@ -190,31 +183,29 @@ void spring_rows(const SpringRows& given) {
   // A block is whole when all its springs two to the right exist.
   const auto last = [&](const Block& b) { return b.i + kLanes + 2 > s.columns; };
   Pipeline p{};
-  Block a{view_row(s, s.begin), 0}, b = a;
+  Block a = first_block(s, s.begin), b = a;
   if (last(a))
-    turn<false, false, true, true>(p, a, a, s);
+    turn<false, false, true, true>(p, s, a, a);
   else
-    turn<false, false, true, false>(p, a, a, s);
+    turn<false, false, true, false>(p, s, a, a);
+  advance(b);
   for (int j = s.begin; j < s.end; ++j) {
-    if (j > s.begin) b = {view_row(s, j), 0};
-    int i = j > s.begin ? 0 : kLanes;
-    for (; i < s.columns; i += kLanes) {
-      b.i = i;
+    if (j > s.begin) b = first_block(s, j);
+    for (; b.i < s.columns; advance(b)) {
       if (last(b)) {
         if (last(a))
-          turn<true, true, true, true>(p, a, b, s);
+          turn<true, true, true, true>(p, s, a, b);
         else
-          turn<true, false, true, true>(p, a, b, s);
+          turn<true, false, true, true>(p, s, a, b);
       } else if (last(a)) {
-        turn<true, true, true, false>(p, a, b, s);
+        turn<true, true, true, false>(p, s, a, b);
       } else {
-        turn<true, false, true, false>(p, a, b, s);
+        turn<true, false, true, false>(p, s, a, b);
       }
-      if (i == 0) a.row = b.row;
-      a.i = i;
+      a = b;
     }
   }
-  turn<true, true, false, false>(p, a, a, s);
+  turn<true, true, false, false>(p, s, a, a);
 }
 
 namespace {

@@ -48,6 +48,17 @@ WEFT_INLINE Wide max(Wide a, Wide b) { return a > b ? a : b; }
 WEFT_INLINE Wide sqrt(Wide v) { return Wide{__builtin_sqrtf(v[0])}; }
 #endif
 
+WEFT_INLINE Wide min(Wide a, Wide b) { return select(a < b, a, b); }
+WEFT_INLINE Wide abs(Wide v) { return max(v, -v); }
+
+// The least and the greatest lane: exact, so the order does not matter.
+WEFT_INLINE float least(Wide v) {
+  float r = v[0];
+  for (int i = 1; i < kLanes; ++i) r = v[i] < r ? v[i] : r;
+  return r;
+}
+WEFT_INLINE float greatest(Wide v) { return -least(-v); }
+
 WEFT_INLINE WideInt lane_numbers() {
   WideInt r{};
   for (int i = 0; i < kLanes; ++i) r[i] = i;
@@ -97,10 +108,24 @@ WEFT_INLINE bool any(WideInt mask) {
 #endif
 }
 
+// The lanes of a mask as bits, lane 0 lowest.
+WEFT_INLINE unsigned bits(WideInt mask) {
+#if WEFT_LANES == 16
+  return _mm512_movepi32_mask((__m512i)mask);
+#elif WEFT_LANES == 8
+  return unsigned(_mm256_movemask_ps((__m256)mask));
+#elif WEFT_LANES == 4
+  return unsigned(_mm_movemask_ps((__m128)mask));
+#else
+  return mask[0] != 0;
+#endif
+}
+
 struct Wide3 {
   Wide x, y, z;
 };
 
+WEFT_INLINE Wide3 wide3(float x, float y, float z) { return {wide(x), wide(y), wide(z)}; }
 WEFT_INLINE Wide3 operator+(Wide3 a, Wide3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 WEFT_INLINE Wide3 operator-(Wide3 a, Wide3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 WEFT_INLINE Wide3 operator*(Wide3 a, Wide s) { return {a.x * s, a.y * s, a.z * s}; }

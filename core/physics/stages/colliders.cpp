@@ -1,84 +1,128 @@
-// Stage "collider": one collider against one cloth.
+// Stage "collider": one collider against the particles of one cloth.
+#include "physics/stages/colliders.h"
+
 #include <cmath>
 
 #include "physics/path.h"
-#include "physics/stages/stages.h"
 
 namespace weft::physics {
 namespace {
 
+const char* const kShapeNames[kShapes] = {"sphere", "plane", "capsule", "box"};
+
+std::string detail_of(const Collider& c) {
+  return std::string(kShapeNames[c.shape.index()]) +
+         (c.friction.model == FrictionModel::course ? ", course friction" : ", Coulomb friction") +
+         (c.keys.empty() ? "" : ", moving");
+}
+
 class ColliderStage final : public RowStage {
  public:
-  using Kernel = void (*)(const CollideRow&);
-  ColliderStage(const ClothParts& parts, const Collider& collider, const std::string& shape,
-                Kernel kernel, const CollideRow& constants)
-      : RowStage("collider", shape, 0, parts.particles(), "particles"),
+  ColliderStage(const ClothParts& parts, const Collider& collider)
+      : RowStage("collider", detail_of(collider), 0, parts.particles(), "particles"),
         parts_(parts),
-        keys_(collider.keys),
-        kernel_(kernel),
-        constants_(constants) {}
+        collider_(parts, collider),
+        far_(parts, collider_.fastest()),
+        kernel_(parts.kernels.collide[collider.shape.index()][std::size_t(collider.friction.model)]) {}
 
   void run(int j, const Substep& s) override {
-    Lattice& l = parts_.lattice;
-    CollideRow r = constants_;
-    r.columns = l.columns;
-    r.x = l.x.row(j);
-    r.v = l.v.row(j);
-    r.w = l.w(j);
-    r.dt = float(s.dt);
-    r.inverse_dt = float(1 / s.dt);
-    if (!keys_.empty()) {
-      const Vec3 c = position_at(keys_, s.time), u = velocity_over(keys_, s.time, s.dt);
-      r.cx = float(c[0]);
-      r.cy = float(c[1]);
-      r.cz = float(c[2]);
-      r.ux = float(u[0]);
-      r.uy = float(u[1]);
-      r.uz = float(u[2]);
-    }
-    kernel_(r);
+    if (far_.skip(j, s)) return;
+    far_.found(j, s, kernel_(collider_.row(parts_, j, s)));
   }
+  double idle() const override { return far_.share(); }
 
  private:
   ClothParts parts_;
-  const std::vector<Key>& keys_;
-  Kernel kernel_;
-  CollideRow constants_;
+  MovingCollider collider_;
+  OutOfReach far_;
+  RowReach (*kernel_)(const CollideRow&);
 };
-
-void place(CollideRow& r, const Vec3& p) {
-  r.cx = float(p[0]);
-  r.cy = float(p[1]);
-  r.cz = float(p[2]);
-}
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_collider(const ClothParts& parts, const Collider& collider) {
-  const bool course = collider.friction.model == FrictionModel::course;
-  CollideRow r{};
+MovingCollider::MovingCollider(const ClothParts&, const Collider& collider) : collider_(collider) {
+  CollideRow& r = constants_;
   r.friction_static = float(collider.friction.statik);
   r.friction_dynamic = float(collider.friction.dynamic);
   r.offset = float(collider.offset);
-  if (const auto* sphere = std::get_if<Sphere>(&collider.shape)) {
-    place(r, sphere->center);
-    r.radius = float(sphere->radius + collider.offset);
-    return std::make_unique<ColliderStage>(
-        parts, collider, course ? "sphere, course friction" : "sphere, Coulomb friction",
-        course ? parts.kernels.course_sphere : parts.kernels.sphere, r);
+  std::visit(
+      [&](const auto& shape) {
+        const Vec3 place = place_of(shape);
+        r.shape = constants_of(shape);
+        r.cx = float(place[0]);
+        r.cy = float(place[1]);
+        r.cz = float(place[2]);
+      },
+      collider.shape);
+  for (std::size_t n = 1; n < collider.keys.size(); ++n) {
+    const Key &a = collider.keys[n - 1], &b = collider.keys[n];
+    const Vec3 e = minus(b.position, a.position);
+    fastest_ = std::max(fastest_, std::sqrt(dot(e, e)) / (b.time - a.time));
   }
-  if (const auto* plane = std::get_if<Plane>(&collider.shape)) {
-    place(r, plane->point);
-    const Vec3& n = plane->normal;
-    const double length = std::hypot(n[0], n[1], n[2]);
-    r.nx = float(n[0] / length);
-    r.ny = float(n[1] / length);
-    r.nz = float(n[2] / length);
-    return std::make_unique<ColliderStage>(
-        parts, collider, course ? "plane, course friction" : "plane, Coulomb friction",
-        course ? parts.kernels.course_plane : parts.kernels.plane, r);
+}
+
+CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s) const {
+  Lattice& l = parts.lattice;
+  CollideRow r = constants_;
+  r.columns = l.columns;
+  r.x = l.x.row(j);
+  r.v = l.v.row(j);
+  r.w = l.w(j);
+  r.dt = float(s.dt);
+  r.inverse_dt = float(1 / s.dt);
+  if (collider_.keys.empty()) return r;
+  const Vec3 c = position_at(collider_.keys, s.time);
+  const Vec3 u = velocity_over(collider_.keys, s.time, s.dt);
+  r.cx = float(c[0]);
+  r.cy = float(c[1]);
+  r.cz = float(c[2]);
+  r.ux = float(u[0]);
+  r.uy = float(u[1]);
+  r.uz = float(u[2]);
+  return r;
+}
+
+OutOfReach::OutOfReach(const ClothParts& parts, double collider_speed)
+    : rows_(parts.lattice.rows), acceleration_(1), collider_speed_(collider_speed) {
+  constexpr double kStrain = 0.2;
+  double heaviest = 0;
+  for (int j = 0; j < parts.lattice.rows; ++j)
+    for (int i = 0; i < parts.lattice.columns; ++i)
+      heaviest = std::max(heaviest, double(parts.lattice.w(j, i)));
+  for (const Family& f : parts.families)
+    acceleration_ += 2 * f.stiffness * f.rest * kStrain * heaviest;
+  const Vec3& g = parts.scene.gravity;
+  acceleration_ += 2 * std::sqrt(dot(g, g));
+}
+
+bool OutOfReach::skip(int j, const Substep& s) {
+  Row& row = rows_[j];
+  ++row.all;
+  // A substep that is not later than the last one: the state was set back.
+  const bool skipped = s.time > row.ran && s.time < row.resume;
+  row.skipped += skipped;
+  return skipped;
+}
+
+void OutOfReach::found(int j, const Substep& s, const RowReach& reach) {
+  const double speed = 2 * (reach.speed + collider_speed_), a = acceleration_;
+  const double c = std::max(0.0, double(reach.clearance));
+  const double wait = (std::sqrt(speed * speed + 2 * a * c) - speed) / a;
+  rows_[j].ran = s.time;
+  rows_[j].resume = s.time + wait;
+}
+
+double OutOfReach::share() const {
+  std::int64_t skipped = 0, all = 0;
+  for (const Row& row : rows_) {
+    skipped += row.skipped;
+    all += row.all;
   }
-  return nullptr;
+  return all > 0 ? double(skipped) / double(all) : 0;
+}
+
+std::unique_ptr<RowStage> make_collider(const ClothParts& parts, const Collider& collider) {
+  return std::make_unique<ColliderStage>(parts, collider);
 }
 
 }  // namespace weft::physics

@@ -14,6 +14,7 @@ class KeyedPins final : public RowStage {
   void run(int j, const Substep& s) override {
     Lattice& l = parts_.lattice;
     for (const Pin* pin : by_row_[j]) {
+      if (l.w(j, pin->i) > 0) continue;  // let go since
       const Vec3 x = position_at(pin->keys, s.time), v = velocity_over(pin->keys, s.time, s.dt);
       for (int k = 0; k < 3; ++k) {
         l.x.at(k, j, pin->i) = float(x[k]);

@@ -29,7 +29,9 @@ std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped);
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, struct Multipliers* multipliers);
 std::unique_ptr<RowStage> make_velocity(const ClothParts& parts);
 std::unique_ptr<RowStage> make_keyed_pins(const ClothParts& parts);
+std::unique_ptr<RowStage> make_wind(const ClothParts& parts, std::uint64_t seed);
 std::unique_ptr<RowStage> make_collider(const ClothParts& parts, const Collider& collider);
+std::unique_ptr<RowStage> make_collider_faces(const ClothParts& parts, const Collider& collider);
 
 // Lagrange multipliers of the compliant method, kept over the sweeps of one substep: one lattice of
 // floats per family, null when a single sweep needs none.
@@ -50,7 +52,37 @@ struct SweepOptions {
   double limit = 0;  // > 0: the strain limit's one-sided sweep
 };
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
-                         std::vector<std::unique_ptr<RowStage>>& stages);
+                         Stages& stages);
+// What the second-order substep keeps of the substep before (Lattice::previous is its position).
+struct History {
+  explicit History(const Lattice& lattice);
+  std::size_t bytes() const {
+    return v_before.bytes() + v_end.bytes() + inverse_mass.size() * sizeof(float);
+  }
+  Rows v_before, v_end;
+  AlignedArray<float> inverse_mass;
+};
+// The share of the substep over which constraint forces act.
+double implicit_share(const Solver& solver);
+std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
+                                                    Multipliers* multipliers);
+std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history);
+
+std::unique_ptr<RowStage> make_tethers(const ClothParts& parts, bool compliant);
+// The curvature energy, as a force on the velocities or as constraints.
+std::unique_ptr<Stage> make_bending(const ClothParts& parts, Method method);
+
+// Compliance 1/(k dt²) [1/kg] of a family's constraints in row j, dt the share of the substep that
+// the solver's order gives constraint forces.
+float compliance_of(const ClothParts& parts, const Family& family, int j, double dt);
+
+struct LineOptions {
+  bool compliant = false;
+  int iterations = 1;
+  float share = 1;  // of the correction
+};
+// The line sweep: one stage for all families and iterations; null when the cloth has no constraint.
+std::unique_ptr<Stage> make_line(const ClothParts& parts, const LineOptions& options);
 std::unique_ptr<RowStage> make_jacobi(const ClothParts& parts, const SweepOptions& options);
 
 }  // namespace weft::physics

@@ -33,19 +33,18 @@ class ProjectedFamily {
     rows_.far = family_.far();
     rows_.dj = family_.dj;
     rows_.rest = float(family_.rest);
-    rows_.share = 1;
+    rows_.weight = 1;
+    rows_.inverse_dt = float(1 / dt);
     if (options_.limit > 0) {
       rows_.rest = float(family_.rest * (1 + options_.limit));
-      rows_.inverse_dt = float(1 / dt);
+      rows_.limit = true;
     } else if (options_.compliant) {
-      for (int j = 0; j < l.rows; ++j) {
-        const double k = family_.stiffness * gradient_factor(parts_.cloth, j, family_.dj);
-        compliance_[j] = float(1 / (std::max(k, 1e-12) * dt * dt));
-      }
+      for (int j = 0; j < l.rows; ++j) compliance_[j] = compliance_of(parts_, family_, j, dt);
+      rows_.inverse_dt = float(1 / (dt * implicit_share(parts_.scene.solver)));
       rows_.compliance = compliance_.data();
       if (options_.multipliers) rows_.lambda = options_.multipliers->row(index_, 0);
     } else {
-      rows_.share = float(2 * parts_.cloth.positional_k);
+      rows_.weight = float(1 / (2 * parts_.cloth.positional_k));
     }
   }
 
@@ -128,7 +127,9 @@ class BetweenRows final : public RowStage {
 
 // Relaxation of the summed corrections. The largest eigenvalue of the constraint system, relative
 // to its diagonal, is at most half the constraints at a particle for sheets made of these families;
-// 2.7/n keeps the sweep convergent, 0.9 is the bound of a single chain.
+// 2.7/n keeps the sweep convergent, 0.9 is the bound of a single chain. It applies to the part of the
+// system that couples constraints, w_a + w_b: compliance needs none, so that a single sweep of small
+// substeps is a spring of the full stiffness.
 float relaxation(std::size_t families) { return std::min(0.9f, 2.7f / float(2 * families)); }
 
 class Jacobi final : public RowStage {
@@ -136,7 +137,8 @@ class Jacobi final : public RowStage {
   Jacobi(const ClothParts& parts, const SweepOptions& options, int reach)
       : RowStage("jacobi", "all families, corrections added up and relaxed", reach,
                  parts.constraints(), "constraints"),
-        parts_(parts) {
+        parts_(parts),
+        compliant_(options.compliant) {
     for (std::size_t f = 0; f < parts.families.size(); ++f)
       families_.emplace_back(parts, options, f);
   }
@@ -154,26 +156,35 @@ class Jacobi final : public RowStage {
       const int dj = f.family().dj;
       if (j + dj >= l.rows) continue;
       ProjectRows p = f.rows(j, j + 1);
-      p.share *= relaxation(families_.size());
+      p.weight /= relaxation(families_.size());
       parts_.kernels.project_jacobi(p, j, sum(j), sum(j + dj));
     }
     AdvanceRow a{};
     a.columns = l.columns;
     a.x = l.x.row(j);
+    a.v = l.v.row(j);
     a.f = sum(j);
+    a.inverse_dt = compliant_ ? float(1 / (s.dt * implicit_share(parts_.scene.solver))) : 0.0f;
     parts_.kernels.apply_corrections(a);
   }
 
  private:
   ClothParts parts_;
+  bool compliant_;
   std::vector<ProjectedFamily> families_;
   Rows sum_;  // reach+1 rows in turn per slot
 };
 
 }  // namespace
 
+float compliance_of(const ClothParts& parts, const Family& f, int j, double dt) {
+  const double k = f.stiffness * gradient_factor(parts.cloth, j, f.dj);
+  const double h = dt * implicit_share(parts.scene.solver);
+  return float(1 / (std::max(k, 1e-12) * h * h));
+}
+
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
-                         std::vector<std::unique_ptr<RowStage>>& stages) {
+                         Stages& stages) {
   const std::string name = options.limit > 0 ? "strain_limit" : "gauss_seidel";
   for (std::size_t index = 0; index < parts.families.size(); ++index) {
     // Bend constraints join second neighbours; the limit is one on the cloth's own edges.

@@ -1,0 +1,29 @@
+// Colliders as geometry: for drawing them, and for asking how far a point is from one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "weft/scene.h"
+
+namespace weft {
+
+// Triangles of a closed surface (a plane: of a square about its point), counter-clockwise seen from
+// outside, in the scene's coordinates without the collider's keys.
+struct ShapeMesh {
+  std::vector<Vec3> positions;  // m
+  std::vector<Vec3> normals;    // unit, outward, one for each position
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+ShapeMesh triangulate(const Shape& shape);
+
+// How far a collider has moved along its keys at `time` [m]; zero without keys. Add it to the
+// positions of triangulate().
+Vec3 displacement(const Collider& collider, double time);
+
+// Signed distance of a point from a collider's surface at `time` [m], negative inside; without the
+// collider's offset.
+double signed_distance(const Collider& collider, double time, const Vec3& point);
+
+}  // namespace weft

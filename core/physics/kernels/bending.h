@@ -1,0 +1,54 @@
+// What the kernels of bending work on (kernels/bending.cpp).
+#pragma once
+
+#include <cstddef>
+
+#include "physics/kernels/kernels.h"
+
+namespace weft::physics {
+
+// Lines side by side, and floats of scratch for each particle of a strip.
+inline constexpr int kBendLines = 16;
+inline constexpr int kBendScratch = 5 * kBendLines;
+
+// Stiffnesses of the second differences along u and v and of the twist of a cell [N/m].
+struct BendStiffness {
+  float along, across, twist;
+};
+
+// Rows j, j+1 and j+2; of the last rows of a sheet `rows` exist.
+struct BendRow {
+  int columns;
+  int rows;  // 1 … 3
+  ConstRow3 x[3];
+  Row3 v[3];
+  const float* w[3];
+  BendStiffness k;
+  float dt;  // s, over what the force takes of the velocity that follows
+};
+
+// kBendLines lines of particles, `step` floats from one to the next.
+struct BendLine {
+  Row3 x;
+  const float* w;
+  std::ptrdiff_t step;
+  int particles;
+  Row3 v;            // velocities, laid out as x; gain corrections times inverse_dt
+  float inverse_dt;  // 1/s; 0 = velocities are not touched
+  float compliance;  // 1/(k dt²) [1/kg]
+  float* scratch;    // particles * kBendScratch floats
+};
+
+// The cells between two rows of particles whose left column is even, or odd.
+struct TwistRow {
+  int columns;
+  Row3 x, below;
+  Row3 v, v_below;   // gain corrections times inverse_dt
+  float inverse_dt;  // 1/s; 0 = velocities are not touched
+  const float* w;
+  const float* w_below;
+  bool odd;
+  float compliance;
+};
+
+}  // namespace weft::physics

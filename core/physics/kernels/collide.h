@@ -1,0 +1,179 @@
+// Contact of one row with one collider, for any shape. A shape is a struct of constants with
+//
+//   Surface at(Wide3 p) const        signed distance [m] and outward unit normal at p, seen from its place
+//   static constexpr bool kThin      whether a particle can pass through it within a substep
+//
+// Positions x and velocities v are consistent, so that x - dt v is the position before the substep.
+//
+// Coulomb: a particle below the surface is lifted onto it along the normal n by `depth`, loses its
+// velocity into the surface, and its tangential motion relative to the surface, t, shrinks by
+// friction: all of it while |t| <= μ_s p, else by μ_d p, never reversed (seed 003). p, the normal
+// impulse over the mass and times dt, is the depth, or on impact the way lost into the surface.
+// Course: the correction from the position before is scaled by 1 - μ (seeds 001 and 004).
+//
+// A particle that went right through is found by following its path, seen from the collider, in
+// steps as long as the distance that is left (sphere tracing: Hart 1996); it is put back before the
+// surface that it entered by.
+#pragma once
+
+#include "physics/kernels/row_kernels.h"
+
+namespace weft::WEFT_KERNELS {
+
+constexpr float kTinySquare = 1e-30f;
+constexpr float kFar = 1e30f;
+
+struct Surface {
+  Wide distance;
+  Wide3 normal;
+};
+
+WEFT_INLINE WideInt free_lanes(const CollideRow& r, int i) {
+  return (load(r.w + i) > 0.0f) & lanes_below(r.columns - i);
+}
+
+WEFT_INLINE void rub(const CollideRow& r, int i, WideInt touching, Wide depth, Wide3 n) {
+  const Wide3 u = wide3(r.ux, r.uy, r.uz);
+  const Wide3 v = load3(r.v, i);
+  const Wide3 relative = v - u;
+  const Wide into = dot(relative, n);
+  const Wide3 tangential = relative - n * into;
+  const Wide distance = sqrt(max(dot(tangential, tangential), wide(kTinySquare))) * r.dt;
+  const Wide pressed = max(depth, into * -r.dt);
+  const Wide slide = max(Wide{}, 1.0f - r.friction_dynamic * pressed / distance);
+  const Wide keep = select(distance <= r.friction_static * pressed, Wide{}, slide);
+  const Wide3 rubbed = tangential * keep;
+  const Wide3 x = load3(r.x, i);
+  store3(r.x, i, select(touching, x + n * depth + (rubbed - tangential) * wide(r.dt), x));
+  store3(r.v, i, select(touching, u + rubbed + n * max(into, Wide{}), v));
+}
+
+// The position becomes before + (target - before) (1 - friction), the velocity follows.
+WEFT_INLINE void course_correct(const CollideRow& r, int i, WideInt touching, Wide3 target) {
+  const Wide3 x = load3(r.x, i), v = load3(r.v, i);
+  const Wide3 before = x - v * wide(r.dt);
+  const Wide3 correction = (target - before) * wide(1.0f - r.friction_dynamic);
+  store3(r.x, i, select(touching, before + correction, x));
+  store3(r.v, i, select(touching, correction * wide(r.inverse_dt), v));
+}
+
+// Where paths enter a shape: the depth of their ends below the plane that touches it there.
+struct Entry {
+  WideInt caught;
+  Wide depth;
+  Wide3 normal;
+};
+
+constexpr int kPathSteps = 32;          // of sphere tracing
+constexpr float kPathTolerance = 1e-3f; // of the path's length, from the surface
+constexpr float kStartsInside = 0.25f;  // of the path's length: deeper starts are no entries
+constexpr float kSteepest = 0.05f;      // sine below which a path only grazes
+
+template <class Shape>
+WEFT_INLINE Entry entry(const CollideRow& r, const Shape& shape, Wide3 end, Wide3 path,
+                        WideInt wanted) {
+  const Wide length = max(sqrt(dot(path, path)), wide(kTinySquare));
+  const Wide3 start = end - path;
+  Entry e{WideInt{}, Wide{}, Wide3{}};
+  Wide t{};
+  WideInt pending = wanted & (shape.at(start).distance - r.offset > length * -kStartsInside);
+  for (int step = 0; step < kPathSteps && any(pending); ++step) {
+    const Wide3 at = start + path * t;
+    const Surface s = shape.at(at);
+    const Wide left = s.distance - r.offset;
+    pending = pending & (dot(path, s.normal) < length * -kSteepest);
+    const WideInt hit = pending & (left <= length * kPathTolerance);
+    e.caught = e.caught | hit;
+    e.depth = select(hit, dot(at - end, s.normal) - left, e.depth);
+    e.normal = select(hit, s.normal, e.normal);
+    pending = pending & ~hit;
+    t = t + select(pending, left / length, Wide{});
+    pending = pending & (t < 1.0f);
+  }
+  return e;
+}
+
+template <class Shape, bool kCourse>
+WEFT_INLINE RowReach collide_row(const CollideRow& r) {
+  const Shape shape(r.shape);
+  const Wide3 place = wide3(r.cx, r.cy, r.cz), u = wide3(r.ux, r.uy, r.uz);
+  const float shortest = 0.25f * r.shape.thin * r.shape.thin;
+  Wide clearance = wide(kFar), fastest{};
+  for (int i = 0; i < padded(r.columns); i += kLanes) {
+    const WideInt free = free_lanes(r, i);
+    const Wide3 p = load3(r.x, i) - place;
+    const Surface s = shape.at(p);
+    const Wide left = s.distance - r.offset;
+    const Wide3 relative = load3(r.v, i) - u;
+    const Wide speed = dot(relative, relative);
+    clearance = min(clearance, select(free, left, wide(kFar)));
+    fastest = max(fastest, select(free, speed, Wide{}));
+    const WideInt below = free & (left < 0.0f);
+    WideInt touching = below;
+    Wide depth = -left;
+    Wide3 n = s.normal;
+    if constexpr (Shape::kThin) {
+      // Only a particle that moves away from the surface nearest to it can have come through, and
+      // only on a path that is long against the shape.
+      const Wide path = speed * (r.dt * r.dt);
+      const WideInt leaving =
+          free & (path > shortest) & (left * left < path) & (dot(relative, n) > 0.0f);
+      if (any(leaving)) {
+        const Entry e = entry(r, shape, p, relative * wide(r.dt), leaving);
+        touching = touching | e.caught;
+        depth = select(e.caught, e.depth, depth);
+        n = select(e.caught, e.normal, n);
+      }
+    }
+    if (!any(touching)) continue;
+    if constexpr (kCourse)
+      course_correct(r, i, touching, load3(r.x, i) + n * depth);
+    else
+      rub(r, i, touching, depth, n);
+  }
+  return {least(clearance), __builtin_sqrtf(greatest(fastest))};
+}
+
+// A convex shape's distance is never below its tangents: d(y) >= d(x) + n(x)·(y - x). On a triangle the
+// tangent at each vertex is least at a vertex, so that
+//   d >= max over vertices V of min over vertices W of d(V) + n(V)·(W - V).
+// On a flat side the bound is exact: sheets that lie on one have no triangles to look at.
+WEFT_INLINE Wide tangent_bound(const Surface& at, Wide3 v, Wide3 a, Wide3 b) {
+  return at.distance + min(Wide{}, min(dot(a - v, at.normal), dot(b - v, at.normal)));
+}
+
+template <class Shape>
+WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
+  const CollideRow& r = f.row;
+  const Shape shape(r.shape);
+  const Wide3 place = wide3(r.cx, r.cy, r.cz), u = wide3(r.ux, r.uy, r.uz);
+  Wide clearance = wide(kFar), fastest{};
+  for (int i = 0; i < padded(r.columns - 1); i += kLanes) {
+    const Wide3 x00 = load3(r.x, i) - place, x10 = load3(r.x, i + 1) - place;
+    const Wide3 x01 = load3(f.x_next, i) - place, x11 = load3(f.x_next, i + 1) - place;
+    const Surface s00 = shape.at(x00), s10 = shape.at(x10), s01 = shape.at(x01), s11 = shape.at(x11);
+    const Wide first = max(tangent_bound(s00, x00, x01, x10),
+                           max(tangent_bound(s01, x01, x00, x10), tangent_bound(s10, x10, x00, x01)));
+    const Wide second = max(tangent_bound(s11, x11, x01, x10),
+                            max(tangent_bound(s01, x01, x11, x10), tangent_bound(s10, x10, x11, x01)));
+    const WideInt inside = lanes_below(r.columns - 1 - i);
+    store(f.bound + i, select(inside, min(first, second) - r.offset, wide(kFar)));
+    const Wide nearest = min(min(s00.distance, s10.distance), min(s01.distance, s11.distance));
+    clearance = min(clearance, select(inside, nearest - r.offset, wide(kFar)));
+    for (const Wide3& v :
+         {load3(r.v, i), load3(r.v, i + 1), load3(f.v_next, i), load3(f.v_next, i + 1)})
+      fastest = max(fastest, select(inside, dot(v - u, v - u), Wide{}));
+  }
+  return {least(clearance), __builtin_sqrtf(greatest(fastest))};
+}
+
+// Defines the kernels of a shape under `name`.
+#define WEFT_COLLIDER(name, Shape)                                                     \
+  namespace {                                                                          \
+  RowReach coulomb(const CollideRow& r) { return collide_row<Shape, false>(r); }       \
+  RowReach course(const CollideRow& r) { return collide_row<Shape, true>(r); }         \
+  RowReach below_faces(const FacesRow& f) { return below_faces_row<Shape>(f); }        \
+  }                                                                                    \
+  const ColliderKernels name = {{coulomb, course}, below_faces};
+
+}  // namespace weft::WEFT_KERNELS

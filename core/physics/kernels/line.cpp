@@ -1,0 +1,359 @@
+// Line sweeps: all constraints of a line (a row, column or diagonal of the sheet) solved as one
+// tridiagonal system in their multipliers, with lanes across the lines.
+//
+// For constraints c = 0, 1, … along a line, e_c from particle c to particle c+1, and the multiplier
+// of c written as μ_c |e_c| (which frees the equations of every division but the pivot's):
+//
+//   (w_c + w_{c+1} + α̃) |e_c|² μ_c - w_c e_{c-1}·e_c μ_{c-1} - w_{c+1} e_c·e_{c+1} μ_{c+1}
+//       = |e_c| (|e_c| - l + α̃ λ_c),            α̃ = 1/(k dt²)
+//   x_c <- x_c + w_c (μ_c e_c - μ_{c-1} e_{c-1}),  λ_c <- λ_c - μ_c |e_c|
+//
+// the Newton step of the compliant constraints of one line together (Macklin, Müller, Chentanez 2016,
+// with the whole of a line in place of one constraint), by the Thomas algorithm: elimination walks
+// the lines forwards, substitution backwards. A constraint that does not exist or is cut has a
+// pivot's reciprocal of zero: its multiplier is zero and the line falls into two.
+#include "physics/kernels/line.h"
+
+#include "physics/kernels/row_kernels.h"
+
+namespace weft::WEFT_KERNELS {
+namespace {
+
+using physics::kStripLines;
+using physics::kStripScratch;
+using physics::LineStrip;
+using physics::TransposeRows;
+
+// Writes only the lanes of the mask: what lies in the others may belong to another thread.
+WEFT_INLINE void store_where(float* p, WideInt mask, Wide v) {
+#if WEFT_LANES == 16
+  _mm512_mask_storeu_ps(p, _mm512_movepi32_mask((__m512i)mask), (__m512)v);
+#else
+  for (int i = 0; i < kLanes; ++i)
+    if (mask[i] != 0) p[i] = v[i];
+#endif
+}
+
+WEFT_INLINE void store3_where(Row3 r, std::ptrdiff_t at, WideInt mask, Wide3 v) {
+  store_where(r.x + at, mask, v.x);
+  store_where(r.y + at, mask, v.y);
+  store_where(r.z + at, mask, v.z);
+}
+
+WEFT_INLINE Wide3 load3_at(Row3 r, std::ptrdiff_t at) {
+  return {load(r.x + at), load(r.y + at), load(r.z + at)};
+}
+
+WEFT_INLINE WideInt load_int(const std::int32_t* p) {
+  typedef WideInt Loose __attribute__((aligned(4), may_alias));
+  return *reinterpret_cast<const Loose*>(p);
+}
+
+// Which of the lanes lane … lane+kLanes-1 are columns of the sheet.
+WEFT_INLINE WideInt on_sheet(const LineStrip& p, int lane) {
+  const WideInt lanes = lane_numbers() + lane;
+  return (lanes >= 0) & (lanes < p.columns);
+}
+
+int quotient_up(int a, int b) { return a <= 0 ? 0 : (a + b - 1) / b; }
+int least(int a, int b) { return a < b ? a : b; }
+int greatest(int a, int b) { return a > b ? a : b; }
+
+// A block of kLanes lines: constraints begin … end-1 have a lane on the sheet at both their ends, and
+// of those whole_begin … whole_end-1 have all lanes at both ends.
+struct Range {
+  int begin, end, whole_begin, whole_end;
+};
+Range range_of(const LineStrip& p, int line) {
+  const int last = p.particles - 1;
+  if (p.lean == 0) {
+    const int end = line < p.columns ? last : 0;
+    return {0, end, 0, line + kLanes <= p.columns ? end : 0};
+  }
+  const int lean = p.lean > 0 ? p.lean : -p.lean;
+  // Lanes move right by `lean` a row; for lines that lean left seen in the mirror.
+  const int left = p.lean > 0 ? line : p.columns - line - kLanes, right = left + kLanes - 1;
+  // The rightmost lane is the first to come in at the left border, the first to go at the right.
+  Range r{quotient_up(-right, lean), quotient_up(p.columns - lean - left, lean),
+          quotient_up(-left, lean), quotient_up(p.columns - lean - right, lean)};
+  for (int* c : {&r.begin, &r.end, &r.whole_begin, &r.whole_end}) *c = least(*c, last);
+  r.whole_end = greatest(r.whole_begin, r.whole_end);
+  return r;
+}
+
+// One block of lanes on its way along the lines.
+template <bool kLambda, bool kVelocity>
+struct Block {
+  const LineStrip& p;
+  int line;       // of lane 0
+  int offset;     // of the block in the strip
+  Range range;
+  Wide3 edge{};   // of the constraint before (elimination) or after (substitution)
+  Wide3 x{};      // of the particle where the next constraint starts
+  Wide w{};
+  Wide reciprocal{}, right{}, mu{};
+  Wide3 pull{};
+
+  WEFT_INLINE std::ptrdiff_t at(int m) const { return line + m * p.step; }
+  WEFT_INLINE float* scratch(int m) const {
+    return p.scratch + static_cast<std::ptrdiff_t>(m) * kStripScratch + offset;
+  }
+  // e_c where the constraint exists, else 0.
+  WEFT_INLINE Wide3 existing(Wide3 e, int m) const {
+    const int lane = line + m * p.lean;
+    e = select(on_sheet(p, lane) & on_sheet(p, lane + p.lean), e, Wide3{});
+    if (p.alive) e = select(load_int(p.alive + at(m)), e, Wide3{});
+    return e;
+  }
+
+  template <bool kWhole>
+  WEFT_INLINE void eliminate(int m) {
+    if constexpr (!kWhole) {
+      if (m < range.begin || m >= range.end) return;
+      if (m == range.begin) start();
+    }
+    const Wide3 far = load3_at(p.x, at(m + 1));
+    const Wide w_far = load(p.w + at(m + 1));
+    Wide3 e = far - x;
+    if constexpr (!kWhole) e = existing(e, m);
+    const Wide alpha = load(p.compliance + m * p.compliance_step + offset);
+    const Wide squared = dot(e, e);
+    const Wide length = sqrt(squared);
+    const Wide coupling = w * dot(edge, e);
+    const Wide factor = coupling * reciprocal;
+    const Wide pivot = (w + w_far + alpha) * squared - factor * coupling;
+    Wide violation = length - p.rest;
+    if constexpr (kLambda)
+      if (!p.fresh) violation = violation + alpha * load(p.lambda + at(m));
+    right = length * violation + factor * right;
+    reciprocal = select(pivot > 0.0f, 1.0f / pivot, Wide{});
+    store(scratch(m), reciprocal);
+    store(scratch(m) + kStripLines, right);
+    if constexpr (kLambda) store(scratch(m) + 2 * kStripLines, length);
+    edge = e;
+    x = far;
+    w = w_far;
+  }
+  WEFT_INLINE void start() {
+    x = load3_at(p.x, at(range.begin));
+    w = load(p.w + at(range.begin));
+  }
+
+  // Moves particle m by the pulls of the constraints before and after it.
+  template <bool kWhole>
+  WEFT_INLINE void shift(int m, Wide3 position, Wide inverse_mass, Wide3 by) const {
+    const Wide3 change = by * (inverse_mass * p.share);
+    add_to<kWhole>(p.x, m, position, change);
+    // As computed: the difference of rounded positions over dt would be mostly rounding.
+    if constexpr (kVelocity) add_to<kWhole>(p.v, m, load3_at(p.v, at(m)), change * wide(p.inverse_dt));
+  }
+  template <bool kWhole>
+  WEFT_INLINE void add_to(Row3 r, int m, Wide3 before, Wide3 change) const {
+    if constexpr (kWhole)
+      store3({r.x + at(m), r.y + at(m), r.z + at(m)}, 0, before + change);
+    else
+      store3_where(r, at(m), on_sheet(p, line + m * p.lean), before + change);
+  }
+
+  template <bool kWhole>
+  WEFT_INLINE void substitute(int m) {
+    if constexpr (!kWhole) {
+      if (m < range.begin || m >= range.end) return;
+      if (m == range.end - 1) turn_back();
+    }
+    const Wide3 near = load3_at(p.x, at(m));
+    Wide3 e = x - near;
+    if constexpr (!kWhole) e = existing(e, m);
+    const Wide coupling = w * dot(e, edge);
+    mu = load(scratch(m)) * (load(scratch(m) + kStripLines) + coupling * mu);
+    if constexpr (kLambda) keep_multiplier(m);
+    const Wide3 own = e * mu;
+    shift<kWhole>(m + 1, x, w, pull - own);
+    pull = own;
+    edge = e;
+    x = near;
+    w = load(p.w + at(m));
+    if constexpr (!kWhole)
+      if (m == range.begin) finish();
+  }
+  WEFT_INLINE void turn_back() {
+    x = load3_at(p.x, at(range.end));
+    w = load(p.w + at(range.end));
+    edge = Wide3{};
+  }
+  WEFT_INLINE void finish() { shift<false>(range.begin, x, w, pull); }
+
+  WEFT_INLINE void keep_multiplier(int m) const {
+    const Wide before = p.fresh ? Wide{} : load(p.lambda + at(m));
+    const Wide lambda = before - mu * load(scratch(m) + 2 * kStripLines);
+    store_where(p.lambda + at(m), on_sheet(p, line + m * p.lean), lambda);
+  }
+};
+
+// One or two blocks of lines side by side: whole constraints in a loop without a branch, the others
+// before and after it.
+template <bool kLambda, bool kVelocity, int kBlocks>
+void solve_blocks(const LineStrip& given, int first) {
+  const LineStrip p = given;  // a copy that no store can alias
+  using B = Block<kLambda, kVelocity>;
+  B a{p, p.first + first, first, range_of(p, p.first + first)};
+  const int second = first + (kBlocks - 1) * kLanes;
+  B b{p, p.first + second, second, range_of(p, p.first + second)};
+  const int begin = least(a.range.begin, b.range.begin), end = greatest(a.range.end, b.range.end);
+  // The first and the last constraint of a line do more than the others.
+  int whole = greatest(a.range.whole_begin, b.range.whole_begin);
+  whole = greatest(whole, greatest(a.range.begin, b.range.begin) + 1);
+  int whole_end = least(a.range.whole_end, b.range.whole_end);
+  whole_end = least(whole_end, least(a.range.end, b.range.end) - 1);
+  if (p.alive || whole_end <= whole) whole = whole_end = end;
+  int m = begin;
+  const auto eliminate = [&]<bool kWhole>(int to) __attribute__((always_inline)) {
+    for (; m < to; ++m) {
+      a.template eliminate<kWhole>(m);
+      if constexpr (kBlocks == 2) b.template eliminate<kWhole>(m);
+    }
+  };
+  eliminate.template operator()<false>(whole);
+  eliminate.template operator()<true>(whole_end);
+  eliminate.template operator()<false>(end);
+  const auto substitute = [&]<bool kWhole>(int from) __attribute__((always_inline)) {
+    while (m > from) {
+      --m;
+      a.template substitute<kWhole>(m);
+      if constexpr (kBlocks == 2) b.template substitute<kWhole>(m);
+    }
+  };
+  substitute.template operator()<false>(whole_end);
+  substitute.template operator()<true>(whole);
+  substitute.template operator()<false>(begin);
+}
+
+template <bool kLambda, bool kVelocity>
+void solve(const LineStrip& p) {
+  if (kLanes == 16 && p.lines == 32) return solve_blocks<kLambda, kVelocity, 2>(p, 0);
+  for (int first = 0; first < p.lines; first += kLanes) solve_blocks<kLambda, kVelocity, 1>(p, first);
+}
+
+// A 4 by 4 tile from one layout to the other.
+WEFT_INLINE void transpose4(const float* from, std::ptrdiff_t from_step, float* to,
+                            std::ptrdiff_t to_step, bool add) {
+#if WEFT_LANES > 1
+  __m128 a = _mm_loadu_ps(from), b = _mm_loadu_ps(from + from_step),
+         c = _mm_loadu_ps(from + 2 * from_step), d = _mm_loadu_ps(from + 3 * from_step);
+  _MM_TRANSPOSE4_PS(a, b, c, d);
+  if (add) {
+    a = _mm_add_ps(_mm_loadu_ps(to), a);
+    b = _mm_add_ps(_mm_loadu_ps(to + to_step), b);
+    c = _mm_add_ps(_mm_loadu_ps(to + 2 * to_step), c);
+    d = _mm_add_ps(_mm_loadu_ps(to + 3 * to_step), d);
+  }
+  _mm_storeu_ps(to, a);
+  _mm_storeu_ps(to + to_step, b);
+  _mm_storeu_ps(to + 2 * to_step, c);
+  _mm_storeu_ps(to + 3 * to_step, d);
+#else
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) {
+      float& t = to[j * to_step + i];
+      t = (add ? t : 0.0f) + from[i * from_step + j];
+    }
+#endif
+}
+
+#if WEFT_LANES == 16
+
+typedef float Quad __attribute__((vector_size(16)));
+typedef Quad QuadLoose __attribute__((aligned(4), may_alias));
+
+// Four 16-lane vectors whose quarters are 4 by 4 tiles, each tile transposed.
+WEFT_INLINE void transpose_quarters(Wide (&v)[4]) {
+  const auto low = [](Wide a, Wide b) {
+    return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
+  };
+  const auto high = [](Wide a, Wide b) {
+    return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+  };
+  const auto low_pairs = [](Wide a, Wide b) {
+    return __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
+  };
+  const auto high_pairs = [](Wide a, Wide b) {
+    return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+  };
+  const Wide a = low(v[0], v[1]), b = high(v[0], v[1]), c = low(v[2], v[3]), d = high(v[2], v[3]);
+  v[0] = low_pairs(a, c);
+  v[1] = high_pairs(a, c);
+  v[2] = low_pairs(b, d);
+  v[3] = high_pairs(b, d);
+}
+
+// Four columns of 16 rows, there and back: rows r, r+4, r+8 and r+12 share a vector.
+WEFT_INLINE void columns_to_lanes(const TransposeRows& t, int i) {
+  Wide v[4];
+  for (int r = 0; r < 4; ++r) {
+    const auto quad = [&](int row) {
+      return *reinterpret_cast<const QuadLoose*>(t.rows + row * t.stride + i);
+    };
+    const auto ab = __builtin_shufflevector(quad(r), quad(r + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+    const auto cd = __builtin_shufflevector(quad(r + 8), quad(r + 12), 0, 1, 2, 3, 4, 5, 6, 7);
+    v[r] = __builtin_shufflevector(ab, cd, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+  }
+  transpose_quarters(v);
+  for (int c = 0; c < 4; ++c) store(t.lanes + (i + c) * t.pitch, v[c]);
+}
+WEFT_INLINE void lanes_to_columns(const TransposeRows& t, int i) {
+  Wide v[4];
+  for (int c = 0; c < 4; ++c) v[c] = load(t.lanes + (i + c) * t.pitch);
+  transpose_quarters(v);
+  for (int r = 0; r < 4; ++r) {
+    const Quad quads[4] = {__builtin_shufflevector(v[r], v[r], 0, 1, 2, 3),
+                           __builtin_shufflevector(v[r], v[r], 4, 5, 6, 7),
+                           __builtin_shufflevector(v[r], v[r], 8, 9, 10, 11),
+                           __builtin_shufflevector(v[r], v[r], 12, 13, 14, 15)};
+    for (int q = 0; q < 4; ++q) {
+      auto* to = reinterpret_cast<QuadLoose*>(t.rows + (r + 4 * q) * t.stride + i);
+      *to = t.add ? *to + quads[q] : quads[q];
+    }
+  }
+}
+
+#endif
+
+}  // namespace
+
+void line_strip(const LineStrip& p) {
+  if (p.lambda) return p.inverse_dt > 0 ? solve<true, true>(p) : solve<true, false>(p);
+  p.inverse_dt > 0 ? solve<false, true>(p) : solve<false, false>(p);
+}
+
+void rows_to_lanes(const TransposeRows& t) {
+#if WEFT_LANES == 16
+  if (t.row_count == 16) {  // reads the padding of the last columns
+    for (int i = 0; i < t.columns; i += 4) columns_to_lanes(t, i);
+    return;
+  }
+#endif
+  const int whole = t.row_count & ~3;
+  for (int i = 0; i < t.columns; i += 4)
+    for (int r = 0; r < whole; r += 4)
+      transpose4(t.rows + r * t.stride + i, t.stride, t.lanes + i * t.pitch + r, t.pitch, false);
+  for (int r = whole; r < t.row_count; ++r)
+    for (int i = 0; i < t.columns; ++i) t.lanes[i * t.pitch + r] = t.rows[r * t.stride + i];
+}
+
+void lanes_to_rows(const TransposeRows& t) {
+  const int rows = t.row_count & ~3, columns = t.columns & ~3;
+#if WEFT_LANES == 16
+  if (t.row_count == 16)
+    for (int i = 0; i < columns; i += 4) lanes_to_columns(t, i);
+#endif
+  for (int i = 0; i < columns && (kLanes < 16 || t.row_count < 16); i += 4)
+    for (int r = 0; r < rows; r += 4)
+      transpose4(t.lanes + i * t.pitch + r, t.pitch, t.rows + r * t.stride + i, t.stride, t.add);
+  for (int r = 0; r < t.row_count; ++r)
+    for (int i = r < rows ? columns : 0; i < t.columns; ++i) {
+      float& to = t.rows[r * t.stride + i];
+      to = (t.add ? to : 0.0f) + t.lanes[i * t.pitch + r];
+    }
+}
+
+}  // namespace weft::WEFT_KERNELS

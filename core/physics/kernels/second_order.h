@@ -1,0 +1,34 @@
+// What the kernels of the second-order substep and of the tethers work on (kernels/second_order.cpp,
+// kernels/tethers.cpp).
+#pragma once
+
+#include "physics/kernels/kernels.h"
+
+namespace weft::physics {
+
+// One row of particles with the state of one substep before.
+struct SecondOrderRow {
+  int columns;
+  Row3 x, v;
+  Row3 previous;      // x of the substep before; receives x [m]
+  Row3 v_before;      // v of the substep before; receives v [m/s]
+  Row3 v_end;         // v as the substep before left it [m/s]
+  float* w;           // inverse mass, scaled while the constraints are solved [1/kg]
+  const float* mass;  // inverse mass proper [1/kg]
+  bool fresh;         // nothing is known of the substep before
+  float dt;           // s
+  float drag;         // 1/s
+  float gx, gy, gz;   // m/s²
+};
+
+// One row of particles and one tether each.
+struct TetherRow {
+  int columns;
+  Row3 x;
+  Row3 v;              // gains corrections times inverse_dt
+  float inverse_dt;    // 1/s; 0 = velocities are not touched
+  ConstRow3 pin;       // where each particle's pin is [m]
+  const float* reach;  // how far the particle may be from it [m]
+};
+
+}  // namespace weft::physics

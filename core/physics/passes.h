@@ -1,0 +1,42 @@
+// Runs the stages of one cloth: consecutive row stages together as one wavefront (wavefront.h),
+// whole stages between them by themselves. Without whole stages one wavefront runs through all the
+// substeps of a frame; with them every substep is run to its end before the next begins.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "physics/wavefront.h"
+
+namespace weft::physics {
+
+class Passes {
+ public:
+  // The stages outlive the passes. `row_bytes`: of one row of the lattice.
+  Passes(const Stages& stages, int rows, std::size_t row_bytes);
+
+  // Runs `count` substeps of dt from `time` on.
+  void run(double time, double dt, int count, Threads& threads);
+
+  // Adds to ticks[q] the time that stage q took.
+  void profile(std::span<std::atomic<std::int64_t>> nanoseconds);
+
+  // Whether one wavefront runs everything.
+  bool rows_only() const { return whole_stages_ == 0; }
+
+ private:
+  struct Pass {
+    std::size_t first;                     // stage
+    WholeStage* whole = nullptr;           // or
+    std::unique_ptr<Wavefront> wavefront;
+    std::size_t count = 1;                 // stages
+  };
+  std::vector<Pass> passes_;
+  std::size_t whole_stages_ = 0;
+  double prepared_dt_ = 0;
+  std::span<std::atomic<std::int64_t>> profile_;
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,162 @@
+// Stage "bending": the curvature energy (kernels/bending.cpp), as a force on the velocities before
+// the springs of an explicit method, or as constraints before the sweeps of one that projects: all
+// rows, then all columns, each line as a whole, then the twist of the cells in four colours.
+#include "physics/bending.h"
+
+#include <algorithm>
+
+#include "physics/kernels/bending.h"
+#include "physics/stages/stages.h"
+#include "physics/stages/strips.h"
+
+namespace weft::physics {
+namespace {
+
+// Cost of one second difference and of one twist, for sizing tasks only.
+constexpr double kDifferenceNs = 0.8, kTwistNs = 0.5;
+
+std::int64_t terms(const Lattice& l) {
+  const std::int64_t nx = l.columns, ny = l.rows;
+  return std::max<std::int64_t>(nx - 2, 0) * ny + nx * std::max<std::int64_t>(ny - 2, 0) +
+         (nx - 1) * (ny - 1);
+}
+
+class BendingForce final : public RowStage {
+ public:
+  explicit BendingForce(const ClothParts& parts)
+      : RowStage("bending", "curvature energy as a force", 2, terms(parts.lattice), "constraints"),
+        parts_(parts) {
+    const BendingStiffness k = bending_stiffness(parts.cloth);
+    stiffness_ = {float(k.along), float(k.across), float(k.twist)};
+  }
+
+  void run(int j, const Substep& s) override {
+    Lattice& l = parts_.lattice;
+    BendRow r{};
+    r.columns = l.columns;
+    r.rows = std::min(3, l.rows - j);
+    for (int n = 0; n < r.rows; ++n) {
+      r.x[n] = l.x.row(j + n);
+      r.v[n] = l.v.row(j + n);
+      r.w[n] = l.w(j + n);
+    }
+    r.k = stiffness_;
+    // The leapfrog step that follows takes drag off the velocity that it finds, but not off forces.
+    const double kept = 1 - s.dt * parts_.cloth.drag;
+    r.dt = float(kept > 0.01 ? s.dt / kept : s.dt);
+    parts_.kernels.bend_row(r);
+  }
+
+ private:
+  ClothParts parts_;
+  BendStiffness stiffness_;
+};
+
+class BendingConstraints final : public WholeStage {
+ public:
+  BendingConstraints(const ClothParts& parts, bool compliant)
+      : WholeStage("bending", "curvature energy, rows and columns each solved as a whole, twist",
+                   terms(parts.lattice), "constraints"),
+        parts_(parts),
+        strips_(parts.lattice, parts.kernels, kBendScratch),
+        compliant_(compliant) {
+    if (parts.scene.solver.order == 2) strips_.follow_masses();
+  }
+
+  std::size_t bytes() const override { return strips_.bytes(); }
+
+  void run(const Substep& s, Threads& threads) override {
+    const BendingStiffness k = bending_stiffness(parts_.cloth);
+    const double h = s.dt * implicit_share(parts_.scene.solver);
+    const auto compliance = [&](double stiffness) { return float(1 / (stiffness * h * h)); };
+    inverse_dt_ = compliant_ ? float(1 / h) : 0;
+    strips_.run(threads, [&] {
+      along_rows(compliance(k.along));
+      along_columns(compliance(k.across));
+      twist(compliance(k.twist));
+    });
+  }
+
+ private:
+  void along_rows(float compliance) {
+    const Lattice& l = parts_.lattice;
+    strips_.share_out(
+        strips_.row_groups(), kDifferenceNs * kStripLines * l.columns,
+        [&](int group, StripMemory& memory) {
+          strips_.turned(group, memory, inverse_dt_ > 0, [&](int rows) {
+            for (int first = 0; first < rows; first += kBendLines) {
+              const Row3 x = memory.tile.row(0);
+              BendLine p{};
+              p.x = {x.x + first, x.y + first, x.z + first};
+              const Row3 v = memory.gained.row(0);
+              p.v = {v.x + first, v.y + first, v.z + first};
+              p.inverse_dt = inverse_dt_;
+              p.w = strips_.masses(group) + first;
+              p.step = kStripLines;
+              p.particles = l.columns;
+              p.compliance = compliance;
+              p.scratch = memory.scratch.data();
+              parts_.kernels.bend_line(p);
+            }
+          });
+        });
+  }
+
+  void along_columns(float compliance) {
+    Lattice& l = parts_.lattice;
+    strips_.share_out((l.columns + kBendLines - 1) / kBendLines, kDifferenceNs * kBendLines * l.rows,
+                      [&](int strip, StripMemory& memory) {
+                        const Row3 x = l.x.row(0), v = l.v.row(0);
+                        const int first = strip * kBendLines;
+                        BendLine p{};
+                        p.x = {x.x + first, x.y + first, x.z + first};
+                        p.v = {v.x + first, v.y + first, v.z + first};
+                        p.inverse_dt = inverse_dt_;
+                        p.w = l.w(0) + first;
+                        p.step = l.stride;
+                        p.particles = l.rows;
+                        p.compliance = compliance;
+                        p.scratch = memory.scratch.data();
+                        parts_.kernels.bend_line(p);
+                      });
+  }
+
+  void twist(float compliance) {
+    Lattice& l = parts_.lattice;
+    for (int colour = 0; colour < 2; ++colour)
+      strips_.share_out((l.rows - colour) / 2, kTwistNs * l.columns,
+                        [&](int pair, StripMemory&) {
+                          const int j = 2 * pair + colour;
+                          TwistRow r{};
+                          r.columns = l.columns;
+                          r.x = l.x.row(j);
+                          r.below = l.x.row(j + 1);
+                          r.v = l.v.row(j);
+                          r.v_below = l.v.row(j + 1);
+                          r.inverse_dt = inverse_dt_;
+                          r.w = l.w(j);
+                          r.w_below = l.w(j + 1);
+                          r.compliance = compliance;
+                          for (const bool odd : {false, true}) {
+                            r.odd = odd;
+                            parts_.kernels.bend_twist(r);
+                          }
+                        });
+  }
+
+  ClothParts parts_;
+  Strips strips_;
+  bool compliant_;        // velocities gain the corrections as computed
+  float inverse_dt_ = 0;  // 1/s, or 0
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_bending(const ClothParts& parts, Method method) {
+  if (parts.cloth.bending == 0) return nullptr;
+  if (method == Method::spring || method == Method::spring_friction)
+    return std::make_unique<BendingForce>(parts);
+  return std::make_unique<BendingConstraints>(parts, method == Method::compliant);
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,241 @@
+// Stage "collider_faces": a collider with features smaller than the mesh is caught by the triangles
+// that it would slip through between the particles (seed 000 names this failure).
+//
+// The point p = Σ b_k x_k of a triangle deepest in the collider is lifted out by `depth` along the
+// normal there, each corner by its share:  x_k += w_k b_k / (Σ w b²) n depth.  It rubs like a
+// particle: p's velocity into the surface is lost, friction shortens the rest.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/stages/colliders.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr double kSmall = 1.5;        // in diagonals of the mesh: a larger radius needs no triangles
+constexpr int kProjections = 12;      // between triangle and core
+constexpr int kMostPlaces = 16;       // on the way of a fast collider
+constexpr double kSlack = 1e-4;       // of an edge: a triangle may be as deep
+constexpr int kTurns = 8;             // of one triangle in a substep
+
+using Weights = std::array<double, 3>;
+
+// One triangle's corners, seen from the collider's place at the end of the substep.
+struct Corners {
+  Triangle x, path;  // and how far each came in this substep
+  Vec3 at(const Weights& b) const {
+    return plus(plus(times(x[0], b[0]), times(x[1], b[1])), times(x[2], b[2]));
+  }
+};
+
+// The point of a triangle nearest to q (Ericson, Real-Time Collision Detection, 5.1.5).
+Weights nearest_on(const Triangle& t, const Vec3& q) {
+  const Vec3 ab = minus(t[1], t[0]), ac = minus(t[2], t[0]), aq = minus(q, t[0]);
+  const double d1 = dot(ab, aq), d2 = dot(ac, aq);
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+  const Vec3 bq = minus(q, t[1]);
+  const double d3 = dot(ab, bq), d4 = dot(ac, bq);
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    const double s = d1 / std::max(d1 - d3, 1e-300);
+    return {1 - s, s, 0};
+  }
+  const Vec3 cq = minus(q, t[2]);
+  const double d5 = dot(ab, cq), d6 = dot(ac, cq);
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    const double s = d2 / std::max(d2 - d6, 1e-300);
+    return {1 - s, 0, s};
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double s = (d4 - d3) / std::max((d4 - d3) + (d5 - d6), 1e-300);
+    return {0, 1 - s, s};
+  }
+  const double sum = va + vb + vc;
+  return {va / sum, vb / sum, vc / sum};
+}
+
+struct Deepest {
+  Weights weights{};
+  Nearest nearest;
+};
+
+// The deepest point of a triangle in a shape, by alternating projections between triangle and core;
+// they end early at a plane that holds the two further apart than `offset`. A triangle that cuts the
+// core is first moved out of it, along the way of least overlap.
+template <class Shape>
+Deepest deepest_on(const Shape& shape, Corners c, double offset, double edge) {
+  const Overlap overlap = overlap_of(shape, c.x);
+  if (overlap.depth > 0)
+    for (Vec3& x : c.x) x = plus(x, times(overlap.normal, overlap.depth + 1e-3 * edge));
+  Deepest d{{1 / 3., 1 / 3., 1 / 3.}, {}};
+  double radius = 0;
+  for (int n = 0; n < kProjections; ++n) {
+    const Core core = core_of(shape, c.at(d.weights));
+    radius = core.radius;
+    const Weights before = d.weights;
+    d.weights = nearest_on(c.x, core.nearest);
+    const Vec3 apart = minus(c.at(d.weights), core_of(shape, c.at(d.weights)).nearest);
+    const double square = dot(apart, apart);
+    double least = 1e300;
+    for (const Vec3& x : c.x) least = std::min(least, dot(apart, minus(x, c.at(d.weights))));
+    const double gap = (square + least) / std::sqrt(std::max(square, 1e-300));
+    if (overlap.depth <= 0 && gap >= radius + offset) return {d.weights, {offset, {}}};
+    const Vec3 change = minus(d.weights, before);
+    if (dot(change, change) < 1e-12) break;
+  }
+  d.nearest = overlap.depth > 0 ? Nearest{-overlap.depth - radius, overlap.normal}
+                                : nearest_of(shape, c.at(d.weights));
+  return d;
+}
+
+struct Touch {
+  Weights weights{};
+  Vec3 normal{};
+  double depth = 0;  // m; > 0: to be lifted by, at the end of the substep
+};
+
+// The first contact on the way of the triangle, seen from the collider.
+template <class Shape>
+Touch first_touch(const Shape& shape, double offset, const Corners& end, int places,
+                  double edge) {
+  for (int n = 1; n <= places; ++n) {
+    const double left = 1 - double(n) / places;
+    Corners c = end;
+    for (int k = 0; k < 3; ++k) c.x[k] = minus(end.x[k], times(end.path[k], left));
+    const Deepest d = deepest_on(shape, c, offset, edge);
+    if (d.nearest.distance >= offset) continue;
+    const double beyond = dot(minus(c.at(d.weights), end.at(d.weights)), d.nearest.normal);
+    return {d.weights, d.nearest.normal, offset - d.nearest.distance + std::max(0.0, beyond)};
+  }
+  return {};
+}
+
+class ColliderFaces final : public RowStage {
+ public:
+  ColliderFaces(const ClothParts& parts, const Collider& collider, double edge)
+      : RowStage("collider_faces", "triangles of the sheet against its small features", 1,
+                 2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1), "triangles"),
+        parts_(parts),
+        collider_(parts, collider),
+        far_(parts, collider_.fastest()),
+        upright_(collider.shape),
+        edge_(edge) {
+    // A box is looked at in its own axes.
+    if (auto* box = std::get_if<Box>(&upright_)) {
+      const ShapeConstants turned = constants_of(*box);
+      for (int k = 0; k < 3; ++k)
+        axes_[k] = {turned.turn[3 * k], turned.turn[3 * k + 1], turned.turn[3 * k + 2]};
+      box->rotation = {};
+    }
+  }
+
+  void reserve_slots(int slots) override { bound_ = Rows(slots, parts_.lattice.stride); }
+  std::size_t bytes() const override { return bound_.bytes(); }
+  double idle() const override { return far_.share(); }
+
+  void run(int j, const Substep& s) override {
+    Lattice& l = parts_.lattice;
+    if (j + 1 >= l.rows || far_.skip(j, s)) return;
+    FacesRow f;
+    f.row = collider_.row(parts_, j, s);
+    f.x_next = l.x.row(j + 1);
+    f.v_next = l.v.row(j + 1);
+    f.bound = bound_.row(s.slot).x;
+    RowReach reach = parts_.kernels.below_faces[collider_.shape()](f);
+    // The way of a substep matters only where it is long against the collider.
+    const float way = reach.speed * f.row.dt;
+    const float near = way > 0.5f * f.row.shape.thin ? way : float(-kSlack * edge_);
+    // Between its corners a triangle may be nearer by as much as an edge, stretched by half.
+    reach.clearance -= float(1.5 * edge_);
+    far_.found(j, s, reach);
+    for (int i = 0; i + 1 < l.columns; ++i) {
+      if (f.bound[i] >= near) continue;
+      // An edge or a corner of the collider leaves a triangle by one of its sides after another.
+      for (int n = 0; n < kTurns && touch(f.row, {j, j, j + 1}, {i, i + 1, i}); ++n) continue;
+      for (int n = 0; n < kTurns && touch(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i}); ++n) continue;
+    }
+  }
+
+ private:
+  // Lifts one triangle out once; false when it does not touch.
+  bool touch(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i) {
+    Lattice& l = parts_.lattice;
+    const Vec3 place{r.cx, r.cy, r.cz}, u{r.ux, r.uy, r.uz};
+    std::array<Vec3, 3> v;
+    Corners c;
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      v[k] = minus({l.v.at(0, j[k], i[k]), l.v.at(1, j[k], i[k]), l.v.at(2, j[k], i[k])}, u);
+      c.x[k] = into_shape(
+          minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place));
+      c.path[k] = into_shape(times(v[k], r.dt));
+      longest = std::max(longest, std::sqrt(dot(c.path[k], c.path[k])));
+    }
+    Touch touch = std::visit(
+        [&](const auto& shape) {
+          const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
+          const int places = std::clamp(int(std::ceil(2 * longest / size)), 1, kMostPlaces);
+          return first_touch(shape, r.offset, c, places, edge_);
+        },
+        upright_);
+    if (touch.depth <= kSlack * edge_) return false;
+    touch.normal = plus(plus(times(axes_[0], touch.normal[0]), times(axes_[1], touch.normal[1])),
+                        times(axes_[2], touch.normal[2]));
+    double mobility = 0;
+    Vec3 speed{};
+    for (int k = 0; k < 3; ++k) {
+      mobility += l.w(j[k], i[k]) * touch.weights[k] * touch.weights[k];
+      speed = plus(speed, times(v[k], touch.weights[k]));
+    }
+    if (mobility <= 0) return false;
+    const auto [moved, gained] = rub(r, touch, speed);
+    for (int k = 0; k < 3; ++k) {
+      const double share = l.w(j[k], i[k]) * touch.weights[k] / mobility;
+      for (int m = 0; m < 3; ++m) {
+        l.x.at(m, j[k], i[k]) = float(l.x.at(m, j[k], i[k]) + share * moved[m]);
+        l.v.at(m, j[k], i[k]) = float(l.v.at(m, j[k], i[k]) + share * gained[m]);
+      }
+    }
+    return true;
+  }
+
+  Vec3 into_shape(const Vec3& p) const { return {dot(axes_[0], p), dot(axes_[1], p), dot(axes_[2], p)}; }
+
+  // Changes of position and velocity of the touching point, as a particle's in collide.h.
+  static std::pair<Vec3, Vec3> rub(const CollideRow& r, const Touch& touch, const Vec3& speed) {
+    const double into = dot(speed, touch.normal);
+    const Vec3 tangential = minus(speed, times(touch.normal, into));
+    const double distance = std::sqrt(dot(tangential, tangential)) * r.dt;
+    const double pressed = std::max(touch.depth, -into * r.dt);
+    const double rubbed = distance <= r.friction_static * pressed
+                              ? 1
+                              : std::min(1.0, r.friction_dynamic * pressed / distance);
+    const Vec3 lost = times(tangential, -rubbed);
+    return {plus(times(touch.normal, touch.depth), times(lost, r.dt)),
+            plus(times(touch.normal, std::max(0.0, -into)), lost)};
+  }
+
+  ClothParts parts_;
+  MovingCollider collider_;
+  OutOfReach far_;
+  Shape upright_;
+  std::array<Vec3, 3> axes_{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  double edge_;  // m, longest of a flat triangle
+  Rows bound_;
+};
+
+}  // namespace
+
+std::unique_ptr<RowStage> make_collider_faces(const ClothParts& parts, const Collider& collider) {
+  if (collider.friction.model == FrictionModel::course) return nullptr;
+  const double edge = std::hypot(spacing_u(parts.cloth.grid), spacing_v(parts.cloth.grid));
+  const double feature = std::visit([](const auto& s) { return feature_of(s); }, collider.shape);
+  if (feature + collider.offset > kSmall * edge) return nullptr;
+  return std::make_unique<ColliderFaces>(parts, collider, edge);
+}
+
+}  // namespace weft::physics

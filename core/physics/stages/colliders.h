@@ -1,0 +1,50 @@
+// What the collider stages share: where a collider is during a substep, and which rows are too far
+// from it to matter.
+#pragma once
+
+#include "physics/colliders/shapes.h"
+#include "physics/stages/stages.h"
+
+namespace weft::physics {
+
+// A collider in motion, as the kernels take it.
+class MovingCollider {
+ public:
+  MovingCollider(const ClothParts& parts, const Collider& collider);
+  // The collider at the end of the substep, and row j of the cloth.
+  CollideRow row(const ClothParts& parts, int j, const Substep& s) const;
+  // Greatest speed along its keys [m/s].
+  double fastest() const { return fastest_; }
+  const Collider& collider() const { return collider_; }
+  std::size_t shape() const { return collider_.shape.index(); }
+
+ private:
+  const Collider& collider_;
+  CollideRow constants_{};
+  double fastest_ = 0;
+};
+
+// Rows that cannot touch a collider before a time. A particle at distance c, of speed s towards the
+// collider, gets there no sooner than after τ with 2 s τ + a τ²/2 = c, where a is more than springs
+// at a strain of 20 % and gravity give it; speeds may double besides by contact. Should one be
+// faster yet it is found inside later, and lifted out then.
+class OutOfReach {
+ public:
+  OutOfReach(const ClothParts& parts, double collider_speed);
+  // Whether row j has nothing to do in this substep.
+  bool skip(int j, const Substep& s);
+  // Row j has just been worked on and lies so.
+  void found(int j, const Substep& s, const RowReach& reach);
+  // Share of the rows so far that were skipped.
+  double share() const;
+
+ private:
+  struct Row {
+    double ran = -1, resume = -1;  // s
+    std::int64_t skipped = 0, all = 0;
+  };
+  std::vector<Row> rows_;
+  double acceleration_, collider_speed_;
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,22 @@
+// Stage "grab" (grab.cpp): in the plan only while something is held.
+#pragma once
+
+#include "physics/stages/stages.h"
+
+namespace weft::physics {
+
+class Grab final : public RowStage {
+ public:
+  explicit Grab(const ClothParts& parts)
+      : RowStage("grab", "a particle drawn to a target", 0, 1, "particles"), parts_(parts) {}
+  void run(int j, const Substep& s) override;
+
+  int column = 0, row = 0;
+  Vec3 target{};
+  double stiffness = 0;  // N/m
+
+ private:
+  ClothParts parts_;
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,92 @@
+// Stages "predict" and "velocity" of the second-order substep (kernels/second_order.cpp).
+#include "physics/kernels/second_order.h"
+#include "physics/stages/stages.h"
+
+namespace weft::physics {
+namespace {
+
+SecondOrderRow row_of(const ClothParts& parts, History& h, int j) {
+  Lattice& l = parts.lattice;
+  const std::size_t lane = std::size_t(j) * l.stride;
+  SecondOrderRow r{};
+  r.columns = l.columns;
+  r.x = l.x.row(j);
+  r.v = l.v.row(j);
+  r.previous = l.previous.row(j);
+  r.v_before = h.v_before.row(j);
+  r.v_end = h.v_end.row(j);
+  r.drag = float(parts.cloth.drag);
+  r.w = l.w(j);
+  r.mass = h.inverse_mass.data() + lane;
+  return r;
+}
+
+class Predict final : public RowStage {
+ public:
+  Predict(const ClothParts& parts, History& history, Multipliers* multipliers)
+      : RowStage("predict", "second order, from two substeps before", 0, parts.particles(),
+                 "particles"),
+        parts_(parts),
+        history_(history),
+        multipliers_(multipliers),
+        dt_(parts.lattice.rows, 0.0) {}
+  void restart() override { std::fill(dt_.begin(), dt_.end(), 0.0); }
+  void run(int j, const Substep& s) override {
+    SecondOrderRow r = row_of(parts_, history_, j);
+    const Vec3& g = parts_.scene.gravity;
+    r.fresh = dt_[j] != s.dt;
+    dt_[j] = s.dt;
+    r.dt = float(s.dt);
+    r.gx = float(g[0]);
+    r.gy = float(g[1]);
+    r.gz = float(g[2]);
+    parts_.kernels.predict_second_order(r);
+    if (multipliers_) multipliers_->clear(j);
+  }
+
+ private:
+  ClothParts parts_;
+  History& history_;
+  Multipliers* multipliers_;
+  std::vector<double> dt_;  // s, of every row's substep before; 0 = none
+};
+
+class Velocity final : public RowStage {
+ public:
+  Velocity(const ClothParts& parts, History& history)
+      : RowStage("velocity", "of the second order, kept for the next substep", 0, parts.particles(),
+                 "particles"),
+        parts_(parts),
+        history_(history) {}
+  void run(int j, const Substep& s) override {
+    SecondOrderRow r = row_of(parts_, history_, j);
+    r.dt = float(s.dt);
+    parts_.kernels.velocity_second_order(r);
+  }
+
+ private:
+  ClothParts parts_;
+  History& history_;
+};
+
+}  // namespace
+
+History::History(const Lattice& l)
+    : v_before(l.rows, l.stride),
+      v_end(l.rows, l.stride),
+      inverse_mass(std::size_t(l.rows) * l.stride) {
+  std::copy_n(l.inverse_mass.data(), l.inverse_mass.size(), inverse_mass.data());
+}
+
+double implicit_share(const Solver& solver) { return solver.order == 2 ? 2.0 / 3.0 : 1.0; }
+
+std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
+                                                    Multipliers* multipliers) {
+  return std::make_unique<Predict>(parts, history, multipliers);
+}
+
+std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history) {
+  return std::make_unique<Velocity>(parts, history);
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,97 @@
+// What stages share that solve whole lines of a lattice: strips of lines given out to threads, the
+// memory of each thread, and rows turned into lanes and back.
+#pragma once
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "physics/kernels/line.h"
+#include "physics/lattice.h"
+#include "physics/threads.h"
+
+namespace weft::physics {
+
+// The memory of one thread.
+struct StripMemory {
+  AlignedArray<float> scratch;
+  Rows tile;              // kStripLines rows as lanes: [column][kStripLines] of x, y, z
+  Rows gained;            // velocity that the solution adds, laid out as the tile
+};
+
+class Strips {
+ public:
+  // `scratch`: floats for each particle of a strip.
+  Strips(Lattice& lattice, const KernelTable& kernels, int scratch);
+
+  int row_groups() const { return (lattice_.rows + kStripLines - 1) / kStripLines; }
+  std::size_t bytes() const;
+
+  // Calls work() where share_out may be called, with memory for every thread.
+  template <class Work>
+  void run(Threads& threads, const Work& work) {
+    count_ = threads.count();
+    while (int(memory_.size()) < count_) memory_.push_back(make_memory());
+    threads.run(work);
+  }
+
+  // Calls solve(n, memory) for n = 0 … count-1, each worth about `nanoseconds`, in any order.
+  template <class Solve>
+  void share_out(int count, double nanoseconds, const Solve& solve) {
+    const int grain = std::max(1, int(kTaskNanoseconds / std::max(nanoseconds, 1.0)));
+    if (count_ == 1 || grain >= count) {
+      for (int n = 0; n < count; ++n) solve(n, memory_[0]);
+      return;
+    }
+    using Range = oneapi::tbb::blocked_range<int>;
+    oneapi::tbb::parallel_for(
+        Range(0, count, std::size_t(grain)),
+        [&](const Range& some) {
+          const int thread = oneapi::tbb::this_task_arena::current_thread_index();
+          for (int n = some.begin(); n < some.end(); ++n) solve(n, memory_[std::size_t(thread)]);
+        },
+        oneapi::tbb::simple_partitioner{});
+  }
+
+  // Inverse masses of a group's rows as lanes, laid out as the tile.
+  const float* masses(int group) const {
+    return masses_.data() + std::size_t(group) * (lattice_.columns + 3) * kStripLines;
+  }
+  // They are turned once, unless they may change.
+  void follow_masses() { masses_change_ = true; }
+
+  // Turns the rows of a group into the lanes of a tile, solves, turns them back and adds to the
+  // velocities what has been gained; solve gets the number of rows.
+  template <class Solve>
+  void turned(int group, StripMemory& memory, bool velocities, const Solve& solve) {
+    const int begin = group * kStripLines, rows = std::min(kStripLines, lattice_.rows - begin);
+    turn_there(group, rows, memory);
+    if (velocities) memory.gained.clear();
+    solve(rows);
+    turn_back(begin, rows, memory, velocities);
+  }
+
+ private:
+  // The least work worth a task [ns].
+  static constexpr double kTaskNanoseconds = 10000;
+
+  StripMemory make_memory() const;
+  TransposeRows turning(int half, int rows) const;
+  void turn_there(int group, int rows, StripMemory& memory);
+  void turn_masses(int group, int rows);
+  void turn_back(int begin, int rows, StripMemory& memory, bool velocities);
+
+  Lattice& lattice_;
+  const KernelTable& kernels_;
+  int scratch_;
+  AlignedArray<float> masses_;
+  bool masses_change_ = false;
+  int count_ = 1;
+  std::vector<StripMemory> memory_;
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,183 @@
+// Stage "tethers": no free particle is farther from its pins than the sheet between them is long.
+//
+// The sheet is a flat parallelogram at rest, so the distance over it is the straight one on the
+// grid. Of all pins a particle is tethered to the nearest in each of the four quadrants around it:
+// pins on different sides hold it in different directions, and one behind a nearer pin of the same
+// quadrant adds little. For nearly inextensible cloth only: real stretch would be taken back.
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "physics/kernels/second_order.h"
+#include "physics/path.h"
+#include "physics/stages/stages.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr int kQuadrants = 4;
+constexpr float kFree = 1e18f;  // m; the reach of a particle without a tether
+
+struct Place {
+  int i = -1, j = -1;
+};
+
+// The nearest pin of one quadrant for every particle, handed on from neighbour to neighbour.
+std::vector<Place> nearest(const ClothParts& parts, int side_i, int side_j) {
+  const Lattice& l = parts.lattice;
+  const Grid& g = parts.cloth.grid;
+  std::vector<Place> best(std::size_t(l.columns) * l.rows);
+  for (const Pin& pin : parts.cloth.pins)
+    best[std::size_t(pin.j) * l.columns + pin.i] = {pin.i, pin.j};
+  const auto squared = [&](const Place& p, int i, int j) {
+    if (p.i < 0) return std::numeric_limits<double>::infinity();
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double e = g.u[k] / (g.nx - 1) * (p.i - i) + g.v[k] / (g.ny - 1) * (p.j - j);
+      sum += e * e;
+    }
+    return sum;
+  };
+  for (int b = 0; b < l.rows; ++b)
+    for (int a = 0; a < l.columns; ++a) {
+      const int i = side_i > 0 ? l.columns - 1 - a : a, j = side_j > 0 ? l.rows - 1 - b : b;
+      Place& here = best[std::size_t(j) * l.columns + i];
+      for (const auto& [di, dj] : {std::array{side_i, 0}, std::array{0, side_j},
+                                   std::array{side_i, side_j}}) {
+        const int ni = i + di, nj = j + dj;
+        if (ni < 0 || nj < 0 || ni >= l.columns || nj >= l.rows) continue;
+        const Place& there = best[std::size_t(nj) * l.columns + ni];
+        if (squared(there, i, j) < squared(here, i, j)) here = there;
+      }
+    }
+  return best;
+}
+
+class Tethers final : public RowStage {
+ public:
+  Tethers(const ClothParts& parts, bool compliant, std::vector<std::vector<Place>> slots,
+          std::int64_t count)
+      : RowStage("tethers", "to at most " + std::to_string(slots.size()) + " pins each", 0, count,
+                 "tethers"),
+        parts_(parts),
+        compliant_(compliant) {
+    const Lattice& l = parts.lattice;
+    keys_.resize(std::size_t(l.columns) * l.rows);
+    for (const Pin& pin : parts.cloth.pins)
+      if (!pin.keys.empty()) keys_[std::size_t(pin.j) * l.columns + pin.i] = &pin.keys;
+    for (auto& places : slots) {
+      Slot& slot = slots_.emplace_back();
+      slot.pin = Rows(l.rows, l.stride);
+      slot.reach = AlignedArray<float>(std::size_t(l.rows) * l.stride);
+      std::fill_n(slot.reach.data(), slot.reach.size(), kFree);
+      slot.moves.assign(l.rows, false);
+      for (int j = 0; j < l.rows; ++j)
+        for (int i = 0; i < l.columns; ++i) {
+          const Place p = places[std::size_t(j) * l.columns + i];
+          if (p.i < 0) continue;
+          slot.reach[std::size_t(j) * l.stride + i] = rest_distance(parts, p, i, j);
+          if (keys_[std::size_t(p.j) * l.columns + p.i]) slot.moves[j] = true;
+        }
+      slot.places = std::move(places);
+    }
+    Tethers::restart();
+  }
+
+  // Pins without a path stay where they are set.
+  void restart() override {
+    const Lattice& l = parts_.lattice;
+    for (Slot& slot : slots_)
+      for (int j = 0; j < l.rows; ++j)
+        for (int i = 0; i < l.columns; ++i) {
+          const Place p = slot.places[std::size_t(j) * l.columns + i];
+          for (int k = 0; p.i >= 0 && k < 3; ++k) slot.pin.at(k, j, i) = l.x.at(k, p.j, p.i);
+        }
+  }
+
+  std::size_t bytes() const override {
+    std::size_t sum = 0;
+    for (const Slot& s : slots_)
+      sum += s.pin.bytes() + s.reach.size() * sizeof(float) + s.places.size() * sizeof(Place);
+    return sum;
+  }
+
+  void run(int j, const Substep& s) override {
+    for (Slot& slot : slots_) {
+      if (slot.moves[j]) follow_pins(slot, j, s.time);
+      TetherRow r{};
+      r.columns = parts_.lattice.columns;
+      r.x = parts_.lattice.x.row(j);
+      r.v = parts_.lattice.v.row(j);
+      if (compliant_) r.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
+      r.pin = slot.pin.row(j);
+      r.reach = slot.reach.data() + std::size_t(j) * parts_.lattice.stride;
+      parts_.kernels.tethers(r);
+    }
+  }
+
+ private:
+  struct Slot {
+    std::vector<Place> places;
+    Rows pin;
+    AlignedArray<float> reach;
+    std::vector<bool> moves;  // rows with a tether to a pin on a path
+  };
+
+  static float rest_distance(const ClothParts& parts, const Place& p, int i, int j) {
+    const Grid& g = parts.cloth.grid;
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double e = g.u[k] / (g.nx - 1) * (p.i - i) + g.v[k] / (g.ny - 1) * (p.j - j);
+      sum += e * e;
+    }
+    return float(std::sqrt(sum));
+  }
+
+  // From the paths, not from the lattice, whose other rows are in other substeps.
+  void follow_pins(Slot& slot, int j, double time) {
+    const Lattice& l = parts_.lattice;
+    for (int i = 0; i < l.columns; ++i) {
+      const Place p = slot.places[std::size_t(j) * l.columns + i];
+      const auto* keys = p.i < 0 ? nullptr : keys_[std::size_t(p.j) * l.columns + p.i];
+      if (!keys) continue;
+      const Vec3 x = position_at(*keys, time);
+      for (int k = 0; k < 3; ++k) slot.pin.at(k, j, i) = float(x[k]);
+    }
+  }
+
+  ClothParts parts_;
+  bool compliant_;  // velocities gain the corrections as computed
+  std::vector<Slot> slots_;
+  std::vector<const std::vector<Key>*> keys_;  // of every particle, null where it has no path
+};
+
+}  // namespace
+
+std::unique_ptr<RowStage> make_tethers(const ClothParts& parts, bool compliant) {
+  const Lattice& l = parts.lattice;
+  if (parts.cloth.pins.empty()) return nullptr;
+  // Slot s of a particle holds its s-th tether, so that few pins fill few slots.
+  std::vector<std::vector<Place>> slots;
+  std::array<std::vector<Place>, kQuadrants> found{
+      nearest(parts, -1, -1), nearest(parts, 1, -1), nearest(parts, -1, 1), nearest(parts, 1, 1)};
+  std::int64_t count = 0;
+  for (std::size_t p = 0; p < found[0].size(); ++p) {
+    const int i = int(p) % l.columns, j = int(p) / l.columns;
+    if (l.w(j, i) == 0) continue;
+    std::size_t used = 0;
+    for (int q = 0; q < kQuadrants; ++q) {
+      const Place place = found[q][p];
+      bool again = place.i < 0;
+      for (std::size_t s = 0; s < used; ++s)
+        again |= slots[s][p].i == place.i && slots[s][p].j == place.j;
+      if (again) continue;
+      if (used == slots.size()) slots.emplace_back(found[0].size());
+      slots[used++][p] = place;
+      ++count;
+    }
+  }
+  if (count == 0) return nullptr;
+  return std::make_unique<Tethers>(parts, compliant, std::move(slots), count);
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,135 @@
+// Colliders as geometry: distances, normals and triangles agree with each other and with the kernels.
+#include <map>
+#include <random>
+
+#include "contact_scenes.h"
+#include "physics/colliders/shapes.h"
+
+namespace weft {
+namespace {
+
+using physics::nearest_of;
+
+const std::vector<Shape>& shapes() {
+  static const std::vector<Shape> all = {
+      Sphere{{0.1, 0.2, -0.1}, 0.4},
+      Plane{{0, 0.1, 0}, {0.3, 2, -0.4}},
+      Capsule{{-0.3, 0, 0.1}, {0.4, 0.2, 0}, 0.2},
+      Box{{0.05, 0, 0}, {0.3, 0.2, 0.4}, {20, -35, 50}, 0},
+      Box{{0.05, 0, 0}, {0.3, 0.2, 0.4}, {20, -35, 50}, 0.07},
+  };
+  return all;
+}
+
+std::vector<Vec3> random_points(int count, double size) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> within(-size, size);
+  std::vector<Vec3> points(count);
+  for (Vec3& p : points) p = {within(random), within(random), within(random)};
+  return points;
+}
+
+TEST(ContactShapes, NormalIsTheGradientOfTheDistance) {
+  for (const Shape& shape : shapes())
+    for (const Vec3& p : random_points(500, 1)) {
+      std::visit(
+          [&](const auto& s) {
+            const physics::Nearest here = nearest_of(s, p);
+            constexpr double h = 1e-6;
+            double kink = 0;  // the gradient jumps where two sides are equally near
+            for (int k = 0; k < 3; ++k) {
+              Vec3 up = p, down = p;
+              up[k] += h;
+              down[k] -= h;
+              const double slope = (nearest_of(s, up).distance - nearest_of(s, down).distance) / (2 * h);
+              kink = std::max(kink, std::abs(slope - here.normal[k]));
+            }
+            EXPECT_LT(kink, 1e-5) << shape.index();
+            EXPECT_NEAR(physics::dot(here.normal, here.normal), 1, 1e-12);
+          },
+          shape);
+    }
+}
+
+double volume_of(const Shape& shape) {
+  if (const auto* s = std::get_if<Sphere>(&shape)) return 4 / 3. * M_PI * std::pow(s->radius, 3);
+  if (const auto* c = std::get_if<Capsule>(&shape)) {
+    const double r = c->radius, l = std::sqrt(0.7 * 0.7 + 0.2 * 0.2 + 0.1 * 0.1);
+    return 4 / 3. * M_PI * r * r * r + M_PI * r * r * l;
+  }
+  const auto& b = std::get<Box>(shape);
+  const double r = b.rounding, x = b.half[0] - r, y = b.half[1] - r, z = b.half[2] - r;
+  return 8 * x * y * z + 8 * r * (x * y + y * z + z * x) + 2 * M_PI * r * r * (x + y + z) +
+         4 / 3. * M_PI * r * r * r;
+}
+
+TEST(ContactShapes, TrianglesCloseTheSurface) {
+  for (const Shape& shape : shapes()) {
+    const ShapeMesh mesh = triangulate(shape);
+    Collider collider;
+    collider.shape = shape;
+    double volume = 0, greatest = 0;
+    for (const Vec3& p : mesh.positions)
+      greatest = std::max(greatest, std::abs(signed_distance(collider, 0, p)));
+    EXPECT_LT(greatest, 1e-9) << shape.index();
+    for (const auto& t : mesh.triangles) {
+      const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+      const Vec3 u = physics::minus(b, a), v = physics::minus(c, a);
+      const Vec3 n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+      EXPECT_GE(physics::dot(n, mesh.normals[t[0]]), -1e-12) << shape.index();
+      volume += physics::dot(n, a) / 6;
+    }
+    if (std::holds_alternative<Plane>(shape)) continue;
+    EXPECT_NEAR(volume / volume_of(shape), 1, 0.01) << shape.index();
+  }
+}
+
+// Loose particles strewn over a shape are all lifted out in one substep, the shortest way, by the
+// kernels of every instruction set alike.
+TEST(ContactShapes, KernelsLiftParticlesOutTheShortestWay) {
+  for (const Shape& shape : shapes()) {
+    std::uint64_t hash = 0;
+    for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+      if (!simd_available(simd)) continue;
+      Scene scene;
+      scene.gravity = {0, 0, 0};
+      scene.time.substeps = 1;
+      scene.cloths.push_back(loose_particles({0, 0, 0}));
+      scene.cloths[0].grid.nx = scene.cloths[0].grid.ny = 23;
+      scene.colliders.push_back(collider_of(shape));
+      scene.colliders[0].offset = 0.01;
+      Simulation simulation(scene, {1, simd, 1, false});
+      const std::vector<Vec3> points = random_points(23 * 23, 0.6);
+      std::vector<double> x, v(3 * points.size());
+      for (const Vec3& p : points) x.insert(x.end(), p.begin(), p.end());
+      simulation.set_state(x, v);
+      simulation.advance_frame();
+      const std::vector<double> after = simulation.positions();
+      for (std::size_t p = 0; p < points.size(); ++p) {
+        const double before = signed_distance(scene.colliders[0], 0, points[p]);
+        const Vec3 moved = physics::minus(at(after, p), points[p]);
+        EXPECT_NEAR(std::sqrt(physics::dot(moved, moved)), std::max(0.0, 0.01 - before), 1e-6);
+        EXPECT_GT(signed_distance(scene.colliders[0], 0, at(after, p)), 0.01 - 1e-6);
+      }
+      if (hash == 0) hash = simulation.hash();
+      EXPECT_EQ(simulation.hash(), hash) << simd_name(simd);
+    }
+  }
+}
+
+TEST(ContactShapes, KeysMoveAnyShape) {
+  for (const Shape& shape : shapes()) {
+    Collider c;
+    c.shape = shape;
+    const Vec3 place = std::visit([](const auto& s) { return physics::place_of(s); }, shape);
+    c.keys = {{0, place}, {2, {place[0] + 1, place[1] - 2, place[2]}}};
+    EXPECT_NEAR(displacement(c, 1)[0], 0.5, 1e-12);
+    EXPECT_NEAR(displacement(c, 1)[1], -1, 1e-12);
+    Collider still = c;
+    still.keys.clear();
+    EXPECT_NEAR(signed_distance(c, 1, {0.7, 0.1, 0.3}), signed_distance(still, 0, {0.2, 1.1, 0.3}), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,151 @@
+// The second-order substep, tethers, and whole runs of line sweeps.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "weft/simulation.h"
+
+namespace weft {
+namespace {
+
+Scene hanging(int n, double k, int substeps) {
+  Scene s;
+  s.solver.method = Method::compliant;
+  s.solver.sweep = Sweep::line;
+  s.time.substeps = substeps;
+  Cloth c;
+  c.grid.nx = c.grid.ny = n;
+  c.stiffness = {k, k, 0.2 * k};
+  c.pins = {{0, 0, {}}, {n - 1, 0, {}}};
+  s.cloths.push_back(c);
+  return s;
+}
+
+std::vector<double> run(const Scene& scene, int frames, Options options = {}) {
+  Simulation simulation(scene, options);
+  for (int f = 0; f < frames; ++f) simulation.advance_frame();
+  EXPECT_TRUE(simulation.status().ok) << simulation.status().text;
+  return simulation.positions();
+}
+
+double rms(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(3 * sum / double(a.size()));
+}
+
+TEST(SecondOrder, ErrorFallsWithTheSquareOfTheSubstep) {
+  // Against springs as forces far below their stability limit: they converge to the same motion.
+  for (const double drag : {0.0, 2.0}) {
+    const auto second_order = [&](int substeps) {
+      Scene s = hanging(6, 50, substeps);
+      s.solver.order = 2;
+      s.solver.iterations = 6;
+      s.cloths[0].drag = drag;
+      return run(s, 12);
+    };
+    Scene exact = hanging(6, 50, 200);
+    exact.solver = {};
+    exact.cloths[0].drag = drag;
+    const std::vector<double> truth = run(exact, 12);
+    std::vector<double> error;
+    for (const int substeps : {2, 4, 8}) error.push_back(rms(second_order(substeps), truth));
+    const double slope = std::log2(error.front() / error.back()) / 2;
+    std::printf("drag %g: errors %.2e %.2e %.2e m, slope %.2f\n", drag, error[0], error[1], error[2],
+                slope);
+    EXPECT_GT(slope, 1.8);
+  }
+}
+
+TEST(SecondOrder, FallsFreelyWithoutError) {
+  Scene s = hanging(8, 1000, 5);
+  s.cloths[0].pins.clear();
+  s.solver.order = 2;
+  const std::vector<double> x = run(s, 30);
+  // The first substep is implicit Euler: ½ g h² too far, and h g too fast, on the way after it.
+  const double h = s.time.frame / 5, t = 30 * s.time.frame;
+  EXPECT_NEAR(x[1], -0.5 * 9.81 * t * t, 9.81 * h * h);
+}
+
+TEST(SecondOrder, LandsWithoutBouncing) {
+  Scene s = hanging(8, 1000, 10);
+  s.cloths[0].pins.clear();
+  s.solver.order = 2;
+  Plane plane;
+  plane.point = {0, -0.3, 0};
+  s.colliders.push_back({plane, {}, 0, {}, false});
+  Simulation simulation(s);
+  double highest = -1;
+  for (int f = 0; f < 90; ++f) {
+    simulation.advance_frame();
+    if (f < 30) continue;
+    for (const double v : simulation.velocities()) highest = std::max(highest, std::abs(v));
+  }
+  EXPECT_LT(highest, 1e-2);
+}
+
+TEST(Tethers, NoParticleIsFartherFromItsPinThanTheSheetIsLong) {
+  Scene s = hanging(30, 1e5, 12);
+  s.solver.tethers = true;
+  s.cloths[0].pins = {{0, 0, {}}};
+  Simulation simulation(s);
+  for (int f = 0; f < 90; ++f) {
+    simulation.advance_frame();
+    const std::vector<double> x = simulation.positions();
+    for (int j = 0; j < 30; ++j)
+      for (int i = 0; i < 30; ++i) {
+        const double* p = x.data() + 3 * (j * 30 + i);
+        // The sweeps after the tethers may move a particle a little.
+        EXPECT_LE(std::hypot(p[0], p[1], p[2]), std::hypot(i / 29.0, j / 29.0) * 1.02 + 1e-4);
+      }
+  }
+}
+
+TEST(Tethers, FollowPinsOnTheirPaths) {
+  Scene s = hanging(12, 1e5, 6);
+  s.solver.tethers = true;
+  s.cloths[0].pins = {{0, 0, {{0, {0, 0, 0}}, {0.5, {3, 0, 0}}}}};
+  const std::vector<double> x = run(s, 60);
+  for (std::size_t p = 0; p < x.size(); p += 3)
+    EXPECT_LT(std::hypot(x[p] - 3, x[p + 1], x[p + 2]), std::sqrt(2.0) * 1.02);
+}
+
+TEST(LineRuns, HashesDependOnNeitherThreadsNorInstructionSet) {
+  Scene s = hanging(70, 1e5, 4);
+  s.solver.order = 2;
+  s.solver.tethers = true;
+  s.cloths[0].bending = 1e-4;
+  s.cloths[0].strain_limit = 0.1;
+  s.colliders.push_back({Sphere{{0.5, -0.3, 0.5}, 0.2}, {}, 0.01, {}, false});
+  for (const int iterations : {1, 2}) {
+    s.solver.iterations = iterations;
+    std::uint64_t expected = 0;
+    for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
+      for (const int threads : {1, 2, 3}) {
+        if (!simd_available(simd)) continue;
+        Options options;
+        options.simd = simd;
+        options.threads = threads;
+        Simulation simulation(s, options);
+        for (int f = 0; f < 12; ++f) simulation.advance_frame();
+        ASSERT_TRUE(simulation.status().ok) << simulation.status().text;
+        if (expected == 0) expected = simulation.hash();
+        EXPECT_EQ(simulation.hash(), expected) << simd_name(simd) << ", " << threads << " threads";
+      }
+  }
+}
+
+TEST(LineRuns, ThePlanNamesTheStages) {
+  Scene s = hanging(10, 1e5, 4);
+  s.solver.tethers = true;
+  s.cloths[0].bending = 1e-4;
+  const Simulation simulation(s);
+  std::vector<std::string> names;
+  for (const PlannedStage& p : simulation.plan().stages) names.push_back(p.name);
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"predict", "tethers", "bending", "line"}));
+}
+
+}  // namespace
+}  // namespace weft

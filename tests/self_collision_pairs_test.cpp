@@ -1,0 +1,169 @@
+// The pair search against a brute-force oracle, and what the response does to pairs.
+#include <cstdio>
+#include <random>
+#include <set>
+
+#include "contact_scenes.h"
+#include "physics/plan.h"
+#include "physics/self_collision/crossings.h"
+#include "physics/self_collision/self_collision.h"
+
+namespace weft {
+namespace {
+
+using physics::ClothStep;
+
+Cloth colliding(Cloth cloth, double thickness) {
+  cloth.self_collision.mode = SelfCollisionMode::particles;
+  cloth.self_collision.thickness = thickness;
+  return cloth;
+}
+
+using Pair = std::pair<std::array<int, 3>, std::array<int, 3>>;
+
+std::set<Pair> all_pairs(const std::vector<std::unique_ptr<ClothStep>>& cloths, const Scene& scene,
+                         float range) {
+  struct One {
+    std::array<int, 3> site;
+    float x[3];
+  };
+  std::vector<One> all;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const physics::Lattice& l = cloths[c]->lattice();
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i)
+        all.push_back({{int(c), j, i}, {l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)}});
+  }
+  std::set<Pair> pairs;
+  for (const One& a : all)
+    for (const One& b : all) {
+      if (a.site == b.site) continue;
+      float square = 0;
+      for (int k = 0; k < 3; ++k) square += (b.x[k] - a.x[k]) * (b.x[k] - a.x[k]);
+      if (square >= range * range) continue;
+      const Grid& g = scene.cloths[std::size_t(a.site[0])].grid;
+      const double di = (a.site[2] - b.site[2]) * spacing_u(g), dj = (a.site[1] - b.site[1]) * spacing_v(g);
+      const double near = 1.3 * scene.cloths[std::size_t(a.site[0])].self_collision.thickness;
+      if (a.site[0] == b.site[0] && std::hypot(di, dj) < near) continue;
+      pairs.insert({a.site, b.site});
+    }
+  return pairs;
+}
+
+// Two crumpled sheets, in boxes from a few to thousands of cells wide.
+TEST(SelfCollisionPairs, SearchFindsWhatBruteForceFinds) {
+  for (const double size : {0.05, 0.4, 3.0, 400.0})
+    for (const Simd simd : {Simd::scalar, Simd::avx2, Simd::avx512}) {
+      if (!simd_available(simd)) continue;
+      Scene scene;
+      scene.cloths.push_back(colliding(flat_sheet(30, 1, {0, 0, 0}), 0.05));
+      scene.cloths.push_back(colliding(flat_sheet(17, 1, {0, 1, 0}), 0.06));
+      std::vector<std::unique_ptr<ClothStep>> cloths;
+      std::mt19937 random(3);
+      std::uniform_real_distribution<float> within(0, float(size));
+      for (int c = 0; c < 2; ++c) {
+        cloths.push_back(std::make_unique<ClothStep>(scene, c, Method::spring, 1,
+                                                     physics::kernel_table(simd)));
+        physics::Lattice& l = cloths.back()->lattice();
+        for (int j = 0; j < l.rows; ++j)
+          for (int i = 0; i < l.columns; ++i)
+            for (int k = 0; k < 3; ++k) l.x.at(k, j, i) = within(random) * (k == 1 ? 0.3f : 1.0f);
+      }
+      const auto self = physics::SelfContact::make(scene, cloths, physics::kernel_table(simd));
+      physics::Threads threads(2);
+      const physics::NearPairs& found = self->search(0.01, threads);
+      std::set<Pair> pairs;
+      std::size_t listed = 0;
+      for (std::size_t a = 0; a < found.site.size(); ++a)
+        for (auto k = found.first[a]; k < found.first[a + 1]; ++k) {
+          const physics::Site &p = found.site[a], &q = found.site[std::size_t(found.neighbour[std::size_t(k)])];
+          pairs.insert({{p.cloth, p.row, p.column}, {q.cloth, q.row, q.column}});
+          ++listed;
+        }
+      EXPECT_EQ(listed, pairs.size()) << "a pair is listed twice";
+      EXPECT_EQ(pairs, all_pairs(cloths, scene, 0.06f + 0.01f)) << size;
+      std::printf("box of %.2f m: %zu pairs\n", size, pairs.size());
+    }
+}
+
+TEST(SelfCollisionPairs, CrossingsAreCountedOncePerEdgeAndTriangle) {
+  const std::vector<Vec3> x = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0.2, -1, 0.2}, {0.2, 1, 0.2}, {5, 1, 5}};
+  EXPECT_EQ(physics::count_crossings(x, {{0, 1, 2}, {3, 4, 5}}), 2);  // two edges pass
+  EXPECT_EQ(physics::count_crossings(x, {{0, 1, 2}, {0, 4, 5}}), 0);  // a shared corner
+}
+
+// Two loose sheets laid upon each other come to rest a thickness apart.
+TEST(SelfCollisionPairs, SheetsRestAThicknessApart) {
+  for (const Method method : {Method::spring, Method::compliant}) {
+    Scene scene;
+    scene.solver.method = method;
+    for (const double height : {0.02, 0.08, 0.14}) {
+      scene.cloths.push_back(colliding(flat_sheet(20, 0.4, {0, height, 0}), 0.03));
+      scene.cloths.back().drag = 3;
+    }
+    scene.colliders.push_back(collider_of(Plane{}, 0.5));
+    Simulation simulation(scene);
+    advance(simulation, 2);
+    const Report r = simulation.report();
+    std::printf("stack of three: %lld pairs under the thickness, %.2g m at most, %lld crossings\n",
+                (long long)r.penetration.self_pairs, r.penetration.self_max,
+                (long long)r.penetration.crossings);
+    EXPECT_LT(r.penetration.self_max, 0.01 * 0.03);
+    EXPECT_EQ(r.penetration.crossings, 0);
+    EXPECT_GT(at(simulation.positions(), 800 + 210)[1], 0.05);
+  }
+}
+
+TEST(SelfCollisionPairs, FrictionCarriesAnUpperSheetAlong) {
+  for (const double friction : {0.0, 0.6}) {
+    Scene scene;
+    scene.gravity = {0.3 * 9.81, -9.81, 0};  // a slope of 17 degrees, where 0.6 sticks
+    for (const double height : {0.0, 0.0155}) {
+      scene.cloths.push_back(colliding(flat_sheet(12, 0.12, {0, height, 0}), 0.015));
+      scene.cloths.back().self_collision.friction = friction;
+    }
+    for (int n = 0; n < 144; ++n) scene.cloths[0].pins.push_back({n % 12, n / 12, {}});
+    Simulation simulation(scene);
+    const double start = at(simulation.positions(), 144 + 66)[0];
+    advance(simulation, 0.12);
+    const double slid = at(simulation.positions(), 144 + 66)[0] - start;
+    std::printf("friction %.1f: slid %.4f m\n", friction, slid);
+    if (friction == 0) EXPECT_GT(slid, 0.01);
+    else EXPECT_LT(slid, 0.009);
+  }
+}
+
+TEST(SelfCollisionPairs, AskingForAReportChangesNothing) {
+  Scene scene;
+  scene.cloths.push_back(colliding(flat_sheet(30, 0.5, {0, 0.3, 0}), 0.015));
+  scene.cloths[0].grid.v = {0, 0.5, 0};
+  scene.cloths[0].grid.jitter = 0.001;
+  scene.colliders.push_back(collider_of(Plane{}, 0.5));
+  Simulation plain(scene), asked(scene, {2, Simd::best, 1, true});
+  for (int n = 0; n < 60; ++n) {
+    plain.advance_frame();
+    asked.advance_frame();
+    (void)asked.report();
+  }
+  EXPECT_EQ(plain.hash(), asked.hash());
+}
+
+TEST(SelfCollisionPairs, SameBitsForAnyThreadsAndInstructionSet) {
+  Scene scene;
+  scene.cloths.push_back(colliding(flat_sheet(70, 0.7, {0, 0.3, 0}), 0.015));
+  scene.cloths[0].grid.v = {0, 0.7, 0.05};
+  scene.cloths[0].stiffness = {1000, 500, 20};
+  scene.colliders.push_back(collider_of(Plane{}, 0.5));
+  std::vector<std::uint64_t> hashes;
+  for (const Options& o : {Options{1, Simd::best, 1, false}, {3, Simd::best, 1, false}, {1, Simd::scalar, 1, false},
+                           {2, Simd::avx2, 1, false}}) {
+    if (!simd_available(o.simd)) continue;
+    Simulation simulation(scene, o);
+    advance(simulation, 0.5);
+    hashes.push_back(simulation.hash());
+  }
+  for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
+}
+
+}  // namespace
+}  // namespace weft
