@@ -55,17 +55,13 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
   program.add_flag("--headless", a.headless, "Render one picture without any display");
   program
       .add_option("--frames", a.frames,
-                  "Frames to simulate before the picture; in the window: ends after them")
+                  "Frames to simulate before the picture")
       ->type_name("N")
       ->check(CLI::Range(0, 1'000'000));
-  program.add_option("--size", size, "Size of the picture or window in pixels (1280x720)")
+  program.add_option("--size", size, "Size of the picture in pixels (1280x720)")
       ->type_name("WxH")
       ->check(CLI::Validator(fault_of_size, ""));
   program.add_option("--out", a.out, "The picture to write")->type_name("FILE.png");
-  program.add_flag("--panel", a.panel, "Headless: with the panel");
-  program.add_flag("--paused", a.paused, "Start paused");
-  program.add_option("--state", a.state, "Keep this file telling what the window shows, as JSON")
-      ->type_name("FILE.json");
   program.add_option("--threads", a.threads, "Worker threads; never changes the result")
       ->type_name("P")
       ->check(CLI::Range(1, 256));
@@ -87,14 +83,15 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
 }  // namespace
 
 std::optional<int> parse_arguments(int count, char** words, Arguments& arguments) {
-  CLI::App program{"The window of Weft, a cloth simulator", "weft-viewer"};
+  CLI::App program{"Pictures of cloth simulated by Weft, rendered without a display", "weft-viewer"};
   std::string size;
   std::vector<std::string> sets;
   add_options(program, arguments, size, sets);
   try {
     program.parse(count, words);
-    if (arguments.headless && arguments.out.empty())
-      throw CLI::RequiredError("--headless needs --out FILE.png: it");
+    if (!arguments.headless)
+      throw CLI::RequiredError("this version renders pictures and opens no window: --headless");
+    if (arguments.out.empty()) throw CLI::RequiredError("--headless needs --out FILE.png: it");
   } catch (const CLI::Success& asked) {
     return program.exit(asked);
   } catch (const CLI::ParseError& error) {

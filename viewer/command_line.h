@@ -15,12 +15,9 @@ struct Arguments {
   std::vector<Override> overrides;
   std::string look = "colour";
   bool headless = false;
-  std::int64_t frames = 0;  // headless: which frame; window: ends after so many, 0 = never
+  std::int64_t frames = 0;  // to simulate before the picture
   int width = 1280, height = 720;
   std::string out;  // PNG
-  bool panel = false;
-  bool paused = false;
-  std::string state;  // file that tells what the window shows, for scripts
   int threads = 0;
   std::uint64_t seed = 1;
   std::optional<double> azimuth, elevation;  // degrees

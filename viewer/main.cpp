@@ -1,4 +1,4 @@
-// The program weft-viewer: a window, or one picture without any.
+// The program weft-viewer: pictures of a scene, rendered without any display.
 #include <cstdio>
 #include <exception>
 
@@ -13,7 +13,7 @@ namespace {
 int run(int count, char** words) {
   Arguments arguments;
   if (const auto code = parse_arguments(count, words, arguments)) return *code;
-  if (arguments.headless) render_picture(arguments);
+  render_picture(arguments);
   return kDone;
 }
 
