@@ -44,6 +44,7 @@ class CellGrid {
  private:
   std::int32_t key_of_sorted(std::size_t sorted) const { return key_[std::size_t(number_[sorted])]; }
   void choose_strides(const int cells[3]);
+  std::int64_t offset_[9] = {};  // from a bucket to the first of each of the nine runs about it
 
   std::size_t count_ = 0;
   std::int64_t table_ = 1, stride_y_ = 1, stride_z_ = 1;

@@ -75,11 +75,13 @@ class SelfContact {
   float moved_apart() const;     // since the last search, at most [m]
   float relative_speed() const;  // at most [m/s]
   void search_chunk(Chunk& chunk, std::size_t begin, std::size_t end, float range) const;
-  bool apart_at_rest(const Site& a, const Site& b) const;
+  void sort_sites();
+  void keep_touching(Threads& threads);
+  void touch_chunk(Chunk& chunk, std::size_t begin, std::size_t end) const;
   void join_chunks();
   void gather(std::size_t a);
-  void separate(std::size_t a, double dt, int since);
-  void scatter(std::size_t a);
+  void separate(std::size_t t, double dt, int since);
+  void scatter(std::size_t t);
   int next_run(double dt) const;
   bool course() const;
 
@@ -90,9 +92,15 @@ class SelfContact {
   AlignedArray<float> x_, y_, z_;  // of every particle at the last search
   CellGrid grid_;
   std::vector<Chunk> chunks_;
+  std::vector<RestMetric> metrics_;         // of every sheet
+  AlignedArray<float> column_, row_;        // of every particle, as sorted
+  std::vector<std::uint16_t> sheet_;        // the same
   std::vector<std::int32_t> listed_;  // sorted particle -> number into pairs_.site, or -1
   NearPairs pairs_;
   std::vector<Body> bodies_, separated_;
+  struct {  // of the pairs, those that may touch now; numbers into pairs_.site
+    std::vector<std::int32_t> owner, first, neighbour;
+  } touching_;
   float thickness_ = 0;  // greatest of the sheets [m]
   bool valid_ = false;
   std::int64_t runs_ = 0, searches_ = 0;
