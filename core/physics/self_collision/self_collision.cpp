@@ -12,16 +12,17 @@
 namespace weft::physics {
 namespace {
 
-constexpr double kNeighbour = 0.3;    // of the thickness: neighbours are as near, and more, at rest
-constexpr double kSkin = 0.8;         // of the thickness
-constexpr double kMayTouch = 0.15;    // of the thickness: pairs so much further apart are looked at
-constexpr double kMotion = 0.5;       // of the thickness: relative motion between two runs
-constexpr double kFall = 0.005;       // of the thickness, twice the fall from rest between two runs
-constexpr int kMostSubsteps = 12;     // between two runs
-constexpr int kIterations = 3;        // of pushing apart, in one run
+constexpr double kNeighbour = 0.3;  // of the thickness: neighbours are as near, and more, at rest
+constexpr double kSkin = 0.5;       // of the thickness
+constexpr double kMayTouch = 0.15;  // of the thickness: pairs so much further apart are looked at
+constexpr double kMotion = 0.4;     // of the thickness: relative motion between two runs
+constexpr double kFall = 0.005;     // of the thickness, twice the fall from rest between two runs
+constexpr int kMostSubsteps = 12;   // between two runs
+constexpr int kIterations = 3;      // of pushing apart, in one run
 constexpr int kMostSubstepsCourse = 4;  // its push acts like a spring, stable up to here
 constexpr std::size_t kChunks = 64;
-constexpr std::size_t kGrain = 512;   // particles of a task
+constexpr std::size_t kFew = 4096;          // particles that one thread does faster
+constexpr std::size_t kGrain = 512;         // particles of a task
 constexpr std::size_t kPairsReserved = 16;  // neighbours per particle
 
 Spread nothing() {
@@ -33,6 +34,16 @@ float diagonal(const Spread& s) {
   float square = 0;
   for (int k = 0; k < 3; ++k) square += (s.high[k] - s.low[k]) * (s.high[k] - s.low[k]);
   return std::sqrt(square);
+}
+
+// Calls work(k) for every chunk of n particles; few are not worth the threads.
+template <class Work>
+void for_each_chunk(std::size_t n, Threads& threads, Work&& work) {
+  if (threads.count() == 1 || n < kFew) {
+    for (std::size_t k = 0; k < kChunks; ++k) work(k);
+    return;
+  }
+  threads.run([&] { oneapi::tbb::parallel_for(std::size_t(0), kChunks, work); });
 }
 
 }  // namespace
@@ -70,8 +81,7 @@ std::unique_ptr<SelfContact> SelfContact::make(
   return std::unique_ptr<SelfContact>(new SelfContact(scene, std::move(sheets), kernels));
 }
 
-SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets,
-                             const KernelTable& kernels)
+SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const KernelTable& kernels)
     : scene_(scene), sheets_(std::move(sheets)), kernels_(kernels), chunks_(kChunks) {
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     thickness_ = std::max(thickness_, sheets_[s].thickness);
@@ -222,11 +232,9 @@ const NearPairs& SelfContact::search(double margin, Threads& threads) {
   grid_.build({x_.data(), y_.data(), z_.data()}, sites_.size(), box.low, box.high, range * 1.001f);
   sort_sites();
   const std::size_t n = sites_.size();
-  threads.run([&] {
-    oneapi::tbb::parallel_for(std::size_t(0), kChunks, [&](std::size_t k) {
-      search_chunk(chunks_[k], grid_.bucket_start_from(k * n / kChunks),
-                   grid_.bucket_start_from((k + 1) * n / kChunks), range);
-    });
+  for_each_chunk(n, threads, [&](std::size_t k) {
+    search_chunk(chunks_[k], grid_.bucket_start_from(k * n / kChunks),
+                 grid_.bucket_start_from((k + 1) * n / kChunks), range);
   });
   join_chunks();
   return pairs_;
@@ -255,10 +263,8 @@ void SelfContact::touch_chunk(Chunk& c, std::size_t begin, std::size_t end) cons
 
 void SelfContact::keep_touching(Threads& threads) {
   const std::size_t n = bodies_.size();
-  threads.run([&] {
-    oneapi::tbb::parallel_for(std::size_t(0), kChunks, [&](std::size_t k) {
-      touch_chunk(chunks_[k], k * n / kChunks, (k + 1) * n / kChunks);
-    });
+  for_each_chunk(n, threads, [&](std::size_t k) {
+    touch_chunk(chunks_[k], k * n / kChunks, (k + 1) * n / kChunks);
   });
   touching_.owner.clear();
   touching_.first.clear();
@@ -282,7 +288,7 @@ int SelfContact::run(double dt, int since, Threads& threads) {
   }
   bodies_.resize(pairs_.site.size());
   const auto share = [&](auto&& work, std::size_t n) {
-    if (n <= 2 * kGrain || threads.count() == 1) {
+    if (n < kFew || threads.count() == 1) {
       for (std::size_t a = 0; a < n; ++a) work(a);
       return;
     }
@@ -329,7 +335,8 @@ SelfContact::Overlaps SelfContact::overlaps() {
   for (std::size_t a = 0; a < bodies_.size(); ++a)
     for (std::int32_t k = pairs_.first[a]; k < pairs_.first[a + 1]; ++k) {
       const Body &p = bodies_[a], &q = bodies_[std::size_t(pairs_.neighbour[std::size_t(k)])];
-      const double d = std::hypot(double(p.x[0]) - q.x[0], double(p.x[1]) - q.x[1], double(p.x[2]) - q.x[2]);
+      const double d =
+          std::hypot(double(p.x[0]) - q.x[0], double(p.x[1]) - q.x[1], double(p.x[2]) - q.x[2]);
       const double depth = 0.5 * (double(p.thickness) + q.thickness) - d;
       if (depth <= 0) continue;
       ++found.pairs;

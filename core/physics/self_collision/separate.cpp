@@ -1,8 +1,11 @@
 // Self-collision (self_collision.h): how a pair that is too near is pushed apart.
 //
-//   stiff:   Δx_a = n (t - d) w_a/(w_a + w_b), the velocity into the other is lost, and the tangential
-//            velocity t loses up to μ times as much as was pressed (Coulomb); averaged over the pairs
-//   course:  Δx_a = n (t - d), averaged over the pairs and divided by the substeps, velocity included
+//   stiff:   Δx_a = n (t - d) w_a/(w_a + w_b), the velocity into the other is lost, and the
+//   tangential
+//            velocity t loses up to μ times as much as was pressed (Coulomb); averaged over the
+//            pairs
+//   course:  Δx_a = n (t - d), averaged over the pairs and divided by the substeps, velocity
+//   included
 //            (seeds 001 and 004: the position before stays)
 #include <algorithm>
 #include <cmath>
@@ -13,8 +16,10 @@
 namespace weft::physics {
 namespace {
 
-constexpr float kMostPush = 0.5f;  // of the thickness, at once: what starts intersecting comes apart slowly
-constexpr float kHeld = 1.05f;  // thicknesses that a pair is held apart: layers of a stack sink in a little
+constexpr float kMostPush =
+    0.5f;  // of the thickness, at once: what starts intersecting comes apart slowly
+constexpr float kHeld =
+    1.05f;  // thicknesses that a pair is held apart: layers of a stack sink in a little
 constexpr float kTiny = 1e-12f;
 
 }  // namespace
@@ -67,7 +72,8 @@ void SelfContact::separate(std::size_t t, double dt, int since) {
     const float u[3] = {p.v[0] - q.v[0], p.v[1] - q.v[1], p.v[2] - q.v[2]};
     const float into = u[0] * n[0] + u[1] * n[1] + u[2] * n[2];
     const float slide[3] = {u[0] - into * n[0], u[1] - into * n[1], u[2] - into * n[2]};
-    const float sliding = std::sqrt(slide[0] * slide[0] + slide[1] * slide[1] + slide[2] * slide[2]);
+    const float sliding =
+        std::sqrt(slide[0] * slide[0] + slide[1] * slide[1] + slide[2] * slide[2]);
     const float lost = std::max(0.f, -into);
     const float rubbed = sliding > kTiny ? std::min(1.f, sheet.friction * lost / sliding) : 0;
     for (int m = 0; m < 3; ++m) {
