@@ -106,7 +106,7 @@ Trial run_trial(const Problem& problem, const Setting& setting, weft::Simd simd,
     repeat(problem, scene, options, truth, t, fastest);
   } while (t.ok() && t.repetitions < repeats.most &&
            (t.repetitions < repeats.least || ms_since(start) < 1e3 * repeats.seconds));
-  t.quiet_ms = std::accumulate(fastest.begin(), fastest.end(), 0.0);
+  if (t.repetitions > 0) t.quiet_ms = std::accumulate(fastest.begin(), fastest.end(), 0.0);
   return t;
 }
 

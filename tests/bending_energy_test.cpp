@@ -33,7 +33,8 @@ std::vector<Vec3> crumpled(const Cloth& c) {
 TEST(Bending, ForceIsTheGradientOfTheEnergy) {
   const Cloth c = sheet(6, 5, 0.02);
   std::vector<Vec3> x = crumpled(c), force(x.size(), Vec3{});
-  add_bending_forces(c, [&](int p, int k) { return x[p][k]; }, force);
+  add_bending_forces(
+      c, [&](int p, int k) { return x[p][k]; }, force);
   for (std::size_t p = 0; p < x.size(); ++p)
     for (int k = 0; k < 3; ++k) {
       const double before = x[p][k], h = 1e-5;
@@ -85,9 +86,12 @@ TEST(Bending, OneSubstepOfTheSpringMethodFeelsTheForce) {
     // v(dt) = dt (a(0) + a(dt))/2 to second order; both from the energy in double.
     const auto acceleration = [&](const std::vector<double>& flat) {
       std::vector<Vec3> p(start.size());
-      for (std::size_t n = 0; n < p.size(); ++n) p[n] = {flat[3 * n], flat[3 * n + 1], flat[3 * n + 2]};
-      std::vector<Vec3> f = spring_forces(scene.cloths[0], families_of(scene.cloths[0]), p, nullptr);
-      add_bending_forces(scene.cloths[0], [&](int n, int k) { return p[n][k]; }, f);
+      for (std::size_t n = 0; n < p.size(); ++n)
+        p[n] = {flat[3 * n], flat[3 * n + 1], flat[3 * n + 2]};
+      std::vector<Vec3> f =
+          spring_forces(scene.cloths[0], families_of(scene.cloths[0]), p, nullptr);
+      add_bending_forces(
+          scene.cloths[0], [&](int n, int k) { return p[n][k]; }, f);
       for (Vec3& a : f)
         for (double& k : a) k /= particle_mass(scene.cloths[0], 0, 0);
       return f;

@@ -1,9 +1,11 @@
 // The second-order substep, tethers, and whole runs of line sweeps.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "weft/read_scene.h"
 #include "weft/simulation.h"
 
 namespace weft {
@@ -52,8 +54,8 @@ TEST(SecondOrder, ErrorFallsWithTheSquareOfTheSubstep) {
     std::vector<double> error;
     for (const int substeps : {2, 4, 8}) error.push_back(rms(second_order(substeps), truth));
     const double slope = std::log2(error.front() / error.back()) / 2;
-    std::printf("drag %g: errors %.2e %.2e %.2e m, slope %.2f\n", drag, error[0], error[1], error[2],
-                slope);
+    std::printf("drag %g: errors %.2e %.2e %.2e m, slope %.2f\n", drag, error[0], error[1],
+                error[2], slope);
     EXPECT_GT(slope, 1.8);
   }
 }
@@ -136,6 +138,19 @@ TEST(LineRuns, HashesDependOnNeitherThreadsNorInstructionSet) {
   }
 }
 
+TEST(LineRuns, TheInextensibleSceneHardlyStretches) {
+  Simulation simulation(read_scene("inextensible").scene);
+  double greatest = 0;
+  for (int f = 0; f < 120; ++f) {
+    simulation.advance_frame();
+    if (f >= 30) greatest = std::max(greatest, simulation.report().strain.max);
+  }
+  ASSERT_TRUE(simulation.status().ok) << simulation.status().text;
+  std::printf("greatest strain %.2f %% from 0.5 s on, %.2f %% at the end\n", 100 * greatest,
+              100 * simulation.report().strain.max);
+  EXPECT_LT(greatest, 0.01);
+}
+
 TEST(LineRuns, ThePlanNamesTheStages) {
   Scene s = hanging(10, 1e5, 4);
   s.solver.tethers = true;
@@ -143,8 +158,7 @@ TEST(LineRuns, ThePlanNamesTheStages) {
   const Simulation simulation(s);
   std::vector<std::string> names;
   for (const PlannedStage& p : simulation.plan().stages) names.push_back(p.name);
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"predict", "tethers", "bending", "line"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"predict", "tethers", "bending", "line", "velocity"}));
 }
 
 }  // namespace

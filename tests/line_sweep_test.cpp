@@ -103,8 +103,8 @@ std::vector<Vec3> dense_step(const Sheet& s) {
 struct Offset {
   int di, dj;
 };
-const Offset kOffsets[] = {{1, 0}, {0, 1}, {1, 1},  {-1, 1}, {2, 0}, {0, 2},
-                           {3, 0}, {0, 3}, {3, 3},  {-2, 2}, {-3, 3}, {2, 2}};
+const Offset kOffsets[] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0},  {0, 2},
+                           {3, 0}, {0, 3}, {3, 3}, {-2, 2}, {-3, 3}, {2, 2}};
 
 TEST(LineSweep, SolvesEveryLineAsADenseSolverDoes) {
   for (const Offset o : kOffsets)

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <limits>
 #include <vector>
 
 #include "physics/kernels/kernels.h"
@@ -234,8 +235,12 @@ void add_projections(std::vector<Case>& cases) {
                            }});
 }
 
+// In the order of weft::Shape.
+constexpr int kPlane = 1, kBox = 3;
+constexpr const char* kShapeNames[kShapes] = {"sphere", "plane", "capsule", "box"};
+
 void add_contacts(std::vector<Case>& cases) {
-  const auto touch = [](auto kernel, float friction, bool moving) {
+  const auto touch = [](int shape, int model, float friction, bool moving) {
     return [=](const KernelTable& k, Patch& p) {
       CollideRow r{};
       r.columns = p.columns;
@@ -244,32 +249,33 @@ void add_contacts(std::vector<Case>& cases) {
       r.w = p.weights(0);
       r.dt = 0.01f;
       r.inverse_dt = 100;
-      // A sphere as wide as half the row with a particle at its very centre.
+      // As wide as half the row, with a particle at its very centre.
       const int middle = p.columns / 2;
       r.cx = p.x.at(0, 0, middle);
       r.cy = p.x.at(1, 0, middle);
       r.cz = p.x.at(2, 0, middle);
-      r.radius = 1 + float(p.columns) / 4;
-      r.nx = 0.36f;
-      r.ny = 0.8f;
-      r.nz = 0.48f;
+      const float size = 1 + float(p.columns) / 4;
+      r.shape = {.radius = shape == kBox ? 0.1f : size,
+                 .thin = shape == kPlane ? std::numeric_limits<float>::infinity() : size,
+                 .axis = {0.36f, 0.8f, 0.48f},
+                 .inverse_square = 1 / (0.36f * 0.36f + 0.8f * 0.8f + 0.48f * 0.48f),
+                 .half = {size, 0.5f * size, size},
+                 .turn = {0.8f, 0.6f, 0, -0.6f, 0.8f, 0, 0, 0, 1}};
       r.offset = 0.01f;
       if (moving) r.ux = 0.3f, r.uy = -0.2f, r.uz = 0.1f;
       r.friction_static = friction;
       r.friction_dynamic = 0.8f * friction;
-      (k.*kernel)(r);
+      k.collide[shape][model](r);
     };
   };
   for (const float friction : {0.0f, 0.4f})
     for (const bool moving : {false, true}) {
       const std::string has =
           std::string(friction > 0 ? " rough" : " smooth") + (moving ? ", moving" : "");
-      cases.push_back({"sphere" + has, 2, touch(&KernelTable::sphere, friction, moving)});
-      cases.push_back({"plane" + has, 2, touch(&KernelTable::plane, friction, moving)});
-      cases.push_back(
-          {"course_sphere" + has, 2, touch(&KernelTable::course_sphere, friction, moving)});
-      cases.push_back(
-          {"course_plane" + has, 2, touch(&KernelTable::course_plane, friction, moving)});
+      for (int shape = 0; shape < kShapes; ++shape)
+        for (int model = 0; model < kFrictionModels; ++model)
+          cases.push_back({std::string(kShapeNames[shape]) + (model ? ", course" : "") + has, 2,
+                           touch(shape, model, friction, moving)});
     }
 }
 

@@ -44,7 +44,7 @@ TEST(SceneFuzz, BrokenBytes) {
   for (const std::string& original : shipped_texts())
     for (int round = 0; round < 150; ++round) {
       std::string text = original;
-      for (auto k = 1 + random() % 4; k > 0; --k) {
+      for (auto k = 1 + random() % 4; k > 0 && !text.empty(); --k) {
         const std::size_t at = random() % text.size();
         switch (random() % 4) {
           case 0:

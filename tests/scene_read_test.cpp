@@ -36,7 +36,7 @@ Scene shipped(const std::string& name, const std::vector<Override>& overrides = 
 
 TEST(ShippedScenes, ReadWithoutFaultAndSurviveWriting) {
   const auto scenes = weft::shipped_scenes();
-  EXPECT_EQ(scenes.size(), 19u);
+  EXPECT_GE(scenes.size(), 19u);
   for (std::size_t k = 1; k < scenes.size(); ++k) EXPECT_LT(scenes[k - 1].name, scenes[k].name);
   for (const auto& entry : scenes) {
     SCOPED_TRACE(entry.name);

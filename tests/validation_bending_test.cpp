@@ -1,7 +1,9 @@
-// The cantilever under its own weight, against the elastica: tip drop and reach for every Γ = ρ g L³/D.
+// The cantilever under its own weight, against the elastica: tip drop and reach for every Γ = ρ g
+// L³/D.
 //
-// A strip clamped by two pinned columns: the tangent is held halfway between them, which is where the
-// beam begins. The last column has half a particle's mass, so that the load ends with the strip.
+// A strip clamped by two pinned columns: the tangent is held halfway between them, which is where
+// the beam begins. The last column has half a particle's mass, so that the load ends with the
+// strip.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,8 +17,8 @@ namespace {
 struct Row {
   double gamma, drop, reach;
 };
-const Row kTable[] = {{1, .1235, .9912},  {2, .2385, .9669},  {5, .4959, .8467},
-                      {10, .7002, .6564}, {20, .8299, .4452}, {50, .9079, .2450},
+const Row kTable[] = {{1, .1235, .9912},   {2, .2385, .9669},  {5, .4959, .8467},
+                      {10, .7002, .6564},  {20, .8299, .4452}, {50, .9079, .2450},
                       {100, .9375, .1592}, {200, .9568, .1074}};
 
 constexpr double kDensity = 0.3, kGravity = 9.81;
@@ -51,9 +53,10 @@ void check(const char* name, Scene scene, const Row& row, double seconds) {
     reach += x[3 * std::size_t(j * nx + nx - 1)] / ny;
     drop -= x[3 * std::size_t(j * nx + nx - 1) + 1] / ny;
   }
-  std::printf("%-28s G %3g  drop %.4f truth %.4f error %+.2f %%   reach %.4f truth %.4f error %+.2f %%\n",
-              name, row.gamma, drop, row.drop, 100 * (drop / row.drop - 1), reach, row.reach,
-              100 * (reach / row.reach - 1));
+  std::printf(
+      "%-28s G %3g  drop %.4f truth %.4f error %+.2f %%   reach %.4f truth %.4f error %+.2f %%\n",
+      name, row.gamma, drop, row.drop, 100 * (drop / row.drop - 1), reach, row.reach,
+      100 * (reach / row.reach - 1));
   EXPECT_NEAR(drop, row.drop, 0.02 * row.drop);
   EXPECT_NEAR(reach, row.reach, 0.02 * row.reach);
 }

@@ -1,5 +1,5 @@
-// The curvature energy of a cloth's `bending` on its grid (kernels/bending.cpp has the formulas), in
-// double precision for what measures and prepares a run, and its stiffnesses for the kernels.
+// The curvature energy of a cloth's `bending` on its grid (kernels/bending.cpp has the formulas),
+// in double precision for what measures and prepares a run, and its stiffnesses for the kernels.
 #pragma once
 
 #include <vector>

@@ -22,10 +22,10 @@ Passes::Passes(const Stages& stages, int rows, std::size_t row_bytes) {
   std::vector<RowStage*> together;
   const auto close = [&](std::size_t end) {
     if (together.empty()) return;
-    passes_.push_back({end - together.size(), nullptr,
-                       std::make_unique<Wavefront>(together, rows, row_bytes,
-                                                   row_nanoseconds(together, rows)),
-                       together.size()});
+    passes_.push_back(
+        {end - together.size(), nullptr,
+         std::make_unique<Wavefront>(together, rows, row_bytes, row_nanoseconds(together, rows)),
+         together.size()});
     together.clear();
   };
   for (std::size_t q = 0; q < stages.size(); ++q) {

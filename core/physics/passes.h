@@ -28,10 +28,10 @@ class Passes {
 
  private:
   struct Pass {
-    std::size_t first;                     // stage
-    WholeStage* whole = nullptr;           // or
+    std::size_t first;            // stage
+    WholeStage* whole = nullptr;  // or
     std::unique_ptr<Wavefront> wavefront;
-    std::size_t count = 1;                 // stages
+    std::size_t count = 1;  // stages
   };
   std::vector<Pass> passes_;
   std::size_t whole_stages_ = 0;

@@ -85,7 +85,7 @@ void ClothStep::choose_stages() {
         append_gauss_seidel(parts, sweep, stages_);
     }
     if (history_) stages_.push_back(make_velocity_second_order(parts, *history_));
-    else if (!sweep.compliant) stages_.push_back(make_velocity(parts));
+    else if (!sweep.compliant || lines) stages_.push_back(make_velocity(parts, sweep.compliant));
   }
   append_contact();
   if (cloth_.strain_limit > 0) {

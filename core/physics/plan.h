@@ -7,7 +7,7 @@
 //                             - strain_limit
 //   positional, compliant:    predict (previous <- x; v, x by gravity) - keyed_pins - tethers (x)
 //                             - bending (x) - sweeps (x) - velocity (positional: v <- (x - previous)/dt;
-//                             compliant stages have changed v themselves) - colliders - strain_limit
+//                             compliant stages mostly have changed v themselves) - colliders - strain_limit
 //
 // After every stage from springs or velocity on, x - dt v is the position before the substep:
 // contact and the strain limit change x and v together.

@@ -12,9 +12,9 @@ namespace weft::physics {
 class Threads;
 
 struct Substep {
-  double dt = 0;            // s
-  double time = 0;          // s, at the end of the substep
-  int slot = 0;             // which of a stage's carried buffers this substep uses
+  double dt = 0;    // s
+  double time = 0;  // s, at the end of the substep
+  int slot = 0;     // which of a stage's carried buffers this substep uses
 };
 
 // One stage of the plan.
@@ -51,8 +51,8 @@ using Stages = std::vector<std::unique_ptr<Stage>>;
 // buffers of its own, one set per slot. It overrides run for one row, or for a range of rows.
 class RowStage : public Stage {
  public:
-  RowStage(std::string stage_name, std::string stage_detail, int rows_reached,
-           std::int64_t touched, std::string touched_item)
+  RowStage(std::string stage_name, std::string stage_detail, int rows_reached, std::int64_t touched,
+           std::string touched_item)
       : Stage(std::move(stage_name), std::move(stage_detail), touched, std::move(touched_item)),
         reach(rows_reached) {}
 

@@ -1,12 +1,14 @@
-// Bending by curvature energy, linear in curvature: for an inextensible sheet of flexural rigidity D
+// Bending by curvature energy, linear in curvature: for an inextensible sheet of flexural rigidity
+// D
 //
 //   E = ½ D ∫ |x_uu|² + |x_vv|² + 2 |x_uv|² dA
 //
 // is the energy of a plate without Poisson's effect, and quadratic in the positions (Bergou et al.
-// 2006, "A quadratic bending model for inextensible surfaces"). On the grid, with second differences
-// d of three neighbours in line and the twist t of a cell,
+// 2006, "A quadratic bending model for inextensible surfaces"). On the grid, with second
+// differences d of three neighbours in line and the twist t of a cell,
 //
-//   E = ½ k_u Σ |x_{i-1} - 2 x_i + x_{i+1}|² + the same along v + ½ k_t Σ |x_00 - x_10 - x_01 + x_11|².
+//   E = ½ k_u Σ |x_{i-1} - 2 x_i + x_{i+1}|² + the same along v + ½ k_t Σ |x_00 - x_10 - x_01 +
+//   x_11|².
 //
 // As a force for the explicit methods. For those that project, as compliant constraints d = 0 and
 // t = 0: the second differences of a line together, whose multipliers solve a pentadiagonal system,
@@ -41,8 +43,7 @@ struct AlongRow {
 struct Twist {
   Delay3<1> one;
   WEFT_INLINE Wide3 next(ConstRow3 x, ConstRow3 below, int i, int columns) {
-    const Wide3 all =
-        (load3(x, i) - load3(x, i + 1)) - (load3(below, i) - load3(below, i + 1));
+    const Wide3 all = (load3(x, i) - load3(x, i + 1)) - (load3(below, i) - load3(below, i + 1));
     const Wide3 t = select(lanes_below(columns - 1 - i), all, Wide3{});
     return t - one.next(t);
   }
@@ -67,8 +68,8 @@ void bend_row(const BendRow& given) {
       next = t;
     }
     if (r.rows > 2) {
-      const Wide3 d = (load3(r.x[0], i) - load3(r.x[1], i) * wide(2) + load3(r.x[2], i)) *
-                      wide(r.k.across);
+      const Wide3 d =
+          (load3(r.x[0], i) - load3(r.x[1], i) * wide(2) + load3(r.x[2], i)) * wide(r.k.across);
       own = own - d;
       next = next + d * wide(2);
       push(r, 2, i, Wide3{} - d);
@@ -93,7 +94,9 @@ WEFT_INLINE void bend_block(const BendLine& p, int lane) {
     return Row3{r.x + at, r.y + at, r.z + at};
   };
   const auto position = [&](int m) { return load3(row(p.x, m), 0); };
-  const auto shift = [&](int m, Wide3 by) { change(row(p.x, m), row(p.v, m), p.inverse_dt, 0, by); };
+  const auto shift = [&](int m, Wide3 by) {
+    change(row(p.x, m), row(p.v, m), p.inverse_dt, 0, by);
+  };
   const auto mass = [&](int m) { return load(p.w + lane + m * p.step); };
   const auto scratch = [&](int m) {
     return p.scratch + static_cast<std::ptrdiff_t>(m) * kBendScratch + lane;
@@ -163,8 +166,7 @@ void bend_twist(const TwistRow& given) {
     const Wide wc = load(r.w_below + i), wd = load(r.w_below + i + 1);
     const WideInt chosen =
         (((lane_numbers() + i) & 1) == (r.odd ? 1 : 0)) & lanes_below(r.columns - 1 - i);
-    const Wide3 mu =
-        select(chosen, t * (1.0f / (wa + wb + wc + wd + r.compliance)), Wide3{});
+    const Wide3 mu = select(chosen, t * (1.0f / (wa + wb + wc + wd + r.compliance)), Wide3{});
     const Wide3 by = mu - left.next(mu);
     change(r.x, r.v, r.inverse_dt, i, Wide3{} - by * wa);
     change(r.below, r.v_below, r.inverse_dt, i, by * wc);

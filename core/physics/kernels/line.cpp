@@ -8,10 +8,10 @@
 //       = |e_c| (|e_c| - l + α̃ λ_c),            α̃ = 1/(k dt²)
 //   x_c <- x_c + w_c (μ_c e_c - μ_{c-1} e_{c-1}),  λ_c <- λ_c - μ_c |e_c|
 //
-// the Newton step of the compliant constraints of one line together (Macklin, Müller, Chentanez 2016,
-// with the whole of a line in place of one constraint), by the Thomas algorithm: elimination walks
-// the lines forwards, substitution backwards. A constraint that does not exist or is cut has a
-// pivot's reciprocal of zero: its multiplier is zero and the line falls into two.
+// the Newton step of the compliant constraints of one line together (Macklin, Müller, Chentanez
+// 2016, with the whole of a line in place of one constraint), by the Thomas algorithm: elimination
+// walks the lines forwards, substitution backwards. A constraint that does not exist or is cut has
+// a pivot's reciprocal of zero: its multiplier is zero and the line falls into two.
 #include "physics/kernels/line.h"
 
 #include "physics/kernels/row_kernels.h"
@@ -55,12 +55,18 @@ WEFT_INLINE WideInt on_sheet(const LineStrip& p, int lane) {
   return (lanes >= 0) & (lanes < p.columns);
 }
 
-int quotient_up(int a, int b) { return a <= 0 ? 0 : (a + b - 1) / b; }
-int least(int a, int b) { return a < b ? a : b; }
-int greatest(int a, int b) { return a > b ? a : b; }
+int quotient_up(int a, int b) {
+  return a <= 0 ? 0 : (a + b - 1) / b;
+}
+int least(int a, int b) {
+  return a < b ? a : b;
+}
+int greatest(int a, int b) {
+  return a > b ? a : b;
+}
 
-// A block of kLanes lines: constraints begin … end-1 have a lane on the sheet at both their ends, and
-// of those whole_begin … whole_end-1 have all lanes at both ends.
+// A block of kLanes lines: constraints begin … end-1 have a lane on the sheet at both their ends,
+// and of those whole_begin … whole_end-1 have all lanes at both ends.
 struct Range {
   int begin, end, whole_begin, whole_end;
 };
@@ -85,11 +91,11 @@ Range range_of(const LineStrip& p, int line) {
 template <bool kLambda, bool kVelocity>
 struct Block {
   const LineStrip& p;
-  int line;       // of lane 0
-  int offset;     // of the block in the strip
+  int line;    // of lane 0
+  int offset;  // of the block in the strip
   Range range;
-  Wide3 edge{};   // of the constraint before (elimination) or after (substitution)
-  Wide3 x{};      // of the particle where the next constraint starts
+  Wide3 edge{};  // of the constraint before (elimination) or after (substitution)
+  Wide3 x{};     // of the particle where the next constraint starts
   Wide w{};
   Wide reciprocal{}, right{}, mu{};
   Wide3 pull{};
@@ -108,10 +114,6 @@ struct Block {
 
   template <bool kWhole>
   WEFT_INLINE void eliminate(int m) {
-    if constexpr (!kWhole) {
-      if (m < range.begin || m >= range.end) return;
-      if (m == range.begin) start();
-    }
     const Wide3 far = load3_at(p.x, at(m + 1));
     const Wide w_far = load(p.w + at(m + 1));
     Wide3 e = far - x;
@@ -134,9 +136,17 @@ struct Block {
     x = far;
     w = w_far;
   }
-  WEFT_INLINE void start() {
-    x = load3_at(p.x, at(range.begin));
-    w = load(p.w + at(range.begin));
+  // The same where the block may be partly or wholly off the sheet.
+  WEFT_INLINE void eliminate_at_border(int m) {
+    if (m < range.begin || m >= range.end) return;
+    if (m == range.begin) {
+      x = load3_at(p.x, at(m));
+      w = load(p.w + at(m));
+    }
+    is_whole(m) ? eliminate<true>(m) : eliminate<false>(m);
+  }
+  WEFT_INLINE bool is_whole(int m) const {
+    return m >= range.whole_begin && m < range.whole_end && !p.alive;
   }
 
   // Moves particle m by the pulls of the constraints before and after it.
@@ -145,7 +155,8 @@ struct Block {
     const Wide3 change = by * (inverse_mass * p.share);
     add_to<kWhole>(p.x, m, position, change);
     // As computed: the difference of rounded positions over dt would be mostly rounding.
-    if constexpr (kVelocity) add_to<kWhole>(p.v, m, load3_at(p.v, at(m)), change * wide(p.inverse_dt));
+    if constexpr (kVelocity)
+      add_to<kWhole>(p.v, m, load3_at(p.v, at(m)), change * wide(p.inverse_dt));
   }
   template <bool kWhole>
   WEFT_INLINE void add_to(Row3 r, int m, Wide3 before, Wide3 change) const {
@@ -157,10 +168,6 @@ struct Block {
 
   template <bool kWhole>
   WEFT_INLINE void substitute(int m) {
-    if constexpr (!kWhole) {
-      if (m < range.begin || m >= range.end) return;
-      if (m == range.end - 1) turn_back();
-    }
     const Wide3 near = load3_at(p.x, at(m));
     Wide3 e = x - near;
     if constexpr (!kWhole) e = existing(e, m);
@@ -173,15 +180,17 @@ struct Block {
     edge = e;
     x = near;
     w = load(p.w + at(m));
-    if constexpr (!kWhole)
-      if (m == range.begin) finish();
   }
-  WEFT_INLINE void turn_back() {
-    x = load3_at(p.x, at(range.end));
-    w = load(p.w + at(range.end));
-    edge = Wide3{};
+  WEFT_INLINE void substitute_at_border(int m) {
+    if (m < range.begin || m >= range.end) return;
+    if (m == range.end - 1) {
+      x = load3_at(p.x, at(m + 1));
+      w = load(p.w + at(m + 1));
+      edge = Wide3{};
+    }
+    is_whole(m) ? substitute<true>(m) : substitute<false>(m);
+    if (m == range.begin) shift<false>(m, x, w, pull);
   }
-  WEFT_INLINE void finish() { shift<false>(range.begin, x, w, pull); }
 
   WEFT_INLINE void keep_multiplier(int m) const {
     const Wide before = p.fresh ? Wide{} : load(p.lambda + at(m));
@@ -209,8 +218,13 @@ void solve_blocks(const LineStrip& given, int first) {
   int m = begin;
   const auto eliminate = [&]<bool kWhole>(int to) __attribute__((always_inline)) {
     for (; m < to; ++m) {
-      a.template eliminate<kWhole>(m);
-      if constexpr (kBlocks == 2) b.template eliminate<kWhole>(m);
+      if constexpr (kWhole) {
+        a.template eliminate<true>(m);
+        if constexpr (kBlocks == 2) b.template eliminate<true>(m);
+      } else {
+        a.eliminate_at_border(m);
+        if constexpr (kBlocks == 2) b.eliminate_at_border(m);
+      }
     }
   };
   eliminate.template operator()<false>(whole);
@@ -219,8 +233,13 @@ void solve_blocks(const LineStrip& given, int first) {
   const auto substitute = [&]<bool kWhole>(int from) __attribute__((always_inline)) {
     while (m > from) {
       --m;
-      a.template substitute<kWhole>(m);
-      if constexpr (kBlocks == 2) b.template substitute<kWhole>(m);
+      if constexpr (kWhole) {
+        a.template substitute<true>(m);
+        if constexpr (kBlocks == 2) b.template substitute<true>(m);
+      } else {
+        a.substitute_at_border(m);
+        if constexpr (kBlocks == 2) b.substitute_at_border(m);
+      }
     }
   };
   substitute.template operator()<false>(whole_end);
@@ -231,7 +250,8 @@ void solve_blocks(const LineStrip& given, int first) {
 template <bool kLambda, bool kVelocity>
 void solve(const LineStrip& p) {
   if (kLanes == 16 && p.lines == 32) return solve_blocks<kLambda, kVelocity, 2>(p, 0);
-  for (int first = 0; first < p.lines; first += kLanes) solve_blocks<kLambda, kVelocity, 1>(p, first);
+  for (int first = 0; first < p.lines; first += kLanes)
+    solve_blocks<kLambda, kVelocity, 1>(p, first);
 }
 
 // A 4 by 4 tile from one layout to the other.
@@ -271,13 +291,15 @@ WEFT_INLINE void transpose_quarters(Wide (&v)[4]) {
     return __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
   };
   const auto high = [](Wide a, Wide b) {
-    return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31);
+    return __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15,
+                                   31);
   };
   const auto low_pairs = [](Wide a, Wide b) {
     return __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29);
   };
   const auto high_pairs = [](Wide a, Wide b) {
-    return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+    return __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30,
+                                   31);
   };
   const Wide a = low(v[0], v[1]), b = high(v[0], v[1]), c = low(v[2], v[3]), d = high(v[2], v[3]);
   v[0] = low_pairs(a, c);

@@ -15,27 +15,28 @@ inline constexpr int kStripLines = 32;
 inline constexpr int kStripScratch = 3 * kStripLines;
 
 // A strip of neighbouring lines of one family, each a chain of particles. Particle m of line n lies
-// `n + m*step` floats behind lane 0 of the first row, in lane n + m*lean of its row; it exists where
-// that lane is one of 0 … columns-1. So a line may begin and end at the border in any row.
+// `n + m*step` floats behind lane 0 of the first row, in lane n + m*lean of its row; it exists
+// where that lane is one of 0 … columns-1. So a line may begin and end at the border in any row.
 struct LineStrip {
-  Row3 x;                   // lane 0 of the row where lines start
-  const float* w;           // inverse mass, laid out as x [1/kg]
+  Row3 x;          // lane 0 of the row where lines start
+  const float* w;  // inverse mass, laid out as x [1/kg]
   std::ptrdiff_t step;
-  int particles;            // rows that lines pass through
+  int particles;  // rows that lines pass through
   int lean;
   int columns;
-  int first;                // number of the first line of the strip, a multiple of 16
-  int lines;                // 16 or 32; further ones are not touched
-  float rest;               // m
-  float share;              // factor on the correction
-  Row3 v;                   // velocities, laid out as x; gain corrections times inverse_dt
-  float inverse_dt;         // 1/s; 0 = velocities are not touched
-  const float* compliance;  // [m][kStripLines] of constraint m of each line [1/kg]
+  int first;                       // number of the first line of the strip, a multiple of 16
+  int lines;                       // 16 or 32; further ones are not touched
+  float rest;                      // m
+  float share;                     // factor on the correction
+  Row3 v;                          // velocities, laid out as x; gain corrections times inverse_dt
+  float inverse_dt;                // 1/s; 0 = velocities are not touched
+  const float* compliance;         // [m][kStripLines] of constraint m of each line [1/kg]
   std::ptrdiff_t compliance_step;  // kStripLines, or 0 when all rows are alike
-  const std::int32_t* alive;  // -1 where constraint m of line n holds, 0 cut; laid out as x; or null
-  float* lambda;            // multipliers, laid out as x; null for a single sweep [kg·m]
-  bool fresh;               // the multipliers are still zero, whatever the memory says
-  float* scratch;           // particles * kStripScratch floats
+  const std::int32_t*
+      alive;       // -1 where constraint m of line n holds, 0 cut; laid out as x; or null
+  float* lambda;   // multipliers, laid out as x; null for a single sweep [kg·m]
+  bool fresh;      // the multipliers are still zero, whatever the memory says
+  float* scratch;  // particles * kStripScratch floats
 };
 
 // 16 neighbouring rows of one array as 16 neighbouring lanes, or back: element (row r, column i) is
@@ -45,7 +46,7 @@ struct TransposeRows {
   std::ptrdiff_t stride;
   float* lanes;
   std::ptrdiff_t pitch;
-  bool add;  // lanes_to_rows: add to what the rows hold
+  bool add;       // lanes_to_rows: add to what the rows hold
   int row_count;  // 1 … 16; rows past it are left alone, their lanes hold values of no meaning
   int columns;
 };

@@ -21,7 +21,9 @@ using physics::SecondOrderRow;
 
 namespace {
 
-WEFT_INLINE WideInt equal(Wide3 a, Wide3 b) { return (a.x == b.x) & (a.y == b.y) & (a.z == b.z); }
+WEFT_INLINE WideInt equal(Wide3 a, Wide3 b) {
+  return (a.x == b.x) & (a.y == b.y) & (a.z == b.z);
+}
 
 }  // namespace
 
@@ -43,9 +45,12 @@ void predict_second_order(const SecondOrderRow& given) {
     const Wide3 velocity = (select(smooth, v_star, v) + g * step) * slowed;
     store3(r.previous, i, x);
     store3(r.v_before, i, v);
-    store3(r.x, i, select(free, select(smooth, x_star, x) + velocity * step, x));
+    const Wide3 star = select(smooth, x_star, x);
+    if (r.from_star) store3(r.star, i, star);
+    store3(r.x, i, select(free, star + velocity * step, x));
     // Corrections will be added to v over ⅔h; an Euler step's belong over h.
-    store3(r.v, i, select(free, velocity * select(smooth, wide(1), wide(1.5f)), v));
+    if (!r.from_star)
+      store3(r.v, i, select(free, velocity * select(smooth, wide(1), wide(1.5f)), v));
     store(r.w + i, mass * select(smooth, wide(slow2), wide(slow * 2.25f)));
   }
 }
@@ -56,7 +61,11 @@ void velocity_second_order(const SecondOrderRow& given) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide mass = load(r.mass + i);
     const WideInt euler = load(r.w + i) > mass * slow2;
-    const Wide3 v = load3(r.v, i) * select(euler, wide(2.0f / 3.0f), wide(1));
+    Wide3 v;
+    if (!r.from_star)
+      v = load3(r.v, i) * select(euler, wide(2.0f / 3.0f), wide(1));
+    else
+      v = (load3(r.x, i) - load3(r.star, i)) * select(euler, wide(1 / r.dt), wide(1.5f / r.dt));
     store3(r.v, i, v);
     store3(r.v_end, i, v);
     store(r.w + i, mass);

@@ -1,5 +1,5 @@
-// What the kernels of the second-order substep and of the tethers work on (kernels/second_order.cpp,
-// kernels/tethers.cpp).
+// What the kernels of the second-order substep and of the tethers work on
+// (kernels/second_order.cpp, kernels/tethers.cpp).
 #pragma once
 
 #include "physics/kernels/kernels.h"
@@ -12,6 +12,8 @@ struct SecondOrderRow {
   Row3 x, v;
   Row3 previous;      // x of the substep before; receives x [m]
   Row3 v_before;      // v of the substep before; receives v [m/s]
+  Row3 star;          // receives where the substep starts from, x* [m]
+  bool from_star;     // the velocity is (x - x*) over the step, not v as it is
   Row3 v_end;         // v as the substep before left it [m/s]
   float* w;           // inverse mass, scaled while the constraints are solved [1/kg]
   const float* mass;  // inverse mass proper [1/kg]

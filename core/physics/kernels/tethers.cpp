@@ -1,5 +1,5 @@
-// Tethers: a particle farther from its pin p than its rest distance r over the sheet is put back onto
-// that distance, x <- p + r (x - p)/|x - p| (Kim, Chentanez, Müller-Fischer 2012, "Long range
+// Tethers: a particle farther from its pin p than its rest distance r over the sheet is put back
+// onto that distance, x <- p + r (x - p)/|x - p| (Kim, Chentanez, Müller-Fischer 2012, "Long range
 // attachments"; pins do not move, so the particle takes the whole correction).
 #include "physics/kernels/row_kernels.h"
 #include "physics/kernels/second_order.h"

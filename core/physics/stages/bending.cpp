@@ -69,7 +69,7 @@ class BendingConstraints final : public WholeStage {
     const BendingStiffness k = bending_stiffness(parts_.cloth);
     const double h = s.dt * implicit_share(parts_.scene.solver);
     const auto compliance = [&](double stiffness) { return float(1 / (stiffness * h * h)); };
-    inverse_dt_ = compliant_ ? float(1 / h) : 0;
+    inverse_dt_ = velocity_gain(parts_.scene.solver, compliant_, s.dt);
     strips_.run(threads, [&] {
       along_rows(compliance(k.along));
       along_columns(compliance(k.across));
@@ -80,32 +80,31 @@ class BendingConstraints final : public WholeStage {
  private:
   void along_rows(float compliance) {
     const Lattice& l = parts_.lattice;
-    strips_.share_out(
-        strips_.row_groups(), kDifferenceNs * kStripLines * l.columns,
-        [&](int group, StripMemory& memory) {
-          strips_.turned(group, memory, inverse_dt_ > 0, [&](int rows) {
-            for (int first = 0; first < rows; first += kBendLines) {
-              const Row3 x = memory.tile.row(0);
-              BendLine p{};
-              p.x = {x.x + first, x.y + first, x.z + first};
-              const Row3 v = memory.gained.row(0);
-              p.v = {v.x + first, v.y + first, v.z + first};
-              p.inverse_dt = inverse_dt_;
-              p.w = strips_.masses(group) + first;
-              p.step = kStripLines;
-              p.particles = l.columns;
-              p.compliance = compliance;
-              p.scratch = memory.scratch.data();
-              parts_.kernels.bend_line(p);
-            }
-          });
-        });
+    strips_.share_out(strips_.row_groups(), kDifferenceNs * kStripLines * l.columns,
+                      [&](int group, StripMemory& memory) {
+                        strips_.turned(group, memory, inverse_dt_ > 0, [&](int rows) {
+                          for (int first = 0; first < rows; first += kBendLines) {
+                            const Row3 x = memory.tile.row(0);
+                            BendLine p{};
+                            p.x = {x.x + first, x.y + first, x.z + first};
+                            const Row3 v = memory.gained.row(0);
+                            p.v = {v.x + first, v.y + first, v.z + first};
+                            p.inverse_dt = inverse_dt_;
+                            p.w = strips_.masses(group) + first;
+                            p.step = kStripLines;
+                            p.particles = l.columns;
+                            p.compliance = compliance;
+                            p.scratch = memory.scratch.data();
+                            parts_.kernels.bend_line(p);
+                          }
+                        });
+                      });
   }
 
   void along_columns(float compliance) {
     Lattice& l = parts_.lattice;
-    strips_.share_out((l.columns + kBendLines - 1) / kBendLines, kDifferenceNs * kBendLines * l.rows,
-                      [&](int strip, StripMemory& memory) {
+    strips_.share_out((l.columns + kBendLines - 1) / kBendLines,
+                      kDifferenceNs * kBendLines * l.rows, [&](int strip, StripMemory& memory) {
                         const Row3 x = l.x.row(0), v = l.v.row(0);
                         const int first = strip * kBendLines;
                         BendLine p{};
@@ -124,24 +123,23 @@ class BendingConstraints final : public WholeStage {
   void twist(float compliance) {
     Lattice& l = parts_.lattice;
     for (int colour = 0; colour < 2; ++colour)
-      strips_.share_out((l.rows - colour) / 2, kTwistNs * l.columns,
-                        [&](int pair, StripMemory&) {
-                          const int j = 2 * pair + colour;
-                          TwistRow r{};
-                          r.columns = l.columns;
-                          r.x = l.x.row(j);
-                          r.below = l.x.row(j + 1);
-                          r.v = l.v.row(j);
-                          r.v_below = l.v.row(j + 1);
-                          r.inverse_dt = inverse_dt_;
-                          r.w = l.w(j);
-                          r.w_below = l.w(j + 1);
-                          r.compliance = compliance;
-                          for (const bool odd : {false, true}) {
-                            r.odd = odd;
-                            parts_.kernels.bend_twist(r);
-                          }
-                        });
+      strips_.share_out((l.rows - colour) / 2, kTwistNs * l.columns, [&](int pair, StripMemory&) {
+        const int j = 2 * pair + colour;
+        TwistRow r{};
+        r.columns = l.columns;
+        r.x = l.x.row(j);
+        r.below = l.x.row(j + 1);
+        r.v = l.v.row(j);
+        r.v_below = l.v.row(j + 1);
+        r.inverse_dt = inverse_dt_;
+        r.w = l.w(j);
+        r.w_below = l.w(j + 1);
+        r.compliance = compliance;
+        for (const bool odd : {false, true}) {
+          r.odd = odd;
+          parts_.kernels.bend_twist(r);
+        }
+      });
   }
 
   ClothParts parts_;

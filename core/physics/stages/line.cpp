@@ -1,12 +1,13 @@
 // Stage "line": sweeps over the constraint families in which every line of a family (a row, column
-// or diagonal; for offsets of n every n-th particle of one) is solved as a whole (kernels/line.cpp).
+// or diagonal; for offsets of n every n-th particle of one) is solved as a whole
+// (kernels/line.cpp).
 //
-// Families are taken one after the other, what matters most last: bend and shear, then columns, then
-// rows, whose structural constraints are left exactly solved. (At 12 substeps a frame the greatest
-// strain of a hanging sheet of 100 x 100 is 0.5 % in this order, 1.6 % with the diagonals last.)
-// Lines of one family share no particle, so strips of them go to the threads in any order with the
-// same result. Rows are turned into lanes first, 32 at a time, and all families along the rows are
-// solved on them before they are turned back.
+// Families are taken one after the other, what matters most last: bend and shear, then columns,
+// then rows, whose structural constraints are left exactly solved. (At 12 substeps a frame the
+// greatest strain of a hanging sheet of 100 x 100 is 0.5 % in this order, 1.6 % with the diagonals
+// last.) Lines of one family share no particle, so strips of them go to the threads in any order
+// with the same result. Rows are turned into lanes first, 32 at a time, and all families along the
+// rows are solved on them before they are turned back.
 #include <algorithm>
 #include <cmath>
 
@@ -34,12 +35,12 @@ struct LineFamily {
 class Line final : public WholeStage {
  public:
   Line(const ClothParts& parts, const LineOptions& options)
-      : WholeStage("line",
-                   std::to_string(parts.families.size()) + " families, each line solved as a whole" +
-                       (options.iterations > 1
-                            ? ", " + std::to_string(options.iterations) + " sweeps"
-                            : ""),
-                   parts.constraints() * options.iterations, "constraints"),
+      : WholeStage(
+            "line",
+            std::to_string(parts.families.size()) + " families, each line solved as a whole" +
+                (options.iterations > 1 ? ", " + std::to_string(options.iterations) + " sweeps"
+                                        : ""),
+            parts.constraints() * options.iterations, "constraints"),
         parts_(parts),
         options_(options),
         strips_(parts.lattice, parts.kernels, kStripScratch) {
@@ -87,14 +88,13 @@ class Line final : public WholeStage {
     for (LineFamily& l : between_rows_)
       for (int start = 0; start < l.family->dj; ++start) solve_between(l, start, fresh);
     if (along_rows_.empty()) return;
-    strips_.share_out(strips_.row_groups(),
-                      kConstraintNs * kStripLines * parts_.lattice.columns *
-                          double(along_rows_.size()),
-                      [&](int group, StripMemory& memory) {
-                        strips_.turned(group, memory, options_.compliant, [&](int rows) {
-                          solve_rows(group, rows, fresh, memory);
-                        });
-                      });
+    strips_.share_out(
+        strips_.row_groups(),
+        kConstraintNs * kStripLines * parts_.lattice.columns * double(along_rows_.size()),
+        [&](int group, StripMemory& memory) {
+          strips_.turned(group, memory, inverse_dt() > 0,
+                         [&](int rows) { solve_rows(group, rows, fresh, memory); });
+        });
   }
 
   void solve_between(LineFamily& l, int start, bool fresh) {
@@ -106,16 +106,15 @@ class Line final : public WholeStage {
     const int first = -strips_left * kStripLines;
     const int lines = parts_.lattice.columns + (f.di > 0 ? -first : leaning);
     const int strips = (lines + kStripLines - 1) / kStripLines;
-    strips_.share_out(
-        strips, kConstraintNs * particles * parts_.lattice.columns / strips,
-        [&](int strip, StripMemory& memory) {
-          LineStrip p = between_rows(l, start, particles);
-          p.first = first + strip * kStripLines;
-          p.lines = lines - strip * kStripLines <= 16 ? 16 : kStripLines;
-          p.fresh = fresh;
-          p.scratch = memory.scratch.data();
-          parts_.kernels.line_strip(p);
-        });
+    strips_.share_out(strips, kConstraintNs * particles * parts_.lattice.columns / strips,
+                      [&](int strip, StripMemory& memory) {
+                        LineStrip p = between_rows(l, start, particles);
+                        p.first = first + strip * kStripLines;
+                        p.lines = lines - strip * kStripLines <= 16 ? 16 : kStripLines;
+                        p.fresh = fresh;
+                        p.scratch = memory.scratch.data();
+                        parts_.kernels.line_strip(p);
+                      });
   }
 
   LineStrip between_rows(LineFamily& l, int start, int particles) {
@@ -164,9 +163,7 @@ class Line final : public WholeStage {
     }
   }
 
-  float inverse_dt() const {
-    return options_.compliant ? float(1 / (dt_ * implicit_share(parts_.scene.solver))) : 0.0f;
-  }
+  float inverse_dt() const { return velocity_gain(parts_.scene.solver, options_.compliant, dt_); }
   void set_compliance(double dt) {
     dt_ = dt;
     for (LineFamily& l : along_rows_)
@@ -186,7 +183,6 @@ class Line final : public WholeStage {
   double dt_ = 0;
   double least_ = 0;  // 1/kg
   std::vector<LineFamily> along_rows_, between_rows_;
-
 };
 
 }  // namespace

@@ -36,10 +36,12 @@ class Predict final : public RowStage {
 
 class Velocity final : public RowStage {
  public:
-  explicit Velocity(const ClothParts& parts)
+  Velocity(const ClothParts& parts, bool compliant)
       : RowStage("velocity", "from the change of position", 0, parts.particles(), "particles"),
-        parts_(parts) {}
+        parts_(parts),
+        compliant_(compliant) {}
   void run(int j, const Substep& s) override {
+    if (!velocity_from_positions(parts_.scene.solver, compliant_, s.dt)) return;
     AdvanceRow a = row_of(parts_, j);
     a.inverse_dt = float(1 / s.dt);
     parts_.kernels.velocity(a);
@@ -47,6 +49,7 @@ class Velocity final : public RowStage {
 
  private:
   ClothParts parts_;
+  bool compliant_;
 };
 
 }  // namespace
@@ -69,8 +72,8 @@ std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* mul
   return std::make_unique<Predict>(parts, multipliers);
 }
 
-std::unique_ptr<RowStage> make_velocity(const ClothParts& parts) {
-  return std::make_unique<Velocity>(parts);
+std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant) {
+  return std::make_unique<Velocity>(parts, compliant);
 }
 
 }  // namespace weft::physics

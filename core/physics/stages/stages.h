@@ -27,7 +27,7 @@ Advance advance_of(const ClothParts& parts, double dt);
 
 std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped);
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, struct Multipliers* multipliers);
-std::unique_ptr<RowStage> make_velocity(const ClothParts& parts);
+std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant);
 std::unique_ptr<RowStage> make_keyed_pins(const ClothParts& parts);
 class Topology;
 std::unique_ptr<RowStage> make_tear(const ClothParts& parts, Topology& topology);
@@ -61,13 +61,20 @@ void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
 struct History {
   explicit History(const Lattice& lattice);
   std::size_t bytes() const {
-    return v_before.bytes() + v_end.bytes() + inverse_mass.size() * sizeof(float);
+    return v_before.bytes() + v_end.bytes() + star.bytes() + inverse_mass.size() * sizeof(float);
   }
-  Rows v_before, v_end;
+  Rows v_before, v_end, star;
   AlignedArray<float> inverse_mass;
 };
 // The share of the substep over which constraint forces act.
 double implicit_share(const Solver& solver);
+
+// Where the velocity after the sweeps comes from: from the positions, or, where their rounding over
+// dt would show, from every correction as it is computed (which costs a line sweep a fourth more).
+// `positional` always takes the positions, the coloured sweeps of `compliant` never do.
+bool velocity_from_positions(const Solver& solver, bool compliant, double dt);
+// 1/s; what stages that move particles multiply corrections by to get their velocity: 0 = nothing.
+float velocity_gain(const Solver& solver, bool compliant, double dt);
 std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
                                                     Multipliers* multipliers);
 std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history);

@@ -19,8 +19,8 @@ namespace weft::physics {
 // The memory of one thread.
 struct StripMemory {
   AlignedArray<float> scratch;
-  Rows tile;              // kStripLines rows as lanes: [column][kStripLines] of x, y, z
-  Rows gained;            // velocity that the solution adds, laid out as the tile
+  Rows tile;    // kStripLines rows as lanes: [column][kStripLines] of x, y, z
+  Rows gained;  // velocity that the solution adds, laid out as the tile
 };
 
 class Strips {

@@ -34,15 +34,17 @@ class ProjectedFamily {
     rows_.dj = family_.dj;
     rows_.rest = float(family_.rest);
     rows_.weight = 1;
-    rows_.inverse_dt = float(1 / dt);
     if (family_.links) rows_.alive = family_.links->row(0);
     if (options_.limit > 0) {
       rows_.rest = float(family_.rest * (1 + options_.limit));
       rows_.limit = true;
+      rows_.inverse_dt = float(1 / dt);
     } else if (options_.compliant) {
       for (int j = 0; j < l.rows; ++j) compliance_[j] = compliance_of(parts_, family_, j, dt);
-      rows_.inverse_dt = float(1 / (dt * implicit_share(parts_.scene.solver)));
       rows_.compliance = compliance_.data();
+      // The velocity gains each correction as computed: the difference of rounded positions would
+      // be off by their rounding over dt, which a small substep's force does not outweigh.
+      rows_.inverse_dt = float(1 / (dt * implicit_share(parts_.scene.solver)));
       if (options_.multipliers) rows_.lambda = options_.multipliers->row(index_, 0);
     } else {
       rows_.weight = float(1 / (2 * parts_.cloth.positional_k));
@@ -139,7 +141,7 @@ class Jacobi final : public RowStage {
       : RowStage("jacobi", "all families, corrections added up and relaxed", reach,
                  parts.constraints(), "constraints"),
         parts_(parts),
-        compliant_(options.compliant) {
+        keeps_velocity_(options.compliant) {
     for (std::size_t f = 0; f < parts.families.size(); ++f)
       families_.emplace_back(parts, options, f);
   }
@@ -165,13 +167,14 @@ class Jacobi final : public RowStage {
     a.x = l.x.row(j);
     a.v = l.v.row(j);
     a.f = sum(j);
-    a.inverse_dt = compliant_ ? float(1 / (s.dt * implicit_share(parts_.scene.solver))) : 0.0f;
+    a.inverse_dt =
+        keeps_velocity_ ? float(1 / (s.dt * implicit_share(parts_.scene.solver))) : 0.0f;
     parts_.kernels.apply_corrections(a);
   }
 
  private:
   ClothParts parts_;
-  bool compliant_;
+  bool keeps_velocity_;
   std::vector<ProjectedFamily> families_;
   Rows sum_;  // reach+1 rows in turn per slot
 };

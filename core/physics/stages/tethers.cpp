@@ -42,8 +42,8 @@ std::vector<Place> nearest(const ClothParts& parts, int side_i, int side_j) {
     for (int a = 0; a < l.columns; ++a) {
       const int i = side_i > 0 ? l.columns - 1 - a : a, j = side_j > 0 ? l.rows - 1 - b : b;
       Place& here = best[std::size_t(j) * l.columns + i];
-      for (const auto& [di, dj] : {std::array{side_i, 0}, std::array{0, side_j},
-                                   std::array{side_i, side_j}}) {
+      for (const auto& [di, dj] :
+           {std::array{side_i, 0}, std::array{0, side_j}, std::array{side_i, side_j}}) {
         const int ni = i + di, nj = j + dj;
         if (ni < 0 || nj < 0 || ni >= l.columns || nj >= l.rows) continue;
         const Place& there = best[std::size_t(nj) * l.columns + ni];
@@ -108,7 +108,7 @@ class Tethers final : public RowStage {
       r.columns = parts_.lattice.columns;
       r.x = parts_.lattice.x.row(j);
       r.v = parts_.lattice.v.row(j);
-      if (compliant_) r.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
+      r.inverse_dt = velocity_gain(parts_.scene.solver, compliant_, s.dt);
       r.pin = slot.pin.row(j);
       r.reach = slot.reach.data() + std::size_t(j) * parts_.lattice.stride;
       parts_.kernels.tethers(r);
@@ -158,8 +158,8 @@ std::unique_ptr<RowStage> make_tethers(const ClothParts& parts, bool compliant) 
   if (parts.cloth.pins.empty()) return nullptr;
   // Slot s of a particle holds its s-th tether, so that few pins fill few slots.
   std::vector<std::vector<Place>> slots;
-  std::array<std::vector<Place>, kQuadrants> found{
-      nearest(parts, -1, -1), nearest(parts, 1, -1), nearest(parts, -1, 1), nearest(parts, 1, 1)};
+  std::array<std::vector<Place>, kQuadrants> found{nearest(parts, -1, -1), nearest(parts, 1, -1),
+                                                   nearest(parts, -1, 1), nearest(parts, 1, 1)};
   std::int64_t count = 0;
   for (std::size_t p = 0; p < found[0].size(); ++p) {
     const int i = int(p) % l.columns, j = int(p) / l.columns;

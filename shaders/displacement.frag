@@ -1,0 +1,8 @@
+// The raised surface with the bumps' normals, under Blinn-Phong.
+#include "common.glsl"
+
+void main() {
+  Surface s = seen_surface();
+  s.normal = bumped_normal(s);
+  finish(blinn_phong(s, base_color(s)));
+}

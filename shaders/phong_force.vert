@@ -1,0 +1,4 @@
+// The surface with its forces.
+#include "common.glsl"
+
+void main() { surface_vertex(0.0); }

@@ -1,0 +1,69 @@
+// The program without a window: simulate, draw, write.
+#include "headless.h"
+
+#include <iostream>
+#include <numbers>
+
+#include "failure.h"
+#include "surfaceless.h"
+
+namespace weft::viewer {
+
+SceneFile load_scene(const Arguments& arguments) {
+  std::string name = arguments.scene;
+  if (name.empty()) {
+    const std::vector<ShippedScene> shipped = shipped_scenes();
+    if (shipped.empty()) throw Failure(kBadScene, "no scene is named and none is shipped here");
+    name = shipped.front().path;
+  }
+  SceneFile file = read_scene(name, arguments.overrides);
+  if (file.faults.empty()) return file;
+  std::string text;
+  for (const Fault& fault : file.faults) {
+    text += (text.empty() ? "" : "\n") + (file.path.empty() ? name : file.path) + ":" +
+            fault.place + ": " + fault.what +
+            (fault.allowed.empty() ? "" : " (" + fault.allowed + ")");
+  }
+  throw Failure(kBadScene, text);
+}
+
+void aim(const Arguments& arguments, Camera& camera) {
+  constexpr double degree = std::numbers::pi / 180;
+  camera.turn_to(static_cast<float>(arguments.azimuth.value_or(30) * degree),
+                 static_cast<float>(arguments.elevation.value_or(17) * degree));
+}
+
+void render_picture(const Arguments& arguments) {
+  const SceneFile file = load_scene(arguments);
+  const SurfacelessContext context;
+  Options options;
+  options.threads = arguments.threads;
+  options.seed = arguments.seed;
+  Simulation simulation(file.scene, options);
+
+  Snapshot snapshot;
+  snapshot.scene = std::make_shared<const Scene>(file.scene);
+  copy_view(simulation.view(), snapshot);
+  const Setting setting = setting_of(snapshot);
+  while (simulation.frame() < arguments.frames && simulation.status().ok)
+    simulation.advance_frame();
+  copy_view(simulation.view(), snapshot);
+  snapshot.frame = simulation.frame();
+
+  Renderer renderer(arguments.pictures);
+  const RenderTarget target(arguments.width, arguments.height, 8);
+  const float aspect = static_cast<float>(arguments.width) / static_cast<float>(arguments.height);
+  Camera camera;
+  aim(arguments, camera);
+  camera.frame(visible_bounds(snapshot), aspect);
+  camera.zoom(static_cast<float>(std::log(arguments.zoom) / -std::log(0.88)));
+  renderer.draw(snapshot, setting, *find_look(arguments.look), arguments.settings, camera, target);
+  std::string problems;
+  for (const std::string& problem : renderer.problems()) problems += problem + "\n";
+  if (!problems.empty()) throw Failure(kNoGraphics, problems);
+  write_png(arguments.out, target.read());
+  if (!simulation.status().ok)
+    throw Failure(kStopped, "the simulation stopped itself: " + simulation.status().text);
+}
+
+}  // namespace weft::viewer

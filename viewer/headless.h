@@ -1,0 +1,17 @@
+// One picture without a window.
+#pragma once
+
+#include "command_line.h"
+
+namespace weft::viewer {
+
+// Simulates to the frame asked for and writes its picture. Throws Failure.
+void render_picture(const Arguments& arguments);
+
+// The scene of the arguments; throws Failure that names every fault.
+SceneFile load_scene(const Arguments& arguments);
+
+// Turns the camera as the arguments ask.
+void aim(const Arguments& arguments, Camera& camera);
+
+}  // namespace weft::viewer

@@ -1,0 +1,34 @@
+// The program weft-viewer: a window, or one picture without any.
+#include <cstdio>
+#include <exception>
+
+#include "command_line.h"
+#include "failure.h"
+#include "headless.h"
+
+namespace weft::viewer {
+
+namespace {
+
+int run(int count, char** words) {
+  Arguments arguments;
+  if (const auto code = parse_arguments(count, words, arguments)) return *code;
+  if (arguments.headless) render_picture(arguments);
+  return kDone;
+}
+
+}  // namespace
+
+}  // namespace weft::viewer
+
+int main(int count, char** words) {
+  try {
+    return weft::viewer::run(count, words);
+  } catch (const weft::viewer::Failure& failure) {
+    std::fprintf(stderr, "weft-viewer: error: %s\n", failure.what());
+    return failure.code;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "weft-viewer: error: internal: %s\n", error.what());
+    return weft::viewer::kStopped;
+  }
+}

@@ -1,0 +1,72 @@
+// What the graphics card holds: the cloth's surface, streamed anew for every snapshot, and the
+// unchanging bodies of the colliders and the floor.
+#pragma once
+
+#include <vector>
+
+#include "gl.h"
+#include "look.h"
+#include "surface.h"
+
+namespace weft::viewer {
+
+// Vertex attributes, as common.glsl numbers them.
+enum Attribute : GLuint { kPosition = 0, kNormal = 3, kTexture = 6, kForce = 7, kStrain = 10 };
+
+class ClothMesh {
+ public:
+  ClothMesh();
+
+  // Computes the surface as the look needs it and uploads it; the triangles only when they change.
+  void update(const ClothCopy& cloth, const Cloth& description, const Look& look, int refinement);
+
+  void draw_surface() const;
+  // One kind of constraint, as lines between particles; needs refinement 1.
+  enum Kind { structural, shear, bend };
+  void draw_lines(Kind kind) const;
+  void draw_points() const;
+
+  int vertices() const { return surface_.columns * surface_.rows; }
+
+ private:
+  struct Range {
+    GLsizei count = 0;
+    std::size_t offset = 0;  // indices
+  };
+
+  void upload_vertices();
+  void upload_topology(const ClothCopy& cloth, const Cloth& description);
+
+  ClothSurface surface_;
+  VertexArray array_;
+  Buffer vertices_, coordinates_, indices_;
+  Range triangles_, lines_[3];
+  int columns_ = 0, rows_ = 0, refinement_ = 0, level_ = -1;
+  Kinds kinds_;
+  std::uint64_t topology_ = ~std::uint64_t{0};
+};
+
+// Triangles with positions, normals and texture coordinates.
+class BodyMesh {
+ public:
+  struct Vertex {
+    Vec3f position, normal;
+    float u, v;
+  };
+  BodyMesh(const std::vector<Vertex>& vertices, const std::vector<std::uint32_t>& indices);
+  void draw() const;
+
+ private:
+  VertexArray array_;
+  Buffer vertices_, indices_;
+  GLsizei count_;
+};
+
+// The collider's shape where it stands; `size` [m] is how far a plane is drawn, `tessellation` the
+// number of faces around a sphere.
+BodyMesh make_body(const Shape& shape, float size, int tessellation);
+
+// A level square of the given half side.
+BodyMesh make_floor(Vec3f center, float half);
+
+}  // namespace weft::viewer
