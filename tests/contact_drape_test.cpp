@@ -1,5 +1,5 @@
-// Sheets draped on every shape: nothing below the surface, the same bits everywhere, and rows out of
-// reach left alone.
+// Sheets draped on every shape: nothing below the surface, the same bits everywhere, and rows out
+// of reach left alone.
 #include <cstdio>
 
 #include "contact_scenes.h"

@@ -149,7 +149,8 @@ TEST(ContactFriction, StripOverACylinderSlipsAtTheCapstanRatio) {
     const double truth = std::exp(mu * M_PI);
     double low = 1, high = 2 * truth;
     for (int n = 0; n < 8; ++n) (slips(mu, (low + high) / 2) ? high : low) = (low + high) / 2;
-    std::printf("capstan, mu %.1f: slips at %.3f (e^(mu pi) = %.3f)\n", mu, (low + high) / 2, truth);
+    std::printf("capstan, mu %.1f: slips at %.3f (e^(mu pi) = %.3f)\n", mu, (low + high) / 2,
+                truth);
     EXPECT_NEAR((low + high) / 2 / truth, 1, 0.08);
   }
 }

@@ -92,8 +92,11 @@ TEST(ContactHand, GustsFollowTheSeedAndNothingElse) {
   scene.cloths[0].pins = {{0, 0, {}}, {69, 0, {}}};
   scene.wind = {{4, 0, 2}, 0.5, 0.2, 0.6};
   std::vector<std::uint64_t> hashes;
-  for (const Options& o : {Options{1, Simd::best, 1, false}, {3, Simd::best, 1, false},
-                           {1, Simd::scalar, 1, false}, {1, Simd::avx2, 1, false}, {1, Simd::best, 2, false}}) {
+  for (const Options& o : {Options{1, Simd::best, 1, false},
+                           {3, Simd::best, 1, false},
+                           {1, Simd::scalar, 1, false},
+                           {1, Simd::avx2, 1, false},
+                           {1, Simd::best, 2, false}}) {
     Simulation simulation(scene, o);
     advance(simulation, 0.3);
     hashes.push_back(simulation.hash());

@@ -1,4 +1,5 @@
-// Colliders as geometry: distances, normals and triangles agree with each other and with the kernels.
+// Colliders as geometry: distances, normals and triangles agree with each other and with the
+// kernels.
 #include <map>
 #include <random>
 
@@ -41,7 +42,8 @@ TEST(ContactShapes, NormalIsTheGradientOfTheDistance) {
               Vec3 up = p, down = p;
               up[k] += h;
               down[k] -= h;
-              const double slope = (nearest_of(s, up).distance - nearest_of(s, down).distance) / (2 * h);
+              const double slope =
+                  (nearest_of(s, up).distance - nearest_of(s, down).distance) / (2 * h);
               kink = std::max(kink, std::abs(slope - here.normal[k]));
             }
             EXPECT_LT(kink, 1e-5) << shape.index();
@@ -127,7 +129,8 @@ TEST(ContactShapes, KeysMoveAnyShape) {
     EXPECT_NEAR(displacement(c, 1)[1], -1, 1e-12);
     Collider still = c;
     still.keys.clear();
-    EXPECT_NEAR(signed_distance(c, 1, {0.7, 0.1, 0.3}), signed_distance(still, 0, {0.2, 1.1, 0.3}), 1e-12);
+    EXPECT_NEAR(signed_distance(c, 1, {0.7, 0.1, 0.3}), signed_distance(still, 0, {0.2, 1.1, 0.3}),
+                1e-12);
   }
 }
 

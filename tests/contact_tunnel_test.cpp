@@ -26,7 +26,8 @@ TEST(ContactTunnel, FastParticlesStopAtThinColliders) {
       simulation.set_state(x, v);
       advance(simulation, 0.5);
       for (std::size_t p = 0; p < v.size() / 3; ++p)
-        EXPECT_GT(at(simulation.positions(), p)[1], 0) << shape.index() << " at " << speed << " m/s";
+        EXPECT_GT(at(simulation.positions(), p)[1], 0)
+            << shape.index() << " at " << speed << " m/s";
     }
 }
 
@@ -82,10 +83,10 @@ double height_below(const Simulation& simulation, double x, double z) {
 }
 
 TEST(ContactTunnel, SmallCollidersDoNotSlipBetweenParticles) {
-  const std::vector<Shape> small = {
-      Sphere{{0.04, 0.2, 0.03}, 0.02}, Capsule{{0.04, 0.2, 0.03}, {0.04, 0.4, 0.03}, 0.01},
-      Box{{0.04, 0.2, 0.03}, {0.02, 0.02, 0.02}, {30, 0, 40}, 0.002},
-      Box{{0.04, 0.2, 0.03}, {0.02, 0.02, 0.02}, {45, 35.26, 0}, 0}};
+  const std::vector<Shape> small = {Sphere{{0.04, 0.2, 0.03}, 0.02},
+                                    Capsule{{0.04, 0.2, 0.03}, {0.04, 0.4, 0.03}, 0.01},
+                                    Box{{0.04, 0.2, 0.03}, {0.02, 0.02, 0.02}, {30, 0, 40}, 0.002},
+                                    Box{{0.04, 0.2, 0.03}, {0.02, 0.02, 0.02}, {45, 35.26, 0}, 0}};
   for (const Shape& shape : small)
     for (const double speed : {0.2, 2.0, 20.0}) {
       const double seconds = 0.35 / speed;

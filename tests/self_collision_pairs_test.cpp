@@ -42,7 +42,8 @@ std::set<Pair> all_pairs(const std::vector<std::unique_ptr<ClothStep>>& cloths, 
       for (int k = 0; k < 3; ++k) square += (b.x[k] - a.x[k]) * (b.x[k] - a.x[k]);
       if (square >= range * range) continue;
       const Grid& g = scene.cloths[std::size_t(a.site[0])].grid;
-      const double di = (a.site[2] - b.site[2]) * spacing_u(g), dj = (a.site[1] - b.site[1]) * spacing_v(g);
+      const double di = (a.site[2] - b.site[2]) * spacing_u(g),
+                   dj = (a.site[1] - b.site[1]) * spacing_v(g);
       const double near = 1.3 * scene.cloths[std::size_t(a.site[0])].self_collision.thickness;
       if (a.site[0] == b.site[0] && std::hypot(di, dj) < near) continue;
       pairs.insert({a.site, b.site});
@@ -62,8 +63,8 @@ TEST(SelfCollisionPairs, SearchFindsWhatBruteForceFinds) {
       std::mt19937 random(3);
       std::uniform_real_distribution<float> within(0, float(size));
       for (int c = 0; c < 2; ++c) {
-        cloths.push_back(std::make_unique<ClothStep>(scene, c, Method::spring, 1,
-                                                     physics::kernel_table(simd)));
+        cloths.push_back(
+            std::make_unique<ClothStep>(scene, c, Method::spring, 1, physics::kernel_table(simd)));
         physics::Lattice& l = cloths.back()->lattice();
         for (int j = 0; j < l.rows; ++j)
           for (int i = 0; i < l.columns; ++i)
@@ -76,7 +77,8 @@ TEST(SelfCollisionPairs, SearchFindsWhatBruteForceFinds) {
       std::size_t listed = 0;
       for (std::size_t a = 0; a < found.site.size(); ++a)
         for (auto k = found.first[a]; k < found.first[a + 1]; ++k) {
-          const physics::Site &p = found.site[a], &q = found.site[std::size_t(found.neighbour[std::size_t(k)])];
+          const physics::Site &p = found.site[a],
+                              &q = found.site[std::size_t(found.neighbour[std::size_t(k)])];
           pairs.insert({{p.cloth, p.row, p.column}, {q.cloth, q.row, q.column}});
           ++listed;
         }
@@ -87,7 +89,8 @@ TEST(SelfCollisionPairs, SearchFindsWhatBruteForceFinds) {
 }
 
 TEST(SelfCollisionPairs, CrossingsAreCountedOncePerEdgeAndTriangle) {
-  const std::vector<Vec3> x = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {0.2, -1, 0.2}, {0.2, 1, 0.2}, {5, 1, 5}};
+  const std::vector<Vec3> x = {{0, 0, 0},      {1, 0, 0},     {0, 0, 1},
+                               {0.2, -1, 0.2}, {0.2, 1, 0.2}, {5, 1, 5}};
   EXPECT_EQ(physics::count_crossings(x, {{0, 1, 2}, {3, 4, 5}}), 2);  // two edges pass
   EXPECT_EQ(physics::count_crossings(x, {{0, 1, 2}, {0, 4, 5}}), 0);  // a shared corner
 }
@@ -128,8 +131,10 @@ TEST(SelfCollisionPairs, FrictionCarriesAnUpperSheetAlong) {
     advance(simulation, 0.12);
     const double slid = at(simulation.positions(), 144 + 66)[0] - start;
     std::printf("friction %.1f: slid %.4f m\n", friction, slid);
-    if (friction == 0) EXPECT_GT(slid, 0.01);
-    else EXPECT_LT(slid, 0.009);
+    if (friction == 0)
+      EXPECT_GT(slid, 0.01);
+    else
+      EXPECT_LT(slid, 0.009);
   }
 }
 
@@ -155,7 +160,9 @@ TEST(SelfCollisionPairs, SameBitsForAnyThreadsAndInstructionSet) {
   scene.cloths[0].stiffness = {1000, 500, 20};
   scene.colliders.push_back(collider_of(Plane{}, 0.5));
   std::vector<std::uint64_t> hashes;
-  for (const Options& o : {Options{1, Simd::best, 1, false}, {3, Simd::best, 1, false}, {1, Simd::scalar, 1, false},
+  for (const Options& o : {Options{1, Simd::best, 1, false},
+                           {3, Simd::best, 1, false},
+                           {1, Simd::scalar, 1, false},
                            {2, Simd::avx2, 1, false}}) {
     if (!simd_available(o.simd)) continue;
     Simulation simulation(scene, o);

@@ -27,7 +27,8 @@ double lowest(const Simulation& s) {
 }
 
 TEST(Tear, WholeClothMovesAsIfItCouldNotTear) {
-  for (const Method method : {Method::spring, Method::spring_friction, Method::positional, Method::compliant}) {
+  for (const Method method :
+       {Method::spring, Method::spring_friction, Method::positional, Method::compliant}) {
     Scene plain = hung(24, method), tearable = plain;
     tearable.cloths[0].tear_strain = 100;
     Simulation a(plain), b(tearable);
@@ -47,7 +48,8 @@ TEST(Tear, OverloadedClothTearsAndFallsApart) {
     Scene scene = hung(20, method);
     scene.cloths[0].tear_strain = 0.3;
     for (int n = 0; n < 20; ++n)  // the last row is carried away
-      scene.cloths[0].pins.push_back({n, 19, {{0, {n / 19.0 - 0.5, -1, 0}}, {1, {n / 19.0 - 0.5, -2, 0}}}});
+      scene.cloths[0].pins.push_back(
+          {n, 19, {{0, {n / 19.0 - 0.5, -1, 0}}, {1, {n / 19.0 - 0.5, -2, 0}}}});
     Simulation simulation(scene);
     advance(simulation, 1);
     const Report r = simulation.report();
@@ -60,7 +62,8 @@ TEST(Tear, OverloadedClothTearsAndFallsApart) {
     for (const auto& t : view.triangles)  // no triangle is drawn across the gap
       for (int k = 0; k < 3; ++k) {
         const auto a = t[std::size_t(k)], b = t[std::size_t((k + 1) % 3)];
-        EXPECT_LT(std::hypot(view.x[a] - view.x[b], view.y[a] - view.y[b], view.z[a] - view.z[b]), 0.1);
+        EXPECT_LT(std::hypot(view.x[a] - view.x[b], view.y[a] - view.y[b], view.z[a] - view.z[b]),
+                  0.1);
       }
   }
 }
@@ -74,7 +77,7 @@ TEST(Tear, CallerCutsAlongASegment) {
     EXPECT_GE(cut, 20 + 2 * 19);
     EXPECT_EQ(simulation.report().torn, cut);
     advance(simulation, 1.2);
-    EXPECT_LT(lowest(simulation), -4);              // the lower half falls
+    EXPECT_LT(lowest(simulation), -4);                            // the lower half falls
     EXPECT_GT(at(simulation.positions(), 5 * 20 + 10)[1], -0.6);  // the upper half hangs
   }
 }
@@ -100,10 +103,13 @@ TEST(Tear, SameBitsForAnyThreadsAndInstructionSet) {
     Scene scene = hung(70, method);
     scene.cloths[0].tear_strain = 0.2;
     for (int n = 0; n < 70; ++n)
-      scene.cloths[0].pins.push_back({n, 69, {{0, {n / 69.0 - 0.5, -1, 0}}, {0.5, {n / 69.0 - 0.5, -2, 0.3}}}});
+      scene.cloths[0].pins.push_back(
+          {n, 69, {{0, {n / 69.0 - 0.5, -1, 0}}, {0.5, {n / 69.0 - 0.5, -2, 0.3}}}});
     std::vector<std::uint64_t> hashes;
-    for (const Options& o : {Options{1, Simd::best, 1, false}, {3, Simd::best, 1, false},
-                             {1, Simd::scalar, 1, false}, {2, Simd::avx2, 1, false}}) {
+    for (const Options& o : {Options{1, Simd::best, 1, false},
+                             {3, Simd::best, 1, false},
+                             {1, Simd::scalar, 1, false},
+                             {2, Simd::avx2, 1, false}}) {
       if (!simd_available(o.simd)) continue;
       Simulation simulation(scene, o);
       advance(simulation, 0.35);
@@ -131,7 +137,8 @@ TEST(Tear, ShredsRunNoSlower) {
     shreds.advance_frame();
   }
   const double a = whole.report().wall_ms.frame_min, b = shreds.report().wall_ms.frame_min;
-  std::printf("whole %.3f ms a frame, shreds %.3f ms, %lld torn\n", a, b, (long long)shreds.report().torn);
+  std::printf("whole %.3f ms a frame, shreds %.3f ms, %lld torn\n", a, b,
+              (long long)shreds.report().torn);
   EXPECT_LT(b, 1.25 * a);
 }
 

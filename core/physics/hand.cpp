@@ -36,7 +36,8 @@ void Simulation::State::plan_changed() {
 
 void Simulation::State::grab(int cloth, int i, int j, const Vec3& target, double stiffness) {
   ClothStep& step = step_with(cloth, i, j);
-  if (!(stiffness >= 0) || !std::all_of(target.begin(), target.end(), [](double t) { return std::isfinite(t); }))
+  if (!(stiffness >= 0) ||
+      !std::all_of(target.begin(), target.end(), [](double t) { return std::isfinite(t); }))
     throw std::invalid_argument("a grab needs a finite target and a stiffness of at least 0");
   if (grab_ && grabbed_ != cloth) release();
   if (!grab_) {
@@ -68,8 +69,8 @@ void Simulation::State::hold(int cloth, int i, int j, bool held) {
     for (int k = 0; k < 3; ++k) l.v.at(k, j, i) = 0;
   // One particle more that can move raises the largest frequency, if at all.
   if (!held && is_explicit(method))
-    spectra[std::size_t(cloth)] = estimate_spectrum(step.cloth(), step.families(), l,
-                                                    method == Method::spring_friction);
+    spectra[std::size_t(cloth)] =
+        estimate_spectrum(step.cloth(), step.families(), l, method == Method::spring_friction);
   ++changes;
 }
 
@@ -97,7 +98,9 @@ int Simulation::State::cut(const Vec3& a, const Vec3& b, double width) {
   std::int64_t cut = 0;
   for (auto& step : cloths) {
     const Lattice& l = step->lattice();
-    const auto at = [&](int j, int i) { return Vec3{l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)}; };
+    const auto at = [&](int j, int i) {
+      return Vec3{l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)};
+    };
     std::vector<std::array<int, 3>> found;  // family, row, constraint
     for (std::size_t n = 0; n < step->families().size(); ++n) {
       const Family& f = step->families()[n];
@@ -116,7 +119,8 @@ int Simulation::State::cut(const Vec3& a, const Vec3& b, double width) {
       plan_changed();
     }
     const std::int64_t before = step->topology()->torn();
-    for (const auto& [n, j, k] : found) step->topology()->end(step->families()[std::size_t(n)], j, k);
+    for (const auto& [n, j, k] : found)
+      step->topology()->end(step->families()[std::size_t(n)], j, k);
     step->topology()->update();
     cut += step->topology()->torn() - before;
   }

@@ -26,11 +26,12 @@ class Topology {
     if (lane != 0) died(j, 1);
     lane = 0;
   }
-  // Follows what died since the last call: spanning constraints, triangles. Returns whether any did.
+  // Follows what died since the last call: spanning constraints, triangles. Returns whether any
+  // did.
   bool update();
 
-  std::int64_t torn() const { return torn_; }             // constraints that are gone
-  std::uint64_t version() const { return version_; }      // rises when triangles change
+  std::int64_t torn() const { return torn_; }         // constraints that are gone
+  std::uint64_t version() const { return version_; }  // rises when triangles change
   // Triangles that are left, corners as j*stride + i; empty while the cloth is whole.
   const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
   std::size_t bytes() const;

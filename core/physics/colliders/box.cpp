@@ -84,7 +84,9 @@ ShapeConstants constants_of(const Box& box) {
   return c;
 }
 
-Vec3 place_of(const Box& box) { return box.center; }
+Vec3 place_of(const Box& box) {
+  return box.center;
+}
 
 Core core_of(const Box& box, const Vec3& p) {
   Core core{{}, box.rounding};
@@ -145,10 +147,12 @@ Overlap overlap_of(const Box& box, const Triangle& t) {
   return best;
 }
 
-double feature_of(const Box& box) { return box.rounding; }
+double feature_of(const Box& box) {
+  return box.rounding;
+}
 
-// Each side is a patch of the cube's side, mapped onto the rounded box by its normals: a point on the
-// inner box plus the rounding along the direction in which the cube's point lies beyond it.
+// Each side is a patch of the cube's side, mapped onto the rounded box by its normals: a point on
+// the inner box plus the rounding along the direction in which the cube's point lies beyond it.
 ShapeMesh mesh_of(const Box& box) {
   const std::array<Vec3, 3> axes = axes_of(box);
   const int bands = box.rounding > 0 ? 6 : 0;  // quads over a rounded edge

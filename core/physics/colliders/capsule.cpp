@@ -50,7 +50,9 @@ ShapeConstants constants_of(const Capsule& capsule) {
   return c;
 }
 
-Vec3 place_of(const Capsule& capsule) { return capsule.a; }
+Vec3 place_of(const Capsule& capsule) {
+  return capsule.a;
+}
 
 Core core_of(const Capsule& capsule, const Vec3& p) {
   const Vec3 e = minus(capsule.b, capsule.a);
@@ -63,8 +65,8 @@ Nearest nearest_of(const Capsule& capsule, const Vec3& p) {
   return {length - capsule.radius, length > 0 ? times(d, 1 / length) : Vec3{0, 1, 0}};
 }
 
-// The axis cuts a triangle when its ends lie on both sides of it, and the point between inside. Out is
-// the way of the end that is nearer.
+// The axis cuts a triangle when its ends lie on both sides of it, and the point between inside. Out
+// is the way of the end that is nearer.
 Overlap overlap_of(const Capsule& capsule, const Triangle& t) {
   const Vec3 n = cross(minus(t[1], t[0]), minus(t[2], t[0]));
   const double size = std::sqrt(dot(n, n));
@@ -81,7 +83,9 @@ Overlap overlap_of(const Capsule& capsule, const Triangle& t) {
   return {std::abs(nearer) / size, times(n, (nearer > 0 ? 1 : -1) / size)};
 }
 
-double feature_of(const Capsule& capsule) { return capsule.radius; }
+double feature_of(const Capsule& capsule) {
+  return capsule.radius;
+}
 
 ShapeMesh mesh_of(const Capsule& capsule) {
   const Vec3 e = minus(capsule.b, capsule.a);

@@ -17,8 +17,12 @@ struct PlaneSurface {
   Wide3 normal;
 };
 
-RowReach coulomb(const CollideRow& r) { return collide_row<PlaneSurface, false>(r); }
-RowReach below_faces(const FacesRow& f) { return below_faces_row<PlaneSurface>(f); }
+RowReach coulomb(const CollideRow& r) {
+  return collide_row<PlaneSurface, false>(r);
+}
+RowReach below_faces(const FacesRow& f) {
+  return below_faces_row<PlaneSurface>(f);
+}
 
 // One that something else pushed below goes straight back up.
 RowReach course(const CollideRow& r) {
@@ -75,7 +79,9 @@ ShapeConstants constants_of(const Plane& plane) {
   return c;
 }
 
-Vec3 place_of(const Plane& plane) { return plane.point; }
+Vec3 place_of(const Plane& plane) {
+  return plane.point;
+}
 
 Nearest nearest_of(const Plane& plane, const Vec3& p) {
   const Vec3 n = unit_normal(plane);
@@ -88,9 +94,13 @@ Core core_of(const Plane& plane, const Vec3& p) {
 }
 
 // Triangles are as deep as their corners.
-Overlap overlap_of(const Plane&, const Triangle&) { return {}; }
+Overlap overlap_of(const Plane&, const Triangle&) {
+  return {};
+}
 
-double feature_of(const Plane&) { return std::numeric_limits<double>::infinity(); }
+double feature_of(const Plane&) {
+  return std::numeric_limits<double>::infinity();
+}
 
 ShapeMesh mesh_of(const Plane& plane) {
   const Vec3 n = unit_normal(plane);

@@ -26,8 +26,7 @@ Vec3 displacement(const Collider& collider, double time) {
 double signed_distance(const Collider& collider, double time, const Vec3& point) {
   return std::visit(
       [&](const auto& s) {
-        const Vec3 place =
-            collider.keys.empty() ? place_of(s) : position_at(collider.keys, time);
+        const Vec3 place = collider.keys.empty() ? place_of(s) : position_at(collider.keys, time);
         return nearest_of(s, minus(point, place)).distance;
       },
       collider.shape);

@@ -1,6 +1,6 @@
-// The shapes of colliders. Each is one file in this folder with two halves: its wide signed distance,
-// built once per instruction set (kernels/collide.h), and what is needed of it elsewhere, below.
-// Everything is about the shape's place: the point that its keys move.
+// The shapes of colliders. Each is one file in this folder with two halves: its wide signed
+// distance, built once per instruction set (kernels/collide.h), and what is needed of it elsewhere,
+// below. Everything is about the shape's place: the point that its keys move.
 #pragma once
 
 #include "physics/kernels/kernels.h"
@@ -15,7 +15,8 @@ struct Nearest {
   Vec3 normal{0, 1, 0};
 };
 
-// How far, and where to, a triangle must move to leave a core that it cuts; no depth when it does not.
+// How far, and where to, a triangle must move to leave a core that it cuts; no depth when it does
+// not.
 struct Overlap {
   double depth = 0;  // m
   Vec3 normal{0, 1, 0};
@@ -28,27 +29,35 @@ struct Core {
   double radius = 0;
 };
 
-#define WEFT_SHAPE(Shape)                             \
-  ShapeConstants constants_of(const Shape& shape);    \
-  Vec3 place_of(const Shape& shape);                  \
-  Nearest nearest_of(const Shape& shape, const Vec3& p); \
-  Core core_of(const Shape& shape, const Vec3& p);    \
+#define WEFT_SHAPE(Shape)                                    \
+  ShapeConstants constants_of(const Shape& shape);           \
+  Vec3 place_of(const Shape& shape);                         \
+  Nearest nearest_of(const Shape& shape, const Vec3& p);     \
+  Core core_of(const Shape& shape, const Vec3& p);           \
   Overlap overlap_of(const Shape& shape, const Triangle& t); \
-  double feature_of(const Shape& shape);              \
+  double feature_of(const Shape& shape);                     \
   ShapeMesh mesh_of(const Shape& shape);
 // constants_of: for the kernels; place_of: where it stands without keys; nearest_of, core_of: seen
-// from p, in double; overlap_of: of the core and a triangle; feature_of: its smallest radius of curvature, infinite for a plane [m];
-// mesh_of: triangles for drawing.
+// from p, in double; overlap_of: of the core and a triangle; feature_of: its smallest radius of
+// curvature, infinite for a plane [m]; mesh_of: triangles for drawing.
 WEFT_SHAPE(Sphere)
 WEFT_SHAPE(Plane)
 WEFT_SHAPE(Capsule)
 WEFT_SHAPE(Box)
 #undef WEFT_SHAPE
 
-inline Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-inline Vec3 plus(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-inline Vec3 times(const Vec3& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
-inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Vec3 minus(const Vec3& a, const Vec3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Vec3 plus(const Vec3& a, const Vec3& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Vec3 times(const Vec3& a, double s) {
+  return {a[0] * s, a[1] * s, a[2] * s};
+}
+inline double dot(const Vec3& a, const Vec3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};

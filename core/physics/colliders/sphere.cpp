@@ -40,19 +40,27 @@ ShapeConstants constants_of(const Sphere& sphere) {
   return c;
 }
 
-Vec3 place_of(const Sphere& sphere) { return sphere.center; }
+Vec3 place_of(const Sphere& sphere) {
+  return sphere.center;
+}
 
 Nearest nearest_of(const Sphere& sphere, const Vec3& p) {
   const double length = std::hypot(p[0], p[1], p[2]);
   return {length - sphere.radius, length > 0 ? times(p, 1 / length) : Vec3{0, 1, 0}};
 }
 
-Core core_of(const Sphere& sphere, const Vec3&) { return {{}, sphere.radius}; }
+Core core_of(const Sphere& sphere, const Vec3&) {
+  return {{}, sphere.radius};
+}
 
 // Its core is a point, which a triangle cannot cut.
-Overlap overlap_of(const Sphere&, const Triangle&) { return {}; }
+Overlap overlap_of(const Sphere&, const Triangle&) {
+  return {};
+}
 
-double feature_of(const Sphere& sphere) { return sphere.radius; }
+double feature_of(const Sphere& sphere) {
+  return sphere.radius;
+}
 
 ShapeMesh mesh_of(const Sphere& sphere) {
   ShapeMesh mesh;

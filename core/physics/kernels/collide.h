@@ -1,7 +1,8 @@
 // Contact of one row with one collider, for any shape. A shape is a struct of constants with
 //
-//   Surface at(Wide3 p) const        signed distance [m] and outward unit normal at p, seen from its place
-//   static constexpr bool kThin      whether a particle can pass through it within a substep
+//   Surface at(Wide3 p) const        signed distance [m] and outward unit normal at p, seen from
+//   its place static constexpr bool kThin      whether a particle can pass through it within a
+//   substep
 //
 // Positions x and velocities v are consistent, so that x - dt v is the position before the substep.
 //
@@ -64,10 +65,10 @@ struct Entry {
   Wide3 normal;
 };
 
-constexpr int kPathSteps = 32;          // of sphere tracing
-constexpr float kPathTolerance = 1e-3f; // of the path's length, from the surface
-constexpr float kStartsInside = 0.25f;  // of the path's length: deeper starts are no entries
-constexpr float kSteepest = 0.05f;      // sine below which a path only grazes
+constexpr int kPathSteps = 32;           // of sphere tracing
+constexpr float kPathTolerance = 1e-3f;  // of the path's length, from the surface
+constexpr float kStartsInside = 0.25f;   // of the path's length: deeper starts are no entries
+constexpr float kSteepest = 0.05f;       // sine below which a path only grazes
 
 template <class Shape>
 WEFT_INLINE Entry entry(const CollideRow& r, const Shape& shape, Wide3 end, Wide3 path,
@@ -134,8 +135,8 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
   return {least(clearance), __builtin_sqrtf(greatest(fastest))};
 }
 
-// A convex shape's distance is never below its tangents: d(y) >= d(x) + n(x)·(y - x). On a triangle the
-// tangent at each vertex is least at a vertex, so that
+// A convex shape's distance is never below its tangents: d(y) >= d(x) + n(x)·(y - x). On a triangle
+// the tangent at each vertex is least at a vertex, so that
 //   d >= max over vertices V of min over vertices W of d(V) + n(V)·(W - V).
 // On a flat side the bound is exact: sheets that lie on one have no triangles to look at.
 WEFT_INLINE Wide tangent_bound(const Surface& at, Wide3 v, Wide3 a, Wide3 b) {
@@ -151,11 +152,14 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
   for (int i = 0; i < padded(r.columns - 1); i += kLanes) {
     const Wide3 x00 = load3(r.x, i) - place, x10 = load3(r.x, i + 1) - place;
     const Wide3 x01 = load3(f.x_next, i) - place, x11 = load3(f.x_next, i + 1) - place;
-    const Surface s00 = shape.at(x00), s10 = shape.at(x10), s01 = shape.at(x01), s11 = shape.at(x11);
-    const Wide first = max(tangent_bound(s00, x00, x01, x10),
-                           max(tangent_bound(s01, x01, x00, x10), tangent_bound(s10, x10, x00, x01)));
-    const Wide second = max(tangent_bound(s11, x11, x01, x10),
-                            max(tangent_bound(s01, x01, x11, x10), tangent_bound(s10, x10, x11, x01)));
+    const Surface s00 = shape.at(x00), s10 = shape.at(x10), s01 = shape.at(x01),
+                  s11 = shape.at(x11);
+    const Wide first =
+        max(tangent_bound(s00, x00, x01, x10),
+            max(tangent_bound(s01, x01, x00, x10), tangent_bound(s10, x10, x00, x01)));
+    const Wide second =
+        max(tangent_bound(s11, x11, x01, x10),
+            max(tangent_bound(s01, x01, x11, x10), tangent_bound(s10, x10, x11, x01)));
     const WideInt inside = lanes_below(r.columns - 1 - i);
     store(f.bound + i, select(inside, min(first, second) - r.offset, wide(kFar)));
     const Wide nearest = min(min(s00.distance, s10.distance), min(s01.distance, s11.distance));
@@ -168,12 +172,18 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
 }
 
 // Defines the kernels of a shape under `name`.
-#define WEFT_COLLIDER(name, Shape)                                                     \
-  namespace {                                                                          \
-  RowReach coulomb(const CollideRow& r) { return collide_row<Shape, false>(r); }       \
-  RowReach course(const CollideRow& r) { return collide_row<Shape, true>(r); }         \
-  RowReach below_faces(const FacesRow& f) { return below_faces_row<Shape>(f); }        \
-  }                                                                                    \
+#define WEFT_COLLIDER(name, Shape)          \
+  namespace {                               \
+  RowReach coulomb(const CollideRow& r) {   \
+    return collide_row<Shape, false>(r);    \
+  }                                         \
+  RowReach course(const CollideRow& r) {    \
+    return collide_row<Shape, true>(r);     \
+  }                                         \
+  RowReach below_faces(const FacesRow& f) { \
+    return below_faces_row<Shape>(f);       \
+  }                                         \
+  }                                         \
   const ColliderKernels name = {{coulomb, course}, below_faces};
 
 }  // namespace weft::WEFT_KERNELS

@@ -152,16 +152,28 @@ struct Run {
   std::int32_t first, last;
 };
 
+// The flat sheet that a particle lies in: two at (i, j) and (i + a, j + b) are neighbours there, and
+// no pair, when a² uu + 2 a b uv + b² vv < range². Columns of different sheets are far apart.
+struct RestMetric {
+  float uu, uv, vv, range_squared;  // m²
+};
+
 // The particles of one cell against those in the 27 cells about it.
 struct NearCell {
   ConstRow3 sorted;           // all particles, cell by cell, with 16 lanes of padding
   Run members;                // of the cell
   const Run* runs;            // the 27 cells
   int run_count;
+  const float* column;        // of all particles, as sorted
+  const float* row;
+  const std::uint16_t* sheet;  // the same
+  const RestMetric* metric;    // of every sheet
+  float* columns;              // room as for the candidates
+  float* rows;
   Row3 candidates;            // room for all particles of the runs, 16 lanes more for each run
   std::int32_t* numbers;      // the same
   float range_squared;        // m²
-  std::int32_t* counts;       // out, per member: how many candidates are in range, itself included
+  std::int32_t* counts;       // out, per member: how many candidates are in range and no neighbours
   std::int32_t* hits;         // out, member after member: their numbers
 };
 

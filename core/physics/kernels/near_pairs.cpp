@@ -15,6 +15,8 @@ WEFT_INLINE int bring_together(const physics::NearCell& c) {
     const int first = c.runs[r].first, size = c.runs[r].last - first;
     for (int i = 0; i < size; i += kLanes) {
       store3(c.candidates, count + i, load3(c.sorted, first + i));
+      store(c.columns + count + i, load(c.column + first + i));
+      store(c.rows + count + i, load(c.row + first + i));
       *reinterpret_cast<Loose*>(c.numbers + count + i) = lane_numbers() + (first + i);
     }
     count += size;
@@ -32,10 +34,15 @@ void near_pairs(const physics::NearCell& given) {
   std::int32_t* out = c.hits;
   for (int m = c.members.first; m < c.members.last; ++m) {
     const Wide3 p = wide3(c.sorted.x[m], c.sorted.y[m], c.sorted.z[m]);
+    const physics::RestMetric rest = c.metric[c.sheet[m]];
     std::int32_t* const first = out;
     for (int i = 0; i < padded(count); i += kLanes) {
       const Wide3 d = load3(c.candidates, i) - p;
-      for (unsigned near = bits(dot(d, d) < c.range_squared); near != 0; near &= near - 1)
+      const WideInt close = dot(d, d) < c.range_squared;
+      if (!any(close)) continue;
+      const Wide a = load(c.columns + i) - c.column[m], b = load(c.rows + i) - c.row[m];
+      const Wide apart = a * a * rest.uu + 2.0f * (a * b) * rest.uv + b * b * rest.vv;
+      for (unsigned near = bits(close & (apart >= rest.range_squared)); near != 0; near &= near - 1)
         *out++ = c.numbers[i + __builtin_ctz(near)];
     }
     c.counts[m - c.members.first] = std::int32_t(out - first);

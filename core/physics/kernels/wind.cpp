@@ -23,8 +23,8 @@ WEFT_INLINE Wide3 cross(Wide3 a, Wide3 b) {
 // A wave of period 1 and height 1 of two parabolas a period: smooth, near to a sine, and exact.
 WEFT_INLINE Wide wave(Wide phase) {
   const WideInt whole = __builtin_convertvector(phase, WideInt);
-  const Wide part = phase - __builtin_convertvector(whole, Wide);     // -1 … 1
-  const Wide s = select(part > 0.0f, part, part + 1.0f) - 0.5f;       // -0.5 … 0.5
+  const Wide part = phase - __builtin_convertvector(whole, Wide);  // -1 … 1
+  const Wide s = select(part > 0.0f, part, part + 1.0f) - 0.5f;    // -0.5 … 0.5
   return s * (8.0f - 16.0f * abs(s));
 }
 
@@ -38,12 +38,12 @@ WEFT_INLINE Wide3 gust(const WindRow& r, Wide3 x) {
 }
 
 // A third of the force on the triangle a, b, c with velocities' sum v3 and inverse masses' sum w3.
-WEFT_INLINE Wide3 third_of_force(const WindRow& r, Wide3 a, Wide3 b, Wide3 c, Wide3 v3, Wide w3) {
+WEFT_INLINE Wide3 third_of_force(const WindRow& r, Wide3 air, Wide3 a, Wide3 b, Wide3 c, Wide3 v3,
+                                 Wide w3) {
   const Wide third = wide(1.0f / 3.0f);
   const Wide3 doubled = cross(b - a, c - a);
   const Wide size = sqrt(max(dot(doubled, doubled), wide(kTinySquare)));
-  Wide3 u = wide3(r.wx, r.wy, r.wz) - v3 * third;
-  if (r.gust_speed > 0) u = u + gust(r, (a + b + c) * third);
+  const Wide3 u = air - v3 * third;
   const Wide along = dot(u, doubled) / size;
   const Wide3 n = select(along < 0.0f, doubled * (-1.0f / size), doubled * (1.0f / size));
   const Wide into = abs(along);
@@ -66,14 +66,18 @@ void wind(const WindRow& given) {
     const Wide3 x01 = load3(r.x_next, i), x11 = load3(r.x_next, i + 1);
     const Wide3 v10 = load3(r.v, i + 1), v01 = load3(r.v_next, i);
     const Wide w10 = load(r.w + i + 1), w01 = load(r.w_next + i);
+    // Both triangles of a square feel the air in the middle of the edge between them.
+    Wide3 air = wide3(r.wx, r.wy, r.wz);
+    if (r.gust_speed > 0) air = air + gust(r, (x10 + x01) * wide(0.5f));
     const Wide3 first = select(
         inside,
-        third_of_force(r, x00, x10, x01, load3(r.v, i) + v10 + v01, load(r.w + i) + w10 + w01),
+        third_of_force(r, air, x00, x10, x01, load3(r.v, i) + v10 + v01, load(r.w + i) + w10 + w01),
         Wide3{});
-    const Wide3 second = select(inside,
-                                third_of_force(r, x10, x11, x01, v10 + load3(r.v_next, i + 1) + v01,
-                                               w10 + load(r.w_next + i + 1) + w01),
-                                Wide3{});
+    const Wide3 second =
+        select(inside,
+               third_of_force(r, air, x10, x11, x01, v10 + load3(r.v_next, i + 1) + v01,
+                              w10 + load(r.w_next + i + 1) + w01),
+               Wide3{});
     const Wide3 both = first + second;
     store3(r.f, i, load3(r.f, i) + (first + own_right.next(both)));
     store3(r.f_next, i, load3(r.f_next, i) + (both + next_right.next(second)));

@@ -60,6 +60,9 @@ void CellGrid::build(ConstRow3 x, std::size_t particles, const float low[3], con
   int cells[3];
   for (int k = 0; k < 3; ++k) cells[k] = int((high[k] - low[k]) * inverse) + 1;
   choose_strides(cells);
+  for (int c = -1; c <= 1; ++c)
+    for (int b = -1; b <= 1; ++b)
+      offset_[3 * (c + 1) + b + 1] = modulo(b * stride_y_ + c * stride_z_ - 1, table_);
   start_.assign(std::size_t(table_) + 1, 0);
   const bool wraps = stride_z_ * (cells[2] + 2) > table_;
   for (std::size_t p = 0; p < particles; ++p) {
@@ -96,12 +99,12 @@ int CellGrid::runs_about(std::size_t sorted, Run* runs) const {
     const Run run{start_[std::size_t(from)], start_[std::size_t(to)]};
     if (run.first < run.last) runs[n++] = run;
   };
-  for (int c = -1; c <= 1; ++c)
-    for (int b = -1; b <= 1; ++b) {
-      const std::int64_t from = modulo(key + b * stride_y_ + c * stride_z_ - 1, table_);
-      add(from, std::min(from + 3, table_));
-      if (from + 3 > table_) add(0, from + 3 - table_);
-    }
+  for (const std::int64_t offset : offset_) {
+    std::int64_t from = key + offset;
+    if (from >= table_) from -= table_;
+    add(from, std::min(from + 3, table_));
+    if (from + 3 > table_) add(0, from + 3 - table_);
+  }
   return n;
 }
 

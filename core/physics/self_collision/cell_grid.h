@@ -1,10 +1,10 @@
-// Particles in the cells of a grid as wide as a range, so that all within the range of a particle are
-// in the 27 cells about its own.
+// Particles in the cells of a grid as wide as a range, so that all within the range of a particle
+// are in the 27 cells about its own.
 //
 // Cell (a,b,c) is bucket (a + b s + c s t) modulo the table's size, with s and t the box's true
-// strides: cells that follow each other along x are neighbours in memory, and the 27 are nine runs of
-// three. Particles are put in order of bucket, then of number, by a counting sort: no locks, and the
-// same order however it is done. (Teschner et al. 2003 hash the three indices instead.)
+// strides: cells that follow each other along x are neighbours in memory, and the 27 are nine runs
+// of three. Particles are put in order of bucket, then of number, by a counting sort: no locks, and
+// the same order however it is done. (Teschner et al. 2003 hash the three indices instead.)
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,11 @@ class CellGrid {
   std::size_t bytes() const;
 
  private:
-  std::int32_t key_of_sorted(std::size_t sorted) const { return key_[std::size_t(number_[sorted])]; }
+  std::int32_t key_of_sorted(std::size_t sorted) const {
+    return key_[std::size_t(number_[sorted])];
+  }
   void choose_strides(const int cells[3]);
+  std::int64_t offset_[9] = {};  // from a bucket to the first of each of the nine runs about it
 
   std::size_t count_ = 0;
   std::int64_t table_ = 1, stride_y_ = 1, stride_z_ = 1;

@@ -87,8 +87,9 @@ std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>
   }
   std::vector<Entry> entries;
   for (std::size_t f = 0; f < faces.size(); ++f)
-    for_each_cell(box_of(x, faces[f]), size,
-                  [&](const auto& cell) { entries.push_back({cell, std::int32_t(f)}); });
+    for_each_cell(box_of(x, faces[f]), size, [&](const auto& cell) {
+      entries.push_back({cell, std::int32_t(f)});
+    });
   std::sort(entries.begin(), entries.end());
   std::int64_t count = 0;
   std::vector<std::int32_t> near;

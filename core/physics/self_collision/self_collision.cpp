@@ -12,14 +12,17 @@
 namespace weft::physics {
 namespace {
 
-constexpr double kSkin = 0.3;         // of the thickness
-constexpr double kMotion = 0.25;      // of the thickness: relative motion between two runs
-constexpr double kFall = 0.005;       // of the thickness, twice the fall from rest between two runs
-constexpr int kMostSubsteps = 12;     // between two runs
-constexpr int kIterations = 3;        // of pushing apart, in one run
+constexpr double kNeighbour = 0.3;  // of the thickness: neighbours are as near, and more, at rest
+constexpr double kSkin = 0.5;       // of the thickness
+constexpr double kMayTouch = 0.15;  // of the thickness: pairs so much further apart are looked at
+constexpr double kMotion = 0.4;     // of the thickness: relative motion between two runs
+constexpr double kFall = 0.005;     // of the thickness, twice the fall from rest between two runs
+constexpr int kMostSubsteps = 12;   // between two runs
+constexpr int kIterations = 3;      // of pushing apart, in one run
 constexpr int kMostSubstepsCourse = 4;  // its push acts like a spring, stable up to here
 constexpr std::size_t kChunks = 64;
-constexpr std::size_t kGrain = 512;   // particles of a task
+constexpr std::size_t kFew = 4096;          // particles that one thread does faster
+constexpr std::size_t kGrain = 512;         // particles of a task
 constexpr std::size_t kPairsReserved = 16;  // neighbours per particle
 
 Spread nothing() {
@@ -33,12 +36,22 @@ float diagonal(const Spread& s) {
   return std::sqrt(square);
 }
 
+// Calls work(k) for every chunk of n particles; few are not worth the threads.
+template <class Work>
+void for_each_chunk(std::size_t n, Threads& threads, Work&& work) {
+  if (threads.count() == 1 || n < kFew) {
+    for (std::size_t k = 0; k < kChunks; ++k) work(k);
+    return;
+  }
+  threads.run([&] { oneapi::tbb::parallel_for(std::size_t(0), kChunks, work); });
+}
+
 }  // namespace
 
 // What one share of the sorted particles finds, and its room to search in.
 struct SelfContact::Chunk {
   std::vector<std::int32_t> owner, first, neighbour;  // sorted particles
-  std::vector<float> x, y, z;                         // candidates of one cell
+  std::vector<float> x, y, z, column, row;            // candidates of one cell
   std::vector<std::int32_t> numbers, counts, hits;
 };
 
@@ -68,8 +81,7 @@ std::unique_ptr<SelfContact> SelfContact::make(
   return std::unique_ptr<SelfContact>(new SelfContact(scene, std::move(sheets), kernels));
 }
 
-SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets,
-                             const KernelTable& kernels)
+SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const KernelTable& kernels)
     : scene_(scene), sheets_(std::move(sheets)), kernels_(kernels), chunks_(kChunks) {
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     thickness_ = std::max(thickness_, sheets_[s].thickness);
@@ -78,13 +90,21 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets,
       for (int i = 0; i < l.columns; ++i)
         sites_.push_back({std::uint16_t(s), std::uint16_t(j), std::uint16_t(i)});
   }
+  for (const Sheet& s : sheets_) {
+    const float range = s.thickness * float(1 + kNeighbour);
+    metrics_.push_back({s.uu, s.uv, s.vv, range * range});
+  }
   const std::size_t n = sites_.size();
-  for (AlignedArray<float>* a : {&x_, &y_, &z_}) *a = AlignedArray<float>(n + 16);
+  for (AlignedArray<float>* a : {&x_, &y_, &z_, &column_, &row_}) *a = AlignedArray<float>(n + 16);
+  sheet_.resize(n);
   grid_.reserve(n);
   listed_.resize(n);
   pairs_.site.reserve(n);
   pairs_.first.reserve(n + 1);
   pairs_.neighbour.reserve(kPairsReserved * n);
+  touching_.owner.reserve(n);
+  touching_.first.reserve(n + 1);
+  touching_.neighbour.reserve(kPairsReserved * n);
   bodies_.reserve(n);
   separated_.reserve(n);
   for (Chunk& c : chunks_) {
@@ -125,13 +145,15 @@ float SelfContact::relative_speed() const {
   return diagonal(spread);
 }
 
-// Whether two particles are out of range of each other on the flat sheet, or on different ones.
-bool SelfContact::apart_at_rest(const Site& a, const Site& b) const {
-  if (a.cloth != b.cloth) return true;
-  const Sheet& s = sheets_[a.cloth];
-  const float di = float(a.column - b.column), dj = float(a.row - b.row);
-  const float range = s.thickness * float(1 + kSkin);
-  return di * di * s.uu + 2 * di * dj * s.uv + dj * dj * s.vv >= range * range;
+// Where on its sheet each sorted particle lies; the columns of different sheets are far apart.
+void SelfContact::sort_sites() {
+  constexpr float kBetweenSheets = 1e5f;
+  for (std::size_t p = 0; p < sites_.size(); ++p) {
+    const Site& s = sites_[std::size_t(grid_.number(p))];
+    column_[p] = float(s.column) + kBetweenSheets * float(s.cloth);
+    row_[p] = float(s.row);
+    sheet_[p] = s.cloth;
+  }
 }
 
 void SelfContact::search_chunk(Chunk& c, std::size_t begin, std::size_t end, float range) const {
@@ -150,7 +172,7 @@ void SelfContact::search_chunk(Chunk& c, std::size_t begin, std::size_t end, flo
     }
     const std::size_t members = last - cell;
     if (const std::size_t room = n + 16 * 18; c.numbers.size() < room) {
-      for (std::vector<float>* v : {&c.x, &c.y, &c.z}) v->resize(2 * room);
+      for (std::vector<float>* v : {&c.x, &c.y, &c.z, &c.column, &c.row}) v->resize(2 * room);
       c.numbers.resize(2 * room);
     }
     if (c.counts.size() < members) c.counts.resize(2 * members);
@@ -159,6 +181,12 @@ void SelfContact::search_chunk(Chunk& c, std::size_t begin, std::size_t end, flo
                          {std::int32_t(cell), std::int32_t(last)},
                          runs,
                          run_count,
+                         column_.data(),
+                         row_.data(),
+                         sheet_.data(),
+                         metrics_.data(),
+                         c.column.data(),
+                         c.row.data(),
                          {c.x.data(), c.y.data(), c.z.data()},
                          c.numbers.data(),
                          range * range,
@@ -166,18 +194,11 @@ void SelfContact::search_chunk(Chunk& c, std::size_t begin, std::size_t end, flo
                          c.hits.data()});
     const std::int32_t* hit = c.hits.data();
     for (std::size_t m = 0; m < members; ++m) {
-      const auto p = std::int32_t(cell + m);
-      const Site& site = sites_[std::size_t(grid_.number(std::size_t(p)))];
-      const std::size_t before = c.neighbour.size();
-      for (int k = 0; k < c.counts[m]; ++k) {
-        const std::int32_t q = *hit++;
-        if (q == p) continue;
-        const Site& other = sites_[std::size_t(grid_.number(std::size_t(q)))];
-        if (apart_at_rest(site, other)) c.neighbour.push_back(q);
-      }
-      if (c.neighbour.size() == before) continue;
-      c.owner.push_back(p);
-      c.first.push_back(std::int32_t(before));
+      if (c.counts[m] == 0) continue;
+      c.owner.push_back(std::int32_t(cell + m));
+      c.first.push_back(std::int32_t(c.neighbour.size()));
+      c.neighbour.insert(c.neighbour.end(), hit, hit + c.counts[m]);
+      hit += c.counts[m];
     }
     cell = last;
   }
@@ -209,15 +230,52 @@ const NearPairs& SelfContact::search(double margin, Threads& threads) {
   const float range = thickness_ + float(margin);
   // A hair wider than the range, for the rounding of cell numbers.
   grid_.build({x_.data(), y_.data(), z_.data()}, sites_.size(), box.low, box.high, range * 1.001f);
+  sort_sites();
   const std::size_t n = sites_.size();
-  threads.run([&] {
-    oneapi::tbb::parallel_for(std::size_t(0), kChunks, [&](std::size_t k) {
-      search_chunk(chunks_[k], grid_.bucket_start_from(k * n / kChunks),
-                   grid_.bucket_start_from((k + 1) * n / kChunks), range);
-    });
+  for_each_chunk(n, threads, [&](std::size_t k) {
+    search_chunk(chunks_[k], grid_.bucket_start_from(k * n / kChunks),
+                 grid_.bucket_start_from((k + 1) * n / kChunks), range);
   });
   join_chunks();
   return pairs_;
+}
+
+// Of the pairs in one share of the particles those that touch, or may before the run is over.
+void SelfContact::touch_chunk(Chunk& c, std::size_t begin, std::size_t end) const {
+  c.owner.clear();
+  c.first.clear();
+  c.neighbour.clear();
+  for (std::size_t a = begin; a < end; ++a) {
+    const Body& p = bodies_[a];
+    const std::size_t before = c.neighbour.size();
+    for (std::int32_t k = pairs_.first[a]; k < pairs_.first[a + 1]; ++k) {
+      const std::int32_t other = pairs_.neighbour[std::size_t(k)];
+      const Body& q = bodies_[std::size_t(other)];
+      const float reach = 0.5f * float(1 + kMayTouch) * (p.thickness + q.thickness);
+      const float d[3] = {p.x[0] - q.x[0], p.x[1] - q.x[1], p.x[2] - q.x[2]};
+      if (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach) c.neighbour.push_back(other);
+    }
+    if (c.neighbour.size() == before) continue;
+    c.owner.push_back(std::int32_t(a));
+    c.first.push_back(std::int32_t(before));
+  }
+}
+
+void SelfContact::keep_touching(Threads& threads) {
+  const std::size_t n = bodies_.size();
+  for_each_chunk(n, threads, [&](std::size_t k) {
+    touch_chunk(chunks_[k], k * n / kChunks, (k + 1) * n / kChunks);
+  });
+  touching_.owner.clear();
+  touching_.first.clear();
+  touching_.neighbour.clear();
+  for (const Chunk& c : chunks_) {
+    const auto before = std::int32_t(touching_.neighbour.size());
+    touching_.owner.insert(touching_.owner.end(), c.owner.begin(), c.owner.end());
+    for (const std::int32_t f : c.first) touching_.first.push_back(before + f);
+    touching_.neighbour.insert(touching_.neighbour.end(), c.neighbour.begin(), c.neighbour.end());
+  }
+  touching_.first.push_back(std::int32_t(touching_.neighbour.size()));
 }
 
 int SelfContact::run(double dt, int since, Threads& threads) {
@@ -229,9 +287,8 @@ int SelfContact::run(double dt, int since, Threads& threads) {
     valid_ = true;
   }
   bodies_.resize(pairs_.site.size());
-  const auto share = [&](auto&& work) {
-    const std::size_t n = bodies_.size();
-    if (n <= 2 * kGrain || threads.count() == 1) {
+  const auto share = [&](auto&& work, std::size_t n) {
+    if (n < kFew || threads.count() == 1) {
       for (std::size_t a = 0; a < n; ++a) work(a);
       return;
     }
@@ -241,14 +298,15 @@ int SelfContact::run(double dt, int since, Threads& threads) {
       });
     });
   };
-  separated_.resize(bodies_.size());
-  share([&](std::size_t a) { gather(a); });
+  share([&](std::size_t a) { gather(a); }, bodies_.size());
+  keep_touching(threads);
+  separated_ = bodies_;
   const int iterations = course() ? 1 : kIterations;
   for (int n = 0; n < iterations; ++n) {
-    share([&](std::size_t a) { separate(a, dt, since); });
+    share([&](std::size_t t) { separate(t, dt, since); }, touching_.owner.size());
     std::swap(bodies_, separated_);
   }
-  share([&](std::size_t a) { scatter(a); });
+  share([&](std::size_t t) { scatter(t); }, touching_.owner.size());
   return next_run(dt);
 }
 
@@ -277,7 +335,8 @@ SelfContact::Overlaps SelfContact::overlaps() {
   for (std::size_t a = 0; a < bodies_.size(); ++a)
     for (std::int32_t k = pairs_.first[a]; k < pairs_.first[a + 1]; ++k) {
       const Body &p = bodies_[a], &q = bodies_[std::size_t(pairs_.neighbour[std::size_t(k)])];
-      const double d = std::hypot(double(p.x[0]) - q.x[0], double(p.x[1]) - q.x[1], double(p.x[2]) - q.x[2]);
+      const double d =
+          std::hypot(double(p.x[0]) - q.x[0], double(p.x[1]) - q.x[1], double(p.x[2]) - q.x[2]);
       const double depth = 0.5 * (double(p.thickness) + q.thickness) - d;
       if (depth <= 0) continue;
       ++found.pairs;

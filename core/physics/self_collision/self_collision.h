@@ -1,5 +1,5 @@
-// Self-collision, mode `particles`: no two particles of any cloths nearer than the thickness, except
-// neighbours: those within the thickness and a skin of each other on the flat sheet.
+// Self-collision, mode `particles`: no two particles of any cloths nearer than the thickness,
+// except neighbours: those within the thickness and a skin of each other on the flat sheet.
 //
 // Who may touch is found rarely: pairs within the thickness and a skin stay complete until two
 // particles have moved by more than the skin against each other (Verlet's list, 1967). That is
@@ -25,8 +25,8 @@ struct Site {
 
 // Pairs of particles in range of each other, each listed with both its ends.
 struct NearPairs {
-  std::vector<Site> site;             // of every particle with a pair, cell by cell
-  std::vector<std::int32_t> first;    // of its neighbours, one more than particles
+  std::vector<Site> site;               // of every particle with a pair, cell by cell
+  std::vector<std::int32_t> first;      // of its neighbours, one more than particles
   std::vector<std::int32_t> neighbour;  // numbers into site
 };
 
@@ -34,8 +34,8 @@ class SelfContact {
  public:
   // Null when no cloth asks for it.
   static std::unique_ptr<SelfContact> make(const Scene& scene,
-                                             const std::vector<std::unique_ptr<ClothStep>>& cloths,
-                                             const KernelTable& kernels);
+                                           const std::vector<std::unique_ptr<ClothStep>>& cloths,
+                                           const KernelTable& kernels);
 
   // Pushes apart what is too near at the end of a substep of dt; `since` substeps after the last
   // time. Returns after how many substeps to come again.
@@ -75,24 +75,32 @@ class SelfContact {
   float moved_apart() const;     // since the last search, at most [m]
   float relative_speed() const;  // at most [m/s]
   void search_chunk(Chunk& chunk, std::size_t begin, std::size_t end, float range) const;
-  bool apart_at_rest(const Site& a, const Site& b) const;
+  void sort_sites();
+  void keep_touching(Threads& threads);
+  void touch_chunk(Chunk& chunk, std::size_t begin, std::size_t end) const;
   void join_chunks();
   void gather(std::size_t a);
-  void separate(std::size_t a, double dt, int since);
-  void scatter(std::size_t a);
+  void separate(std::size_t t, double dt, int since);
+  void scatter(std::size_t t);
   int next_run(double dt) const;
   bool course() const;
 
   const Scene& scene_;
   std::vector<Sheet> sheets_;
   const KernelTable& kernels_;
-  std::vector<Site> sites_;  // of every particle
+  std::vector<Site> sites_;        // of every particle
   AlignedArray<float> x_, y_, z_;  // of every particle at the last search
   CellGrid grid_;
   std::vector<Chunk> chunks_;
+  std::vector<RestMetric> metrics_;   // of every sheet
+  AlignedArray<float> column_, row_;  // of every particle, as sorted
+  std::vector<std::uint16_t> sheet_;  // the same
   std::vector<std::int32_t> listed_;  // sorted particle -> number into pairs_.site, or -1
   NearPairs pairs_;
   std::vector<Body> bodies_, separated_;
+  struct {  // of the pairs, those that may touch now; numbers into pairs_.site
+    std::vector<std::int32_t> owner, first, neighbour;
+  } touching_;
   float thickness_ = 0;  // greatest of the sheets [m]
   bool valid_ = false;
   std::int64_t runs_ = 0, searches_ = 0;

@@ -1,8 +1,11 @@
 // Self-collision (self_collision.h): how a pair that is too near is pushed apart.
 //
-//   stiff:   Δx_a = n (t - d) w_a/(w_a + w_b), the velocity into the other is lost, and the tangential
-//            velocity t loses up to μ times as much as was pressed (Coulomb); averaged over the pairs
-//   course:  Δx_a = n (t - d), averaged over the pairs and divided by the substeps, velocity included
+//   stiff:   Δx_a = n (t - d) w_a/(w_a + w_b), the velocity into the other is lost, and the
+//   tangential
+//            velocity t loses up to μ times as much as was pressed (Coulomb); averaged over the
+//            pairs
+//   course:  Δx_a = n (t - d), averaged over the pairs and divided by the substeps, velocity
+//   included
 //            (seeds 001 and 004: the position before stays)
 #include <algorithm>
 #include <cmath>
@@ -13,8 +16,10 @@
 namespace weft::physics {
 namespace {
 
-constexpr float kMostPush = 0.5f;  // of the thickness, at once: what starts intersecting comes apart slowly
-constexpr float kHeld = 1.05f;  // thicknesses that a pair is held apart: layers of a stack sink in a little
+constexpr float kMostPush =
+    0.5f;  // of the thickness, at once: what starts intersecting comes apart slowly
+constexpr float kHeld =
+    1.05f;  // thicknesses that a pair is held apart: layers of a stack sink in a little
 constexpr float kTiny = 1e-12f;
 
 }  // namespace
@@ -32,7 +37,8 @@ void SelfContact::gather(std::size_t a) {
   b.thickness = sheet.thickness;
 }
 
-void SelfContact::separate(std::size_t a, double dt, int since) {
+void SelfContact::separate(std::size_t t, double dt, int since) {
+  const auto a = std::size_t(touching_.owner[t]);
   const Body& p = bodies_[a];
   Body& out = separated_[a];
   out = p;
@@ -41,8 +47,8 @@ void SelfContact::separate(std::size_t a, double dt, int since) {
   const Sheet& sheet = sheets_[site.cloth];
   float push[3] = {}, gain[3] = {};
   int count = 0;
-  for (std::int32_t k = pairs_.first[a]; k < pairs_.first[a + 1]; ++k) {
-    const std::int32_t other = pairs_.neighbour[std::size_t(k)];
+  for (std::int32_t k = touching_.first[t]; k < touching_.first[t + 1]; ++k) {
+    const std::int32_t other = touching_.neighbour[std::size_t(k)];
     const Body& q = bodies_[std::size_t(other)];
     const float thickness = 0.5f * (p.thickness + q.thickness) * (sheet.course ? 1 : kHeld);
     float d[3] = {p.x[0] - q.x[0], p.x[1] - q.x[1], p.x[2] - q.x[2]};
@@ -65,13 +71,14 @@ void SelfContact::separate(std::size_t a, double dt, int since) {
     const float lift = std::min(depth, kMostPush * thickness) * share;
     const float u[3] = {p.v[0] - q.v[0], p.v[1] - q.v[1], p.v[2] - q.v[2]};
     const float into = u[0] * n[0] + u[1] * n[1] + u[2] * n[2];
-    const float t[3] = {u[0] - into * n[0], u[1] - into * n[1], u[2] - into * n[2]};
-    const float sliding = std::sqrt(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+    const float slide[3] = {u[0] - into * n[0], u[1] - into * n[1], u[2] - into * n[2]};
+    const float sliding =
+        std::sqrt(slide[0] * slide[0] + slide[1] * slide[1] + slide[2] * slide[2]);
     const float lost = std::max(0.f, -into);
     const float rubbed = sliding > kTiny ? std::min(1.f, sheet.friction * lost / sliding) : 0;
     for (int m = 0; m < 3; ++m) {
       push[m] += n[m] * lift;
-      gain[m] += (n[m] * lost - t[m] * rubbed) * share;
+      gain[m] += (n[m] * lost - slide[m] * rubbed) * share;
     }
   }
   if (count == 0) return;
@@ -87,7 +94,8 @@ void SelfContact::separate(std::size_t a, double dt, int since) {
   }
 }
 
-void SelfContact::scatter(std::size_t a) {
+void SelfContact::scatter(std::size_t t) {
+  const auto a = std::size_t(touching_.owner[t]);
   const Site& s = pairs_.site[a];
   Lattice& l = *sheets_[s.cloth].lattice;
   if (bodies_[a].w <= 0) return;

@@ -12,11 +12,11 @@
 namespace weft::physics {
 namespace {
 
-constexpr double kSmall = 1.5;        // in diagonals of the mesh: a larger radius needs no triangles
-constexpr int kProjections = 12;      // between triangle and core
-constexpr int kMostPlaces = 16;       // on the way of a fast collider
-constexpr double kSlack = 1e-4;       // of an edge: a triangle may be as deep
-constexpr int kTurns = 8;             // of one triangle in a substep
+constexpr double kSmall = 1.5;    // in diagonals of the mesh: a larger radius needs no triangles
+constexpr int kProjections = 12;  // between triangle and core
+constexpr int kMostPlaces = 16;   // on the way of a fast collider
+constexpr double kSlack = 1e-4;   // of an edge: a triangle may be as deep
+constexpr int kTurns = 8;         // of one triangle in a substep
 
 using Weights = std::array<double, 3>;
 
@@ -64,8 +64,8 @@ struct Deepest {
 };
 
 // The deepest point of a triangle in a shape, by alternating projections between triangle and core;
-// they end early at a plane that holds the two further apart than `offset`. A triangle that cuts the
-// core is first moved out of it, along the way of least overlap.
+// they end early at a plane that holds the two further apart than `offset`. A triangle that cuts
+// the core is first moved out of it, along the way of least overlap.
 template <class Shape>
 Deepest deepest_on(const Shape& shape, Corners c, double offset, double edge) {
   const Overlap overlap = overlap_of(shape, c.x);
@@ -100,8 +100,7 @@ struct Touch {
 
 // The first contact on the way of the triangle, seen from the collider.
 template <class Shape>
-Touch first_touch(const Shape& shape, double offset, const Corners& end, int places,
-                  double edge) {
+Touch first_touch(const Shape& shape, double offset, const Corners& end, int places, double edge) {
   for (int n = 1; n <= places; ++n) {
     const double left = 1 - double(n) / places;
     Corners c = end;
@@ -118,7 +117,8 @@ class ColliderFaces final : public RowStage {
  public:
   ColliderFaces(const ClothParts& parts, const Collider& collider, double edge)
       : RowStage("collider_faces", "triangles of the sheet against its small features", 1,
-                 2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1), "triangles"),
+                 2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1),
+                 "triangles"),
         parts_(parts),
         collider_(parts, collider),
         far_(parts, collider_.fastest()),
@@ -156,7 +156,8 @@ class ColliderFaces final : public RowStage {
       if (f.bound[i] >= near) continue;
       // An edge or a corner of the collider leaves a triangle by one of its sides after another.
       for (int n = 0; n < kTurns && touch(f.row, {j, j, j + 1}, {i, i + 1, i}); ++n) continue;
-      for (int n = 0; n < kTurns && touch(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i}); ++n) continue;
+      for (int n = 0; n < kTurns && touch(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i}); ++n)
+        continue;
     }
   }
 
@@ -203,7 +204,9 @@ class ColliderFaces final : public RowStage {
     return true;
   }
 
-  Vec3 into_shape(const Vec3& p) const { return {dot(axes_[0], p), dot(axes_[1], p), dot(axes_[2], p)}; }
+  Vec3 into_shape(const Vec3& p) const {
+    return {dot(axes_[0], p), dot(axes_[1], p), dot(axes_[2], p)};
+  }
 
   // Changes of position and velocity of the touching point, as a particle's in collide.h.
   static std::pair<Vec3, Vec3> rub(const CollideRow& r, const Touch& touch, const Vec3& speed) {

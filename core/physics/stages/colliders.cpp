@@ -23,7 +23,8 @@ class ColliderStage final : public RowStage {
         parts_(parts),
         collider_(parts, collider),
         far_(parts, collider_.fastest()),
-        kernel_(parts.kernels.collide[collider.shape.index()][std::size_t(collider.friction.model)]) {}
+        kernel_(
+            parts.kernels.collide[collider.shape.index()][std::size_t(collider.friction.model)]) {}
 
   void run(int j, const Substep& s) override {
     if (far_.skip(j, s)) return;

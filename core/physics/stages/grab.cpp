@@ -1,6 +1,6 @@
 // Stage "grab": a particle is drawn to a target by a critically damped spring, taken implicitly, so
-// that any stiffness is stable. It is never much stiffer than the cloth's own links, nor stronger than
-// they are at twice their length, so that the substeps can follow what it does to them:
+// that any stiffness is stable. It is never much stiffer than the cloth's own links, nor stronger
+// than they are at twice their length, so that the substeps can follow what it does to them:
 //
 //   Δv = dt w (k (target - x - dt v) - c v)/(1 + dt² w k + dt w c),  c = 2 √(k/w)
 #include "physics/stages/grab.h"

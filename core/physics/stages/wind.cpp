@@ -20,9 +20,11 @@ struct Wave {
 class WindStage final : public RowStage {
  public:
   WindStage(const ClothParts& parts, std::uint64_t seed)
-      : RowStage("wind", parts.scene.wind.turbulence > 0 ? "drag and lift of triangles, gusts"
-                                                         : "drag and lift of triangles",
-                 1, 2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1), "triangles"),
+      : RowStage("wind",
+                 parts.scene.wind.turbulence > 0 ? "drag and lift of triangles, gusts"
+                                                 : "drag and lift of triangles",
+                 1, 2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1),
+                 "triangles"),
         parts_(parts) {
     const Wind& wind = parts.scene.wind;
     Random random(seed, kStream);
@@ -31,7 +33,8 @@ class WindStage final : public RowStage {
       const double size = std::max(std::hypot(d[0], d[1], d[2]), 1e-3);
       const double length = kShortest * std::pow(kLongest / kShortest, random.unit());
       for (int k = 0; k < 3; ++k) w.k[k] = d[k] / size / length;
-      const double carried = wind.velocity[0] * w.k[0] + wind.velocity[1] * w.k[1] + wind.velocity[2] * w.k[2];
+      const double carried =
+          wind.velocity[0] * w.k[0] + wind.velocity[1] * w.k[1] + wind.velocity[2] * w.k[2];
       w.rate = kSlowest + (kFastest - kSlowest) * random.unit() - carried;
       w.phase = random.unit();
     }
