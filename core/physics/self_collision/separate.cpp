@@ -19,7 +19,7 @@ namespace {
 constexpr float kMostPush =
     0.5f;  // of the thickness, at once: what starts intersecting comes apart slowly
 constexpr float kHeld =
-    1.05f;  // thicknesses that a pair is held apart: layers of a stack sink in a little
+    1.07f;  // thicknesses that a pair is held apart: layers of a stack sink in a little
 constexpr float kTiny = 1e-12f;
 
 }  // namespace
