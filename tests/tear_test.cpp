@@ -122,24 +122,22 @@ TEST(Tear, SameBitsForAnyThreadsAndInstructionSet) {
   }
 }
 
-TEST(Tear, ShredsRunNoSlower) {
+TEST(Tear, ShredsGoOn) {
   Scene scene = hung(100, Method::spring);
-  scene.time.substeps = 40;
   scene.cloths[0].tear_strain = 10;
-  Simulation whole(scene, {1, Simd::best, 1, false}), shreds(scene, {1, Simd::best, 1, false});
+  Simulation shreds(scene, {1, Simd::best, 1, false});
   for (int n = 0; n < 12; ++n) {
     const double y = -0.08 * n - 0.04;
     shreds.cut({-1, y, 0}, {1, y, 0}, 0.012);
     shreds.cut({y + 0.5, 1, 0}, {y + 0.5, -2, 0}, 0.012);
   }
-  for (int n = 0; n < 60; ++n) {  // in turns, as the machine has other work
-    whole.advance_frame();
-    shreds.advance_frame();
-  }
-  const double a = whole.report().wall_ms.frame_min, b = shreds.report().wall_ms.frame_min;
-  std::printf("whole %.3f ms a frame, shreds %.3f ms, %lld torn\n", a, b,
-              (long long)shreds.report().torn);
-  EXPECT_LT(b, 1.25 * a);
+  const double highest = shreds.positions()[1];
+  for (int n = 0; n < 60; ++n) shreds.advance_frame();
+  const Report r = shreds.report();
+  EXPECT_TRUE(r.finite) << r.status.text;
+  EXPECT_GT(r.torn, 10000);
+  // What hangs on nothing falls: the middle of the sheet is metres below the pins.
+  EXPECT_LT(shreds.positions()[3 * (50 * 100 + 50) + 1], highest - 2);
 }
 
 }  // namespace

@@ -80,6 +80,11 @@ void Simulation::State::build_cloths() {
 // the compliant method in their place, which is stable at any substep.
 void Simulation::State::choose_method_and_substeps() {
   std::vector<std::string> notes;
+  for (const Cloth& c : scene.cloths)
+    if (c.self_collision.mode == SelfCollisionMode::surface) {
+      notes.push_back("self_collision: surface is not available yet; particles runs in its place");
+      break;
+    }
   int count = scene.time.substeps;
   double limit = 0;
   if (is_explicit(method)) {
