@@ -101,7 +101,8 @@ TEST(ContactTunnel, SmallCollidersDoNotSlipBetweenParticles) {
 
 TEST(ContactTunnel, LargeCollidersNeedNoTriangles) {
   Held held(Sphere{{0, 0.5, 0}, 0.4}, {});
-  for (const PlannedStage& s : Simulation(held.scene).plan().stages)
+  const Simulation simulation(held.scene);
+  for (const PlannedStage& s : simulation.plan().stages)
     EXPECT_NE(s.name, "collider_faces");
 }
 
