@@ -20,6 +20,9 @@ using bench::Problem;
 using bench::Trial;
 using Clock = std::chrono::steady_clock;
 
+// The method of ours that is compared besides springs.
+const char* const kLine = "compliant line, order 2";
+
 struct Solver {
   const char* name;
   std::function<std::unique_ptr<bench::Peer>(const weft::Scene&, int)> make;
@@ -74,7 +77,9 @@ bool run_peer(const Problem& problem, const Solver& solver, int substeps,
 
 // Every run of the others against our fastest that is at least as accurate.
 void print_ratios(const Problem& problem, const std::vector<Trial>& trials) {
-  const auto ours = [](const Trial& t) { return t.setting.method == "spring"; };
+  const auto ours = [](const Trial& t) {
+    return t.setting.method == "spring" || t.setting.method == kLine;
+  };
   for (const Trial& peer : trials) {
     if (peer.size != problem.size || ours(peer) || !peer.ok()) continue;
     const Trial* best = nullptr;
@@ -85,7 +90,8 @@ void print_ratios(const Problem& problem, const std::vector<Trial>& trials) {
     std::printf("  %-24s %.1e m in %8.1f ms; ", peer.setting.method.c_str(), peer.rms,
                 peer.quiet_ms);
     if (best)
-      std::printf("springs %.1e m in %7.2f ms: %.0f times faster\n", best->rms, best->quiet_ms,
+      std::printf("ours %.1e m in %7.2f ms (%s, %d threads): %.0f times faster\n", best->rms,
+                  best->quiet_ms, best->setting.method.c_str(), best->threads,
                   peer.quiet_ms / best->quiet_ms);
     else
       std::printf("none of ours is as accurate\n");
@@ -95,9 +101,11 @@ void print_ratios(const Problem& problem, const std::vector<Trial>& trials) {
 void run_size(const Problem& problem, bool quick, std::vector<Trial>& trials) {
   const bench::Reference r = bench::reference(problem.question, WEFT_REFERENCE_CACHE);
   for (const bench::Setting& s : bench::settings_for(problem, quick))
-    if (s.method == "spring" && s.substeps <= 256)
-      trials.push_back(
-          bench::run_trial(problem, s, weft::Simd::best, 1, r.positions, {0.5, 3, 20}));
+    if ((s.method == "spring" && s.substeps <= 256) ||
+        (s.method == kLine && s.substeps >= 4 && s.solver.iterations == 1))
+      for (const int threads : {1, 2})
+        trials.push_back(
+            bench::run_trial(problem, s, weft::Simd::best, threads, r.positions, {0.3, 3, 20}));
   for (const Solver& solver : solvers())
     for (int substeps : solver.substeps) {
       Trial t;

@@ -16,7 +16,7 @@ namespace bench {
 namespace {
 
 // Page and drawing area [px].
-constexpr double kWidth = 860, kHeight = 520, kLeft = 84, kRight = 636, kTop = 84, kBottom = 452;
+constexpr double kWidth = 900, kHeight = 520, kLeft = 84, kRight = 636, kTop = 84, kBottom = 452;
 
 // Told apart by people of any colour vision (after Okabe and Ito), darkened for thin lines on
 // white.

@@ -27,7 +27,8 @@ std::ofstream open(const std::string& path) {
 std::string series_name(const Trial& t, const std::vector<Trial>& all) {
   std::string name = t.setting.method;
   const auto differ = [&](auto&& other) { return std::any_of(all.begin(), all.end(), other); };
-  if (differ([&](const Trial& o) { return o.ok() && o.simd != t.simd; })) name += ", " + t.simd;
+  const auto other_set = [&](const Trial& o) { return o.ok() && !o.simd.empty() && o.simd != t.simd; };
+  if (!t.simd.empty() && differ(other_set)) name += ", " + t.simd;
   if (differ([&](const Trial& o) { return o.threads != t.threads; }))
     name += t.threads == 1 ? ", 1 thread" : ", " + std::to_string(t.threads) + " threads";
   return name;
@@ -148,6 +149,7 @@ void write_json(const std::string& path, const std::vector<Trial>& trials,
                                      {"substeps", t.substeps},
                                      {"setup_ms", t.setup_ms},
                                      {"run_ms", t.run_ms},
+                                     {"quiet_ms", t.quiet_ms},
                                      {"frames", t.frames},
                                      {"rms", t.rms},
                                      {"greatest", t.greatest},

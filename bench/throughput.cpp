@@ -99,6 +99,7 @@ int main(int argc, char** argv) {
     bench::register_steps(quick);
     bench::register_stages(quick);
     bench::register_features(quick);
+    bench::register_self_collision(quick);
     bench::register_scenes(quick);
     Keeper keeper;
     benchmark::RunSpecifiedBenchmarks(&keeper);

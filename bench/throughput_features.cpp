@@ -43,13 +43,30 @@ std::vector<Feature> features() {
          s.cloths[0].self_collision.thickness = 0.01;
        }},
       {"tearing, whole", "tear", [](weft::Scene& s) { s.cloths[0].tear_strain = 5; }},
+      {"tearing, shreds", "tear", [](weft::Scene& s) { s.cloths[0].tear_strain = 5; }},
       {"bending", "bending", [](weft::Scene& s) { s.cloths[0].bending = 1e-5; }},
       {"wind", "wind",
        [](weft::Scene& s) {
          s.wind.velocity = {1, 0, 0};
          s.wind.drag = 0.5;
        }},
+      {"asleep", "",
+       [](weft::Scene& s) {
+         s.gravity = {0, 0, 0};
+         s.cloths[0].drag = 100;  // rounding makes light springs shiver
+         s.solver.sleep = 0.1;
+       }},
   };
+}
+
+// Cuts across the sheet, which lies in the xz-plane, every seven squares both ways.
+void cut_to_shreds(weft::Simulation& simulation) {
+  const int n = simulation.view().cloths[0].columns;
+  for (int k = 3; k < n - 1; k += 7) {
+    const double at = (k + 0.5) / (n - 1);
+    simulation.cut({-1, 0, at}, {2, 0, at}, 0.1 / n);
+    simulation.cut({at, 0, -1}, {at, 0, 2}, 0.1 / n);
+  }
 }
 
 void run_feature(benchmark::State& state, const Feature& feature, int n) {
@@ -65,7 +82,9 @@ void run_feature(benchmark::State& state, const Feature& feature, int n) {
     state.SkipWithError("not in the plan");
     return;
   }
-  simulation.advance_frame();
+  if (std::string(feature.name).find("shreds") != std::string::npos) cut_to_shreds(simulation);
+  do simulation.advance_frame();
+  while (scene.solver.sleep > 0 && simulation.time() < 0.6);  // asleep after half a second
   const double ns = fastest_ns(state, [&] { simulation.advance_frame(); });
   if (!simulation.status().ok) state.SkipWithError(simulation.status().text.c_str());
   count_work(state, widest(), ns, {16, double(n) * n, 0});

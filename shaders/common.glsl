@@ -7,7 +7,7 @@ layout(std140) uniform Frame {
   mat4 u_shadow_matrix;  // world -> shadow map, 0 … 1
   vec4 u_eye;            // w: size of the scene [m]
   vec4 u_light;          // direction towards the light; w: shadow bias [m]
-  vec4 u_light_color;    // w: 1 when there are shadows
+  vec4 u_light_color;    // w: samples along a side of the shadow's soft edge; 0: no shadows
   vec4 u_right;          // camera axes scaled to the edge of the view, for the background
   vec4 u_up;
   vec4 u_forward;
@@ -22,7 +22,7 @@ uniform float u_translucency;  // share of light that shines through (cloth)
 uniform vec3 u_parts;          // ambient, diffuse, specular: 1 on, 0 off
 uniform float u_shininess;
 uniform float u_normal_scale;
-uniform float u_height_scale;   // m
+uniform float u_raise;          // m, along the normal, of what is highest
 uniform vec2 u_texture_scale;   // repeats over the surface
 uniform float u_force_scale;    // 1/N: maps forces to colours
 uniform float u_strain_range;   // strain at the end of the colour scale
@@ -93,7 +93,7 @@ Surface seen_surface() {
 
 vec3 base_color(Surface s) { return s.back ? u_back_color : u_color; }
 
-// Share of the light that reaches the point: 4 x 4 comparisons, each filtered by the sampler.
+// Share of the light that reaches the point: n x n comparisons, each filtered by the sampler.
 float lit(vec3 position, vec3 normal) {
   if (u_light_color.w < 0.5) return 1.0;
   float side = dot(normal, u_light.xyz) < 0.0 ? -1.0 : 1.0;
@@ -101,11 +101,12 @@ float lit(vec3 position, vec3 normal) {
   vec3 at = (u_shadow_matrix * vec4(p, 1.0)).xyz;
   if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
   vec2 texel = 1.3 / vec2(textureSize(u_shadow, 0));
+  int n = int(u_light_color.w);
   float sum = 0.0;
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j)
-      sum += texture(u_shadow, vec3(at.xy + (vec2(i, j) - 1.5) * texel, at.z));
-  return sum / 16.0;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      sum += texture(u_shadow, vec3(at.xy + (vec2(i, j) - 0.5 * float(n - 1)) * texel, at.z));
+  return sum / float(n * n);
 }
 
 // Light from the sky and, from below, from the ground.
@@ -169,7 +170,7 @@ mat3 surface_axes(vec3 n) {
   return mat3(t, dot(b, bv) < 0.0 ? -b : b, n);
 }
 
-// Normal of the surface raised by the height map: the slope along u and v by differences of one
+// Normal of the face seen, raised by the height map: the slope along u and v by differences of one
 // texel, turned into the surface's axes.
 vec3 bumped_normal(Surface s) {
   vec2 uv = v_uv * u_texture_scale;
@@ -177,8 +178,7 @@ vec3 bumped_normal(Surface s) {
   float h = texture(u_height, uv).r;
   float du = texture(u_height, uv + vec2(texel.x, 0.0)).r - h;
   float dv = texture(u_height, uv + vec2(0.0, texel.y)).r - h;
-  float side = s.back ? -1.0 : 1.0;
-  vec3 slope = vec3(-side * u_normal_scale * vec2(du, dv) * 10.0, 1.0);
+  vec3 slope = vec3(-u_normal_scale * vec2(du, dv) * 10.0, 1.0);
   return normalize(surface_axes(s.normal) * slope);
 }
 

@@ -39,13 +39,9 @@ TEST(CliErrors, CommandLineFaultsNameTheOptionAndWhatIsAllowed) {
   expect_usage_error("run small.json twice.json", "twice.json", "one SCENE");
 }
 
-TEST(CliErrors, WhatCannotBeWrittenYetIsRefusedWithWhatCan) {
-  for (const char* extension : {"mdd", "gltf", "glb", "abc"}) {
-    expect_usage_error(std::string("run small.json --export a.") + extension, "--export",
-                       "(.pc2, .obj)");
-  }
-  expect_usage_error("run small.json --record a", "--record", "--export");
-  expect_usage_error("run small.json --replay a", "--replay", "--export");
+TEST(CliErrors, WhatCannotBeWrittenIsRefusedWithWhatCan) {
+  expect_usage_error("run small.json --export a.abc", "--export",
+                     "(.pc2, .mdd, .obj, .gltf, .glb)");
 }
 
 TEST(CliErrors, TwoOutputsToOneFileAreRefused) {

@@ -97,6 +97,20 @@ TEST(CliRun, WritesAnObjSequence) {
   EXPECT_EQ(folder.files(), 4U);
 }
 
+TEST(CliRun, WritesEveryAnimationFormat) {
+  const Folder folder;
+  small_scene(folder);
+  for (const char* name : {"a.mdd", "a.glb", "a.gltf"})
+    EXPECT_EQ(run_weft(folder, std::string("run small.json --frames 2 --export ") + name).exit_code,
+              0);
+  EXPECT_EQ(folder.read("a.mdd").size(), 8U + 3 * 4 + 3 * 48 * 12);
+  EXPECT_EQ(folder.read("a.glb").substr(0, 4), "glTF");
+  EXPECT_TRUE(folder.has("a.bin"));
+  const Outcome outcome = run_weft(folder, "run small.json --frames 9000 --export b.glb");
+  EXPECT_EQ(outcome.exit_code, 5);
+  EXPECT_NE(outcome.err.find("do not fit morph targets"), std::string::npos) << outcome.err;
+}
+
 TEST(CliRun, WritesTheReportToAPipe) {
   const Folder folder;
   small_scene(folder);

@@ -45,7 +45,9 @@ Sheet crumpled(int nx, int ny, Family family, double gradient = 0) {
 }
 
 void sweep(Sheet& s, Simd simd, const LineOptions& options, int threads = 1) {
-  const ClothParts parts{s.scene, s.scene.cloths[0], s.lattice, s.families, kernel_table(simd)};
+  const std::vector<StartInside> no_colliders;
+  const ClothParts parts{s.scene,    s.scene.cloths[0],  s.lattice,
+                         s.families, kernel_table(simd), no_colliders};
   Threads pool(threads);
   make_line(parts, options)->run_alone(s.lattice.rows, {kDt, kDt, 0}, pool);
 }

@@ -1,7 +1,9 @@
 // Point caches and OBJ sequences, read back by what their formats say.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "folder.h"
@@ -117,6 +119,152 @@ TEST(Pc2, RefusesAnotherNumberOfParticles) {
   const Sheet other(3, 3);
   const auto animation = open_animation(folder / "a.pc2", view_of({&sheet}));
   EXPECT_THROW(animation->append(view_of({&other})), std::invalid_argument);
+}
+
+template <class T>
+T big_endian_at(const std::string& bytes, std::size_t offset) {
+  std::string turned = bytes.substr(offset, sizeof(T));
+  std::ranges::reverse(turned);
+  return value_at<T>(turned, 0);
+}
+
+TEST(Mdd, HasTimesThenPositionsOfEverySample) {
+  const Folder folder;
+  Sheet one(3, 2), two(2, 2);
+  const auto animation = open_animation(folder / "a.mdd", view_of({&one, &two}));
+  View view = view_of({&one, &two});
+  animation->append(view);
+  two.move(5);
+  view.time = 0.25;
+  animation->append(view);
+  animation->finish();
+  const std::string bytes = folder.read("a.mdd");
+  ASSERT_EQ(bytes.size(), 8U + 2 * 4 + 2 * 10 * 12);
+  EXPECT_EQ(big_endian_at<std::int32_t>(bytes, 0), 2);
+  EXPECT_EQ(big_endian_at<std::int32_t>(bytes, 4), 10);
+  EXPECT_EQ(big_endian_at<float>(bytes, 8), 0.0F);
+  EXPECT_EQ(big_endian_at<float>(bytes, 12), 0.25F);
+  const auto position = [&](std::size_t sample, std::size_t point, std::size_t axis) {
+    return big_endian_at<float>(bytes, 16 + ((sample * 10 + point) * 3 + axis) * 4);
+  };
+  EXPECT_EQ(position(0, 2, 0), 0.2F);
+  EXPECT_EQ(position(0, 3, 2), 0.1F);
+  EXPECT_EQ(position(0, 6, 1), 1.0F / 3.0F);
+  EXPECT_EQ(position(1, 6, 0), 5.0F);
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+// What a reader of the format sees: the JSON, and a float of an accessor.
+struct Model {
+  nlohmann::json json;
+  std::string buffer;
+  float value(std::size_t accessor, std::size_t number) const {
+    const auto view = json["bufferViews"][json["accessors"][accessor]["bufferView"].get<std::size_t>()];
+    EXPECT_LT(number * 4, view["byteLength"].get<std::size_t>());
+    return value_at<float>(buffer, view["byteOffset"].get<std::size_t>() + number * 4);
+  }
+};
+
+Model read_glb(const std::string& bytes) {
+  EXPECT_EQ(bytes.substr(0, 4), "glTF");
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 4), 2U);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 8), bytes.size());
+  const auto text = value_at<std::uint32_t>(bytes, 12);
+  EXPECT_EQ(bytes.substr(16, 4), "JSON");
+  EXPECT_EQ(text % 4, 0U);
+  const auto size = value_at<std::uint32_t>(bytes, 20 + text);
+  EXPECT_EQ(bytes.substr(24 + text, 4), std::string("BIN\0", 4));
+  EXPECT_EQ(28 + text + size, bytes.size());
+  return {nlohmann::json::parse(bytes.substr(20, text)), bytes.substr(28 + text)};
+}
+
+void expect_two_sheets(const Model& model) {
+  const auto& mesh = model.json["meshes"][1];
+  const auto& primitive = mesh["primitives"][0];
+  ASSERT_EQ(primitive["targets"].size(), 2U);  // all samples but the first
+  const auto accessor = [&](const nlohmann::json& holder) {
+    return holder["POSITION"].get<std::size_t>();
+  };
+  EXPECT_EQ(model.value(accessor(primitive["attributes"]), 1), 1.0F / 3.0F);
+  EXPECT_EQ(model.value(accessor(primitive["attributes"]), 3), 0.1F);
+  EXPECT_EQ(model.value(accessor(primitive["targets"][0]), 0), 5.0F);
+  EXPECT_EQ(model.value(accessor(primitive["targets"][1]), 3), 7.0F);
+  EXPECT_EQ(model.json["accessors"][accessor(primitive["targets"][0])]["max"][0], 5.0);
+  EXPECT_EQ(model.json["accessors"][primitive["indices"].get<std::size_t>()]["count"], 6);
+  const auto& animation = model.json["animations"][0];
+  EXPECT_EQ(animation["channels"].size(), 2U);
+  const auto input = animation["samplers"][0]["input"].get<std::size_t>();
+  const auto output = animation["samplers"][0]["output"].get<std::size_t>();
+  EXPECT_EQ(model.value(input, 1), 0.25F);
+  for (std::size_t sample = 0; sample < 3; ++sample)
+    for (std::size_t target = 0; target < 2; ++target)
+      EXPECT_EQ(model.value(output, sample * 2 + target), sample == target + 1 ? 1.0F : 0.0F);
+  EXPECT_EQ(model.json["buffers"][0]["byteLength"], model.buffer.size());
+}
+
+void append_two_sheets(Animation& animation, Sheet& one, Sheet& two) {
+  View view = view_of({&one, &two});
+  animation.append(view);
+  two.move(5);
+  view.time = 0.25;
+  animation.append(view);
+  two.move(7);
+  view.time = 0.5;
+  animation.append(view);
+  animation.finish();
+}
+
+TEST(Gltf, HasAMorphTargetForEverySample) {
+  const Folder folder;
+  Sheet one(3, 2), two(2, 2);
+  const auto glb = open_animation(folder / "a.glb", view_of({&one, &two}), 3);
+  append_two_sheets(*glb, one, two);
+  expect_two_sheets(read_glb(folder.read("a.glb")));
+  EXPECT_EQ(folder.files(), 1U);
+  two.move(0);
+  const auto gltf = open_animation(folder / "b.gltf", view_of({&one, &two}), 3);
+  append_two_sheets(*gltf, one, two);
+  const Model model{nlohmann::json::parse(folder.read("b.gltf")), folder.read("b.bin")};
+  EXPECT_EQ(model.json["buffers"][0]["uri"], "b.bin");
+  expect_two_sheets(model);
+}
+
+TEST(Gltf, RefusesWhatDoesNotFit) {
+  const Folder folder;
+  const Sheet sheet(3, 2);
+  EXPECT_THROW(open_animation(folder / "a.glb", view_of({&sheet}), 5000), WriteError);
+  View large = view_of({&sheet});
+  large.cloths[0].columns = large.cloths[0].rows = 1000;
+  EXPECT_THROW(open_animation(folder / "a.glb", large, 1000), WriteError);
+  const auto animation = open_animation(folder / "a.glb", view_of({&sheet}), 3);
+  View torn = view_of({&sheet});
+  torn.cloths[0].topology_version = 1;
+  EXPECT_THROW(animation->append(torn), WriteError);
+}
+
+// A sheet of two squares that has lost the left one's lower triangle to a tear.
+TEST(Obj, ShowsWhatIsLeftOfTornCloth) {
+  const Folder folder;
+  const Sheet one(3, 2), two(2, 2);
+  View view = view_of({&one, &two});
+  const std::vector<std::array<std::uint32_t, 3>> left{{0, 1, 16}, {1, 2, 17}, {2, 18, 17}},
+      seams{{0, 1, 2}};
+  const std::vector<std::array<float, 3>> points{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
+  const std::vector<std::uint32_t> owners{1, 17, 16};
+  view.cloths[0].topology_version = 1;
+  view.cloths[0].triangles = left;
+  view.cloths[0].seams = seams;
+  view.cloths[0].seam_points = points;
+  view.cloths[0].seam_particles = owners;
+  open_animation(folder / "run.obj", view)->append(view);
+  std::istringstream lines(folder.read("run_0000.obj"));
+  std::vector<std::string> faces, vertices;
+  for (std::string line; std::getline(lines, line);)
+    if (line[0] != 'o') (line[0] == 'f' ? faces : vertices).push_back(line);
+  EXPECT_EQ(faces, (std::vector<std::string>{"f 1 2 4", "f 2 3 5", "f 3 6 5", "f 7 8 9",
+                                             "f 10 11 13 12"}));
+  ASSERT_EQ(vertices.size(), 6U + 3 + 4);
+  EXPECT_EQ(vertices[7], "v 4 5 6");
 }
 
 TEST(Obj, IsASequenceOfCompleteFiles) {

@@ -25,7 +25,7 @@ constexpr int kGuard = 16;  // zero lanes that springs along a row read before i
 struct Patch {
   int columns, stride;
   Rows x, v, f, previous, carry;
-  AlignedArray<float> w, lambda, scratch;
+  AlignedArray<float> w, row_w, lambda, scratch;
   AlignedArray<std::int32_t> lanes;
 
   Patch(int columns_, float padding)
@@ -37,6 +37,7 @@ struct Patch {
         previous(kRows, stride),
         carry(kRows, stride),
         w(std::size_t(kRows) * stride),
+        row_w(kRows),
         lambda(std::size_t(stride)),
         scratch(kGuard + 3 * std::size_t(stride)),
         lanes(2 * std::size_t(stride)) {
@@ -57,6 +58,14 @@ struct Patch {
     for (int i = 0; i < stride; ++i) lambda[i] = i < columns ? float(random.symmetric()) : padding;
     // Two coincident particles: a spring without a direction.
     for (int axis = 0; axis < 3; ++axis) x.at(axis, 0, 1) = x.at(axis, 0, 0);
+  }
+
+  // Gives all particles one inverse mass, none pinned.
+  void weigh_alike() {
+    for (int j = 0; j < kRows; ++j) {
+      row_w[std::size_t(j)] = 0.8f;
+      for (int i = 0; i < columns; ++i) w[std::size_t(j) * stride + i] = 0.8f;
+    }
   }
 
   const float* weights(int j) { return w.data() + std::size_t(j) * stride; }
@@ -127,6 +136,18 @@ constexpr std::array<std::array<int, 2>, 12> kOffsets{{{1, 0},
                                                        {7, 1},
                                                        {-16, 1}}};
 
+void fill(PlainRows& r, Patch& p, int begin, int end) {
+  r.begin = begin;
+  r.end = end;
+  r.rows = kRows;
+  r.columns = p.columns;
+  r.stride = p.stride;
+  r.x = p.x.row(0);
+  r.v = p.v.row(0);
+  r.w = p.weights(0);
+  for (int n = 0; n < 3; ++n) r.carry[n] = p.carry.row(n);
+}
+
 // Rows begin … end-1 of the patch with the six families of a plain cloth.
 void spring_rows(const KernelTable& k, Patch& p, int begin, int end) {
   std::vector<SpringConstants> springs;
@@ -142,18 +163,46 @@ void spring_rows(const KernelTable& k, Patch& p, int begin, int end) {
     below(2, {20, 39, 0});
   }
   SpringRows r{};
-  r.begin = begin;
-  r.end = end;
-  r.rows = kRows;
-  r.columns = p.columns;
-  r.stride = p.stride;
-  r.x = p.x.row(0);
-  r.v = p.v.row(0);
-  r.w = p.weights(0);
-  for (int n = 0; n < 3; ++n) r.carry[n] = p.carry.row(n);
+  fill(r, p, begin, end);
   r.springs = springs.data();
   r.advance = advance();
   k.spring_rows(r);
+}
+
+// A Jacobi sweep over rows begin … end-1, rigid or compliant.
+void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, int begin, int end) {
+  if (alike) p.weigh_alike();
+  std::vector<JacobiConstants> constraints;
+  JacobiRows r{};
+  for (int j = 0; j < kRows; ++j)
+    for (int f = 0; f < kPlainFamilies; ++f) {
+      r.rest[f] = 0.9f + 0.1f * float(f);
+      const int dj = f == 5 ? 2 : f == 0 || f == 4 ? 0 : 1;
+      const float kappa = 1 / (2 * 0.8f * 3 + compliance);
+      if (j + dj < kRows) constraints.push_back({compliance, kappa, kappa * r.rest[f]});
+      else constraints.push_back({std::numeric_limits<float>::infinity(), 0, 0});
+    }
+  fill(r, p, begin, end);
+  r.alike = alike;
+  r.constraints = constraints.data();
+  r.weight = 3;
+  r.inverse_dt = compliance > 0 ? 100.0f : 0.0f;
+  k.jacobi_rows(r);
+}
+
+void add_jacobi(std::vector<Case>& cases) {
+  for (const float compliance : {0.0f, 0.7f})
+    for (const bool alike : {false, true}) {
+      const std::string name = std::string("jacobi_rows, ") + (compliance > 0 ? "compliant" : "rigid") +
+                               (alike ? ", alike" : "");
+      cases.push_back({name, 2, [=](const KernelTable& k, Patch& p) {
+                         jacobi_rows(k, p, compliance, alike, 0, kRows);
+                       }});
+      cases.push_back({name + ", in two parts", 2, [=](const KernelTable& k, Patch& p) {
+                         jacobi_rows(k, p, compliance, alike, 0, 1);
+                         jacobi_rows(k, p, compliance, alike, 1, kRows);
+                       }});
+    }
 }
 
 void add_springs(std::vector<Case>& cases) {
@@ -188,13 +237,16 @@ void add_moves(std::vector<Case>& cases) {
 struct Features {
   const char* name;
   float compliance, weight;
-  bool limit, multipliers;
+  bool limit, multipliers, alike = false;
 };
 constexpr Features kFeatures[] = {{"rigid", 0, 1, false, false},
                                   {"heavier", 0, 1.7f, false, false},
                                   {"compliant", 0.7f, 1, false, false},
                                   {"multipliers", 0.7f, 1, false, true},
-                                  {"limit", 0, 1, true, false}};
+                                  {"limit", 0, 1, true, false},
+                                  {"rigid, alike", 0, 1, false, false, true},
+                                  {"compliant, alike", 0.7f, 1, false, false, true},
+                                  {"multipliers, alike", 0.7f, 1, false, true, true}};
 
 void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Features& has,
                     bool jacobi) {
@@ -215,10 +267,16 @@ void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Featur
   if (has.compliance > 0) r.compliance = &has.compliance;
   if (has.multipliers) r.lambda = p.lambda.data();
   r.limit = has.limit;
-  if (has.limit || has.compliance > 0) r.inverse_dt = 100;
+  if (has.limit) r.inverse_dt = 100;
+  // Gauss–Seidel gathers what compliant constraints find.
+  if (has.compliance > 0 && !jacobi) r.u = p.previous.row(0);
+  if (has.alike) {
+    p.weigh_alike();
+    r.row_w = p.row_w.data();
+  }
   for (int a = 0; dj == 0 && a < r.count; ++a) p.lanes[std::size_t(a / di % 2 * p.stride + a)] = -1;
   r.lanes = p.lanes.data();
-  if (jacobi) return k.project_jacobi(r, 0, p.f.row(0), p.f.row(dj));
+  if (jacobi) return k.jacobi_family(r, 0, p.f.row(0), p.f.row(dj));
   k.project(r);
 }
 
@@ -226,7 +284,7 @@ void add_projections(std::vector<Case>& cases) {
   for (const auto& [di, dj] : kOffsets)
     for (const Features& has : kFeatures)
       for (const bool jacobi : {false, true})
-        if (!(jacobi && has.limit))
+        if (!(jacobi && (has.limit || has.alike)))
           cases.push_back({(jacobi ? "project_jacobi (" : "project (") + std::to_string(di) + "," +
                                std::to_string(dj) + ") " + has.name,
                            std::abs(di) + 1,
@@ -282,6 +340,7 @@ void add_contacts(std::vector<Case>& cases) {
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
   add_springs(cases);
+  add_jacobi(cases);
   add_moves(cases);
   add_projections(cases);
   add_contacts(cases);

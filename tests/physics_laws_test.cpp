@@ -159,29 +159,6 @@ TEST(FreeFallOfProjection, IsLateByHalfASubstep) {
     }
 }
 
-// Seconds of ten swings of a mass on one spring, from crossing to crossing of its rest length.
-double ten_periods(double dt) {
-  Scene scene = hanging_column(1, 0.1, 10, 1);
-  scene.gravity = {0, 0, 0};
-  scene.time = {dt, 1, 100};
-  Simulation simulation(scene);
-  std::vector<double> x = simulation.positions();
-  x[7] -= 0.1;
-  x[10] -= 0.1;
-  simulation.set_state(x, std::vector<double>(12, 0.0));
-  double before = -0.1, first = 0;
-  for (int crossings = 0;;) {
-    simulation.advance_frame();
-    const double now = position(simulation, 0, 1)[1] + 1;
-    if (before < 0 && now >= 0) {
-      const double at = simulation.time() - dt * now / (now - before);
-      if (crossings == 0) first = at;
-      if (crossings++ == 10) return at - first;
-    }
-    before = now;
-  }
-}
-
 TEST(Period, OfOneSpringIsOfSecondOrder) {
   const double truth = 2 * std::acos(-1.0) * std::sqrt(0.1 / 10);
   double before = 0;

@@ -95,6 +95,8 @@ constexpr Broken kBroken[] = {
      "/solver/tethers: tethers are on (only with method positional or compliant; the method is spring)"},
     {R"({"weft": 1, "solver": {"order": 2}, "cloths": [{}]})",
      "/solver/order: order is 2 (only with method compliant; the method is spring)"},
+    {R"({"weft": 1, "solver": {"order": 2, "method": "compliant", "sweep": "jacobi"}, "cloths": [{}]})",
+     "/solver/order: order is 2 (only with sweep gauss_seidel or line; the sweep is jacobi)"},
     {R"({"weft": 1, "solver": {"order": 3, "method": "compliant"}, "cloths": [{}]})",
      "/solver/order: order is 3 (1 or 2)"},
     {R"({"weft": 1, "cloths": [{"grid": {"points": [1, 5]}}]})",

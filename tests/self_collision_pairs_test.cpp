@@ -4,6 +4,7 @@
 #include <set>
 
 #include "contact_scenes.h"
+#include "machines.h"
 #include "physics/plan.h"
 #include "physics/self_collision/crossings.h"
 #include "physics/self_collision/self_collision.h"
@@ -160,11 +161,7 @@ TEST(SelfCollisionPairs, SameBitsForAnyThreadsAndInstructionSet) {
   scene.cloths[0].stiffness = {1000, 500, 20};
   scene.colliders.push_back(collider_of(Plane{}, 0.5));
   std::vector<std::uint64_t> hashes;
-  for (const Options& o : {Options{1, Simd::best, 1, false},
-                           {3, Simd::best, 1, false},
-                           {1, Simd::scalar, 1, false},
-                           {2, Simd::avx2, 1, false}}) {
-    if (!simd_available(o.simd)) continue;
+  for (const Options& o : machines()) {
     Simulation simulation(scene, o);
     advance(simulation, 0.5);
     hashes.push_back(simulation.hash());

@@ -27,6 +27,29 @@ inline Vec3 position(const Simulation& simulation, int i, int j) {
   return {c.x[at], c.y[at], c.z[at]};
 }
 
+// Seconds of ten swings of a mass on one spring, from crossing to crossing of its rest length.
+inline double ten_periods(double dt) {
+  Scene scene = hanging_column(1, 0.1, 10, 1);
+  scene.gravity = {0, 0, 0};
+  scene.time = {dt, 1, 100};
+  Simulation simulation(scene);
+  std::vector<double> x = simulation.positions();
+  x[7] -= 0.1;
+  x[10] -= 0.1;
+  simulation.set_state(x, std::vector<double>(12, 0.0));
+  double before = -0.1, first = 0;
+  for (int crossings = 0;;) {
+    simulation.advance_frame();
+    const double now = position(simulation, 0, 1)[1] + 1;
+    if (before < 0 && now >= 0) {
+      const double at = simulation.time() - dt * now / (now - before);
+      if (crossings == 0) first = at;
+      if (crossings++ == 10) return at - first;
+    }
+    before = now;
+  }
+}
+
 inline void advance(Simulation& simulation, double seconds) {
   const double frames = seconds / simulation.scene().time.frame;
   for (int frame = 0; frame < int(std::lround(frames)); ++frame) simulation.advance_frame();

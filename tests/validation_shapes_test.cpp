@@ -1,20 +1,11 @@
-// Hanging shapes at rest against closed forms, energy over a long time, and a pendulum: truth,
-// result and error are printed.
-#include <gtest/gtest.h>
-
+// Hanging shapes at rest against closed forms, and against themselves at finer resolutions.
 #include <algorithm>
 
 #include "sheets.h"
+#include "truth.h"
 
 namespace weft {
 namespace {
-
-double error_of(const std::string& what, double truth, double result) {
-  const double error = result / truth - 1;
-  std::printf("%-34s truth %.6f  result %.6f  error %+.1e\n", what.c_str(), truth, result, error);
-  testing::Test::RecordProperty(what, std::to_string(error));
-  return std::abs(error);
-}
 
 // Sag of an inextensible chain between supports 1 m apart: length = 2 a sinh(1/2a).
 double catenary_sag(double chain_length) {
@@ -64,9 +55,9 @@ TEST(Catenary, HasTheSagOfItsLength) {
     // The links stretch a little; the truth is that of the length the chain then has.
     const Hung hung = hung_chain(chain_length);
     EXPECT_NEAR(hung.length / chain_length, 1, 2e-3);
-    EXPECT_LT(error_of("catenary, length " + std::to_string(chain_length),
-                       catenary_sag(hung.length), hung.sag),
-              1e-3);
+    char name[48];
+    std::snprintf(name, sizeof name, "span 1 m, length %.4g m, 64 links", chain_length);
+    expect({"catenary, sag", name, catenary_sag(hung.length), 1e-3, "m"}, hung.sag);
   }
 }
 
@@ -90,95 +81,55 @@ TEST(HangingStrip, StretchesByItsWeight) {
   const double spring = 1.0 / (kRows - 1);
   const double top = -position(simulation, 5, 1)[1] / spring - 1;
   const double longer = -position(simulation, 5, kRows - 1)[1] - 1;
-  EXPECT_LT(error_of("strip, top strain", density * 9.81 / 200, top), 1e-3);
+  expect({"hanging strip", "top strain", density * 9.81 / 200, 1e-3, ""}, top);
   // Half the top strain in the continuum; (n+1)/2n of it for n springs.
-  EXPECT_LT(
-      error_of("strip, elongation", density * 9.81 / 200 * kRows / (2.0 * (kRows - 1)), longer),
-      1e-3);
+  expect({"hanging strip", "elongation", density * 9.81 / 200 * kRows / (2.0 * (kRows - 1)), 1e-3, "m"},
+         longer);
 }
 
-struct Drift {
-  double worst, change;  // of the energy: greatest error, and of the mean from half to half
-};
-
-// A free sheet that breathes within its plane for 100000 substeps of a share of the stability
-// limit.
-Drift energy_drift(double share) {
-  Scene scene;
-  scene.gravity = {0, 0, 0};
-  scene.cloths.emplace_back();
-  Cloth& cloth = scene.cloths[0];
-  cloth.grid = {12, 12, {-0.5, 0, -0.5}, {1, 0, 0}, {0, 0, 1}, 0};
-  cloth.particle_mass = 0.01;
-  cloth.stiffness = {100, 100, 20};
-  scene.time = {0.1, kAutoSubsteps, 100};
-  scene.time.substeps = int(std::ceil(0.1 / share / Simulation(scene).plan().dt_limit));
-  Simulation simulation(scene);
-  const std::vector<double> x = simulation.positions();
-  std::vector<double> v(x.size(), 0.0);
-  for (std::size_t n = 0; n < x.size(); ++n)
-    if (n % 3 != 1) v[n] = 0.2 * std::sin(3.14159 * x[n]);
-  simulation.set_state(x, v);
-  const double start = simulation.report().energy.total;
-  const int frames = 100000 / simulation.substeps();
-  double halves[2] = {0, 0}, worst = 0;
-  for (int frame = 0; frame < frames; ++frame) {
-    simulation.advance_frame();
-    const double error = simulation.report().energy.total / start - 1;
-    worst = std::max(worst, std::abs(error));
-    halves[2 * frame / frames] += 2 * error / frames;
-  }
-  std::printf("energy, substep %.3f of the limit: largest error %.1e, change of the mean %+.1e\n",
-              share, worst, halves[1] - halves[0]);
-  return {worst, std::abs(halves[1] - halves[0])};
-}
-
-// What the leapfrog keeps is its own energy, off from the true one by the square of the substep: it
-// swings, but does not drift.
-TEST(Energy, OfAFreeSheetIsKeptFor100000Substeps) {
-  const Drift half = energy_drift(0.5), eighth = energy_drift(0.125);
-  EXPECT_LT(half.worst, 1e-2);
-  EXPECT_LT(half.change, 1e-3);
-  EXPECT_LT(eighth.worst, 1e-3);
-  EXPECT_LT(eighth.change, 2e-4);
-}
-
-// Time that a rigid link takes from level to plumb: a quarter of the period.
-double quarter_period(Method method, int substeps) {
+// Positions of a hammock of (n+1) x (n+1) particles after 0.3 s at 25 x 25 places, the same for
+// all n: 1 m square, 0.3 kg, held along two opposite sides, springs that a membrane of any
+// resolution shares.
+std::vector<double> hammock(int n) {
   Scene scene;
   scene.cloths.emplace_back();
   Cloth& cloth = scene.cloths[0];
-  cloth.grid = {2, 2, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 0};
-  cloth.particle_mass = 0.1;
-  cloth.stiffness = {1e8, 0, 0};
-  cloth.pins = {{0, 0, {}}, {0, 1, {}}};
-  scene.solver.method = method;
-  scene.time = {0.6 / substeps, 1, 10};
+  cloth.grid.nx = cloth.grid.ny = n + 1;
+  cloth.stiffness = {200, 100, 0};
+  // The border stands for half a cell, a corner for a quarter.
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i)
+      cloth.masses.push_back(0.3 / n / n * (i % n == 0 ? 0.5 : 1) * (j % n == 0 ? 0.5 : 1));
+  for (int i = 0; i <= n; ++i)
+    for (const int j : {0, n}) cloth.pins.push_back({i, j, {}});
+  scene.time = {0.01, kAutoSubsteps, 1};
   Simulation simulation(scene);
-  double before = 1;
-  for (;;) {
-    simulation.advance_frame();
-    const double now = position(simulation, 1, 0)[0];
-    if (now <= 0) return simulation.time() - scene.time.frame * now / (now - before);
-    before = now;
-  }
+  advance(simulation, 0.3);
+  std::vector<double> x;
+  for (int j = 0; j <= 24; ++j)
+    for (int i = 0; i <= 24; ++i)
+      for (const double c : position(simulation, i * n / 24, j * n / 24)) x.push_back(c);
+  return x;
 }
 
-TEST(Pendulum, OnARigidLinkConvergesToItsPeriod) {
-  const double truth = 4 * std::sqrt(1 / 9.81) * 1.8540746773 / 4;
-  for (const Method method : {Method::positional, Method::compliant}) {
-    double before = 0;
-    for (const int substeps : {50, 100, 200, 400}) {
-      const double error =
-          error_of(std::string(method == Method::positional ? "positional" : "compliant") + ", " +
-                       std::to_string(substeps) + " substeps",
-                   truth, quarter_period(method, substeps));
-      if (before > 0) {
-        EXPECT_GT(std::log2(before / error), 0.8) << substeps;
-      }
-      before = error;
+TEST(Resolution, FinerSheetsComeTogether) {
+  std::vector<double> coarse = hammock(24);
+  double before = 0;
+  for (const int n : {48, 96, 192}) {
+    const std::vector<double> fine = hammock(n);
+    double squared = 0;
+    for (std::size_t c = 0; c < fine.size(); ++c)
+      squared += (fine[c] - coarse[c]) * (fine[c] - coarse[c]);
+    const double change = std::sqrt(3 * squared / double(fine.size()));
+    const std::string name = std::to_string(n / 2 + 1) + " to " + std::to_string(n + 1);
+    show({"hammock in motion, distance of resolutions", "N = " + name, 0, 0.02, "m"}, change);
+    if (before > 0) {
+      // The springs of a free border stand for half a cell and are as stiff as all: first order.
+      expect({"hammock in motion, distance of resolutions", "order at N = " + name, 1, 0.5, "log₂"},
+             std::log2(before / change));
     }
-    EXPECT_LT(before, 3e-3);
+    coarse = fine;
+    before = change;
   }
 }
 

@@ -71,6 +71,16 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
   program.add_option("--zoom", a.zoom, "Nearer (> 1) or farther")
       ->type_name("F")
       ->check(CLI::Range(0.01, 100.0));
+  program.add_flag("--paused", a.paused, "Open the window with the scene at rest");
+  program.add_option("--keys", a.keys, "Which keys do what (docs/viewer.md)")->type_name("FILE");
+  program.add_option("--record", a.record, "Record the session from its start, for weft run --replay")
+      ->type_name("FILE");
+  program
+      .add_option("--measure", a.measure, "Measure how quick the window is, print it and close")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.1, 3600.0));
+  program.add_option("--log", a.log, "Tell what the window shows, a line for every change")
+      ->type_name("FILE");
   program.add_option("--texture", a.pictures.texture, "A picture for the look texture")
       ->type_name("FILE");
   program
@@ -83,15 +93,13 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
 }  // namespace
 
 std::optional<int> parse_arguments(int count, char** words, Arguments& arguments) {
-  CLI::App program{"Pictures of cloth simulated by Weft, rendered without a display", "weft-viewer"};
+  CLI::App program{"Play with cloth simulated by Weft in a window, or render pictures of it", "weft-viewer"};
   std::string size;
   std::vector<std::string> sets;
   add_options(program, arguments, size, sets);
   try {
     program.parse(count, words);
-    if (!arguments.headless)
-      throw CLI::RequiredError("this version renders pictures and opens no window: --headless");
-    if (arguments.out.empty()) throw CLI::RequiredError("--headless needs --out FILE.png: it");
+    if (arguments.headless && arguments.out.empty()) throw CLI::RequiredError("--headless needs --out FILE.png: it");
   } catch (const CLI::Success& asked) {
     return program.exit(asked);
   } catch (const CLI::ParseError& error) {

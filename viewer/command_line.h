@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "renderer.h"
+#include "picture/renderer.h"
 #include "weft/read_scene.h"
 
 namespace weft::viewer {
@@ -18,6 +18,11 @@ struct Arguments {
   std::int64_t frames = 0;  // to simulate before the picture
   int width = 1280, height = 720;
   std::string out;  // PNG
+  bool paused = false;  // the window opens with the scene at rest
+  std::string keys;     // the file of keys; "": a person's own
+  std::string log;      // tells the state of the window, line by line
+  double measure = 0;   // s to measure the window for, then it closes; 0: it stays
+  std::string record;   // a recording of the session from its start
   int threads = 0;
   std::uint64_t seed = 1;
   std::optional<double> azimuth, elevation;  // degrees

@@ -4,27 +4,24 @@
 #include <iostream>
 #include <numbers>
 
+#include "edit/document.h"
 #include "failure.h"
-#include "surfaceless.h"
+#include "picture/surfaceless.h"
 
 namespace weft::viewer {
 
+std::string scene_name(const Arguments& arguments) {
+  if (!arguments.scene.empty()) return arguments.scene;
+  const std::vector<ShippedScene> shipped = shipped_scenes();
+  if (shipped.empty()) throw Failure(kBadScene, "no scene is named and none is shipped here");
+  return shipped.front().path;
+}
+
 SceneFile load_scene(const Arguments& arguments) {
-  std::string name = arguments.scene;
-  if (name.empty()) {
-    const std::vector<ShippedScene> shipped = shipped_scenes();
-    if (shipped.empty()) throw Failure(kBadScene, "no scene is named and none is shipped here");
-    name = shipped.front().path;
-  }
+  const std::string name = scene_name(arguments);
   SceneFile file = read_scene(name, arguments.overrides);
   if (file.faults.empty()) return file;
-  std::string text;
-  for (const Fault& fault : file.faults) {
-    text += (text.empty() ? "" : "\n") + (file.path.empty() ? name : file.path) + ":" +
-            fault.place + ": " + fault.what +
-            (fault.allowed.empty() ? "" : " (" + fault.allowed + ")");
-  }
-  throw Failure(kBadScene, text);
+  throw Failure(kBadScene, fault_lines(file.path.empty() ? name : file.path, file.faults));
 }
 
 void aim(const Arguments& arguments, Camera& camera) {
@@ -43,11 +40,11 @@ void render_picture(const Arguments& arguments) {
 
   Snapshot snapshot;
   snapshot.scene = std::make_shared<const Scene>(file.scene);
-  copy_view(simulation.view(), snapshot);
+  copy_view(simulation.view(), simulation.scene(), snapshot);
   const Setting setting = setting_of(snapshot);
   while (simulation.frame() < arguments.frames && simulation.status().ok)
     simulation.advance_frame();
-  copy_view(simulation.view(), snapshot);
+  copy_view(simulation.view(), simulation.scene(), snapshot);
   snapshot.frame = simulation.frame();
 
   Renderer renderer(arguments.pictures);

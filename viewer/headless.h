@@ -8,6 +8,9 @@ namespace weft::viewer {
 // Simulates to the frame asked for and writes its picture. Throws Failure.
 void render_picture(const Arguments& arguments);
 
+// The path or name of the scene asked for; the first shipped one where none is.
+std::string scene_name(const Arguments& arguments);
+
 // The scene of the arguments; throws Failure that names every fault.
 SceneFile load_scene(const Arguments& arguments);
 

@@ -1,10 +1,11 @@
-// The program weft-viewer: pictures of a scene, rendered without any display.
+// The program weft-viewer: a window, or one picture without any display.
 #include <cstdio>
 #include <exception>
 
 #include "command_line.h"
 #include "failure.h"
 #include "headless.h"
+#include "window/app.h"
 
 namespace weft::viewer {
 
@@ -13,7 +14,10 @@ namespace {
 int run(int count, char** words) {
   Arguments arguments;
   if (const auto code = parse_arguments(count, words, arguments)) return *code;
-  render_picture(arguments);
+  if (arguments.headless)
+    render_picture(arguments);
+  else
+    App(arguments).run();
   return kDone;
 }
 

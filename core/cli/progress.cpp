@@ -53,7 +53,8 @@ void Progress::update(std::int64_t done) {
   done_at_last_ = done;
 }
 
-std::string summary(const Report& report, const std::vector<std::string>& written) {
+std::string summary(const Report& report, const std::vector<std::string>& notes,
+                    const std::vector<std::string>& written) {
   const auto& constraints = report.constraints;
   const auto& wall = report.wall_ms;
   const auto& energy = report.energy;
@@ -79,6 +80,7 @@ std::string summary(const Report& report, const std::vector<std::string>& writte
       format("contact   deepest %.3g mm below a collider; %" PRId64
              " pairs of the cloth too close, deepest %.3g mm\n",
              penetration.collider_max * 1e3, penetration.self_pairs, penetration.self_max * 1e3);
+  for (const std::string& note : notes) text += "note      " + note + "\n";
   if (report.torn > 0) text += format("torn      %" PRId64 " constraints\n", report.torn);
   text += format("hash      %016" PRIx64 "\n", report.hash);
   if (!written.empty()) text += "wrote     " + list(written) + "\n";

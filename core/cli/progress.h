@@ -27,7 +27,8 @@ class Progress {
   std::int64_t done_at_last_ = 0;
 };
 
-// The summary after a run; `written` names the files.
-std::string summary(const Report& report, const std::vector<std::string>& written);
+// The summary after a run: `notes` of its plan, and the files that were `written`.
+std::string summary(const Report& report, const std::vector<std::string>& notes,
+                    const std::vector<std::string>& written);
 
 }  // namespace weft::cli

@@ -11,7 +11,9 @@
 #include "failure.h"
 #include "interrupt.h"
 #include "progress.h"
+#include "recordings.h"
 #include "scene_argument.h"
+#include "tolerance.h"
 #include "weft/output.h"
 
 namespace weft::cli {
@@ -22,10 +24,12 @@ struct RunArguments {
   SceneArgument scene;
   std::optional<double> seconds;
   std::optional<std::int64_t> frames;
+  std::optional<double> tolerance;
   int threads = 0;
   std::string simd = "best";
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   std::string report, dump, animation;  // paths; "" = not asked for
+  std::string record, replay;           // the same
 };
 
 // A check of an option's text: the whole of it is a number from `least` to `most`.
@@ -78,10 +82,11 @@ Simd parse_simd(const std::string& name) {
 // The files of a run, opened before it starts so that a path that cannot be written costs nothing.
 class Files {
  public:
-  Files(const RunArguments& arguments, const Simulation& simulation) {
-    refuse_same({arguments.report, arguments.dump, arguments.animation});
+  Files(const RunArguments& arguments, const Simulation& simulation, std::int64_t frames) {
+    refuse_same({arguments.report, arguments.dump, arguments.animation, arguments.record,
+                 arguments.replay});
     if (!arguments.animation.empty()) {
-      animation_ = open_animation(arguments.animation, simulation.view());
+      animation_ = open_animation(arguments.animation, simulation.view(), frames + 1);
     }
     if (!arguments.dump.empty()) dump_.emplace(arguments.dump);
     if (!arguments.report.empty()) report_.emplace(arguments.report);
@@ -93,13 +98,15 @@ class Files {
   }
 
   // A simulation that stopped itself has no final positions: it leaves no dump.
-  void finish(const Simulation& simulation, const Report& report) {
+  void finish(const Simulation& simulation, const Report& report,
+              const std::optional<std::string>& recording) {
     if (animation_) {
       animation_->finish();
       written_.push_back(animation_->written());
     }
     if (dump_ && simulation.status().ok) commit(*dump_, dump_bytes(simulation.positions()));
     if (report_) commit(*report_, to_json(report));
+    if (recording) written_.push_back(*recording);
   }
 
   const std::vector<std::string>& written() const { return written_; }
@@ -125,38 +132,87 @@ class Files {
   std::vector<std::string> written_;
 };
 
-std::int64_t frame_count(const RunArguments& arguments, const Time& time) {
+std::int64_t frame_count(const RunArguments& arguments, const Time& time,
+                         const std::optional<Recording>& replayed) {
   if (arguments.frames) return *arguments.frames;
+  if (replayed && !arguments.seconds) return replayed->frames();
   return std::llround(arguments.seconds.value_or(time.seconds) / time.frame);
 }
 
+// Puts what keeps the asked error into the scene, and says so.
+void choose(LoadedScene& loaded, double tolerance, double seconds, const Options& options) {
+  if (loaded.scene.solver.method == Method::positional)
+    throw Failure{kBadCommandLine,
+                  {{"--tolerance", "method positional converges to no motion of springs",
+                    "a scene of method spring, spring_friction or compliant"}}};
+  const Choice choice = choose_solver(loaded.scene, tolerance, seconds, options);
+  std::cout << to_text(choice, tolerance);
+  if (choice.best < 0)
+    throw Failure{kBadCommandLine,
+                  {{"--tolerance", "no method keeps this error", "see above what each comes to"}}};
+  const Trial& best = choice.trials[std::size_t(choice.best)];
+  loaded.scene.solver = best.solver;
+  loaded.scene.time.substeps = best.substeps;
+}
+
+// The scene of the arguments, which a recording carries itself.
+LoadedScene scene_to_run(const RunArguments& arguments, const std::optional<Recording>& replayed) {
+  if (!replayed) {
+    if (arguments.scene.scene.empty())
+      throw Failure{kBadCommandLine, {{"command line", "SCENE is required", "a scene, or --replay"}}};
+    return load(arguments.scene);
+  }
+  const auto differs = [&](int code, const std::string& why) {
+    return Failure{code, {{arguments.replay, why, ""}}};
+  };
+  if (!arguments.scene.scene.empty())
+    if (const std::string place = difference(replayed->scene, load(arguments.scene).scene); !place.empty())
+      throw differs(kBadScene, "the recording is of another scene, which differs first at " + place);
+  if (arguments.seed && *arguments.seed != replayed->seed)
+    throw differs(kBadCommandLine, "it was recorded with seed " + std::to_string(replayed->seed));
+  if (frame_count(arguments, replayed->scene.time, replayed) > replayed->frames())
+    throw differs(kBadCommandLine,
+                  "it has only " + std::to_string(replayed->frames()) + " frames");
+  return {replayed->scene, arguments.replay};
+}
+
 int run(const RunArguments& arguments) {
-  const LoadedScene loaded = load(arguments.scene);
-  const std::int64_t frames = frame_count(arguments, loaded.scene.time);
+  Recordings recordings(arguments.record, arguments.replay);
+  const std::optional<Recording>& replayed = recordings.replayed();
+  LoadedScene loaded = scene_to_run(arguments, replayed);
+  const std::int64_t frames = frame_count(arguments, loaded.scene.time, replayed);
   Options options;
   options.threads = arguments.threads;
   options.simd = parse_simd(arguments.simd);
-  options.seed = arguments.seed;
+  options.seed = replayed ? replayed->seed : arguments.seed.value_or(options.seed);
   options.profile = !arguments.report.empty();
+  if (arguments.tolerance && replayed)
+    throw Failure{kBadCommandLine, {{"--tolerance", "a recording carries its own solver", "not with --replay"}}};
+  if (arguments.tolerance)
+    choose(loaded, *arguments.tolerance, double(frames) * loaded.scene.time.frame, options);
   Simulation simulation = simulate(loaded, options);
   catch_interrupts();  // before there is a temporary file that a signal could leave behind
-  Files files(arguments, simulation);
+  Files files(arguments, simulation, frames);
+  recordings.start(simulation);
   Progress progress(frames, loaded.scene.time.frame);
-  while (simulation.frame() < frames && interrupted() == 0) {
+  std::int64_t done = 0;
+  for (; done < frames && interrupted() == 0; ++done) {
+    recordings.before_frame(simulation);
     simulation.advance_frame();
     if (!simulation.status().ok) break;
+    recordings.after_frame(simulation);
     files.frame(simulation);
-    progress.update(simulation.frame());
+    progress.update(done + 1);
   }
 
   Report report = simulation.report();
-  const bool cut_short = simulation.status().ok && simulation.frame() < frames;
+  const bool cut_short = simulation.status().ok && done < frames;
   if (cut_short) {
     report.status.ok = false;
     report.status.text = "interrupted after frame " + std::to_string(simulation.frame());
   }
-  files.finish(simulation, report);
-  std::cout << summary(report, files.written());
+  files.finish(simulation, report, recordings.finish());
+  std::cout << summary(report, simulation.plan().notes, files.written());
   if (!simulation.status().ok) {
     const std::string why = "the simulation stopped itself: " + simulation.status().text;
     throw Failure{kStopped, {{loaded.path, why, ""}}};
@@ -187,6 +243,7 @@ void add_run(CLI::App& program, int& exit_code) {
   CLI::App* command = program.add_subcommand("run", "Simulate a scene");
   const auto arguments = std::make_shared<RunArguments>();
   add_scene_argument(*command, arguments->scene);
+  command->get_option("SCENE")->required(false);
   add_duration(*command, *arguments);
   command
       ->add_option("--threads", arguments->threads,
@@ -199,6 +256,11 @@ void add_run(CLI::App& program, int& exit_code) {
                        " (default: the widest); never changes the result")
       ->type_name("SET")
       ->check(one_of(simd_names()));
+  command
+      ->add_option("--tolerance", arguments->tolerance,
+                   "Pick method, substeps and sweeps for this error of the positions, by trial runs")
+      ->type_name("M")
+      ->check(number_in(1e-6, 1.0, "m, 1e-6 to 1"));
   command->add_option("--seed", arguments->seed, "Seeds every random choice (default: 1)")
       ->type_name("N")
       ->check(number_in<std::uint64_t>(0, UINT64_MAX, "a whole number from 0"));
@@ -210,9 +272,19 @@ void add_run(CLI::App& program, int& exit_code) {
       ->type_name("FILE.f64");
   command
       ->add_option("--export", arguments->animation,
-                   "Write the animation: FILE.pc2 (point cache) or FILE.obj (FILE_0000.obj, …)")
+                   "Write the animation: FILE.pc2 or FILE.mdd (point caches), FILE.obj "
+                   "(FILE_0000.obj, …), FILE.glb or FILE.gltf (morph targets)")
       ->type_name("FILE")
       ->check(CLI::Validator(fault_of_animation, ""));
+  command
+      ->add_option("--record", arguments->record,
+                   "Record the run: the scene, the inputs and the hash of every frame")
+      ->type_name("FILE");
+  command
+      ->add_option("--replay", arguments->replay,
+                   "Replay a recording (SCENE may be left out); fails at the first frame that "
+                   "differs")
+      ->type_name("FILE");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

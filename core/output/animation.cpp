@@ -12,12 +12,16 @@ namespace {
 
 struct Format {
   const char* extension;
-  std::unique_ptr<Animation> (*open)(const std::string& path, const View& first);
+  std::unique_ptr<Animation> (*open)(const std::string& path, const View& first,
+                                     std::int64_t samples);
 };
 
-constexpr std::array<Format, 2> kFormats{{
+constexpr std::array<Format, 5> kFormats{{
     {".pc2", open_pc2},
+    {".mdd", open_mdd},
     {".obj", open_obj_sequence},
+    {".gltf", open_gltf},
+    {".glb", open_gltf},
 }};
 
 }  // namespace
@@ -29,12 +33,20 @@ std::vector<std::string> animation_extensions() {
   return extensions;
 }
 
-std::unique_ptr<Animation> open_animation(const std::string& path, const View& first) {
+std::int64_t particle_count(const View& view) {
+  std::int64_t count = 0;
+  for (const ClothView& cloth : view.cloths)
+    count += static_cast<std::int64_t>(cloth.columns) * cloth.rows;
+  return count;
+}
+
+std::unique_ptr<Animation> open_animation(const std::string& path, const View& first,
+                                          std::int64_t samples) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   for (const Format& format : kFormats) {
-    if (extension == format.extension) return format.open(path, first);
+    if (extension == format.extension) return format.open(path, first, samples);
   }
   throw std::invalid_argument("'" + extension + "' is not an animation format");
 }

@@ -1,6 +1,8 @@
 // The animation formats, one file each.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -9,7 +11,29 @@
 
 namespace weft {
 
-std::unique_ptr<Animation> open_pc2(const std::string& path, const View& first);
-std::unique_ptr<Animation> open_obj_sequence(const std::string& path, const View& first);
+// Particles of all cloths.
+std::int64_t particle_count(const View& view);
+
+// Calls work(x, y, z) for the particles of a cloth in scene order.
+template <class Work>
+void for_each_particle(const ClothView& cloth, const Work& work) {
+  for (int j = 0; j < cloth.rows; ++j)
+    for (int i = 0; i < cloth.columns; ++i) {
+      const auto n = static_cast<std::size_t>(j) * static_cast<std::size_t>(cloth.stride) +
+                     static_cast<std::size_t>(i);
+      work(cloth.x[n], cloth.y[n], cloth.z[n]);
+    }
+}
+template <class Work>
+void for_each_particle(const View& view, const Work& work) {
+  for (const ClothView& cloth : view.cloths) for_each_particle(cloth, work);
+}
+
+// `samples` are to come, 0: nobody knows.
+std::unique_ptr<Animation> open_pc2(const std::string& path, const View& first, std::int64_t samples);
+std::unique_ptr<Animation> open_mdd(const std::string& path, const View& first, std::int64_t samples);
+std::unique_ptr<Animation> open_gltf(const std::string& path, const View& first, std::int64_t samples);
+std::unique_ptr<Animation> open_obj_sequence(const std::string& path, const View& first,
+                                             std::int64_t samples);
 
 }  // namespace weft

@@ -1,6 +1,6 @@
 // Wavefront OBJ, one file per sample: run.obj becomes run_0000.obj, run_0001.obj, … Every cloth is
-// an object of quads over its grid; coordinates are written so that they read back to the same
-// bits.
+// an object of quads over its grid or, once it is torn, of the triangles that are left and those along
+// its seams; coordinates are written so that they read back to the same bits.
 #include <array>
 #include <charconv>
 #include <filesystem>
@@ -18,19 +18,17 @@ void append_number(std::string& text, T value) {
   text.append(digits.data(), end);
 }
 
-void append_vertices(std::string& text, const ClothView& cloth) {
-  for (int j = 0; j < cloth.rows; ++j) {
-    for (int i = 0; i < cloth.columns; ++i) {
-      const auto n = static_cast<std::size_t>(j) * static_cast<std::size_t>(cloth.stride) +
-                     static_cast<std::size_t>(i);
-      text += 'v';
-      for (const float value : {cloth.x[n], cloth.y[n], cloth.z[n]}) {
-        text += ' ';
-        append_number(text, value);
-      }
-      text += '\n';
-    }
+void append_vertex(std::string& text, const std::array<float, 3>& at) {
+  text += 'v';
+  for (const float value : at) {
+    text += ' ';
+    append_number(text, value);
   }
+  text += '\n';
+}
+
+void append_vertices(std::string& text, const ClothView& cloth) {
+  for_each_particle(cloth, [&](float x, float y, float z) { append_vertex(text, {x, y, z}); });
 }
 
 // Corners in the order that makes u × v the face normal. OBJ counts vertices from 1 over the whole
@@ -52,6 +50,25 @@ void append_quads(std::string& text, const ClothView& cloth, std::int64_t first)
   }
 }
 
+// What a torn cloth shows: its triangles, then its seams, whose points follow the particles.
+void append_torn(std::string& text, const ClothView& cloth, std::int64_t first) {
+  const auto face = [&](const std::array<std::int64_t, 3>& corners) {
+    text += 'f';
+    for (const std::int64_t corner : corners) {
+      text += ' ';
+      append_number(text, corner);
+    }
+    text += '\n';
+  };
+  const auto particle = [&](std::uint32_t p) {
+    const auto stride = static_cast<std::uint32_t>(cloth.stride);
+    return first + static_cast<std::int64_t>(p / stride) * cloth.columns + p % stride;
+  };
+  for (const auto& t : cloth.triangles) face({particle(t[0]), particle(t[1]), particle(t[2])});
+  const std::int64_t points = first + static_cast<std::int64_t>(cloth.columns) * cloth.rows;
+  for (const auto& t : cloth.seams) face({points + t[0], points + t[1], points + t[2]});
+}
+
 class ObjSequence final : public Animation {
  public:
   explicit ObjSequence(const std::string& path) : path_(path) {
@@ -65,9 +82,14 @@ class ObjSequence final : public Animation {
     for (const ClothView& cloth : view.cloths) {
       text_ = "o cloth_" + std::to_string(number++) + "\n";
       append_vertices(text_, cloth);
-      append_quads(text_, cloth, first);
+      for (const auto& point : cloth.seam_points) append_vertex(text_, point);
+      if (cloth.topology_version > 0)
+        append_torn(text_, cloth, first);
+      else
+        append_quads(text_, cloth, first);
       file.write(text_);
-      first += static_cast<std::int64_t>(cloth.columns) * cloth.rows;
+      first += static_cast<std::int64_t>(cloth.columns) * cloth.rows +
+               static_cast<std::int64_t>(cloth.seam_points.size());
     }
     file.commit();
     ++samples_;
@@ -92,8 +114,7 @@ class ObjSequence final : public Animation {
 
 }  // namespace
 
-std::unique_ptr<Animation> open_obj_sequence(const std::string& path, const View& first) {
-  static_cast<void>(first);
+std::unique_ptr<Animation> open_obj_sequence(const std::string& path, const View&, std::int64_t) {
   return std::make_unique<ObjSequence>(path);
 }
 

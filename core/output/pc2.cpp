@@ -12,14 +12,6 @@ namespace {
 
 constexpr std::int64_t kSamplesOffset = 28;
 
-std::int64_t particle_count(const View& view) {
-  std::int64_t count = 0;
-  for (const ClothView& cloth : view.cloths) {
-    count += static_cast<std::int64_t>(cloth.columns) * cloth.rows;
-  }
-  return count;
-}
-
 class Pc2 final : public Animation {
  public:
   Pc2(const std::string& path, const View& first) : file_(path), points_(particle_count(first)) {
@@ -37,7 +29,11 @@ class Pc2 final : public Animation {
       throw std::invalid_argument("a point cache keeps its number of particles");
     }
     for (const ClothView& cloth : view.cloths) {
-      for (int j = 0; j < cloth.rows; ++j) append_row(cloth, j);
+      some_.clear();
+      for_each_particle(cloth, [&](float x, float y, float z) {
+        for (const float value : {x, y, z}) append_little_endian(some_, value);
+      });
+      file_.write(some_);
     }
     ++samples_;
   }
@@ -52,26 +48,15 @@ class Pc2 final : public Animation {
   std::string written() const override { return file_.path(); }
 
  private:
-  void append_row(const ClothView& cloth, int j) {
-    row_.clear();
-    const auto start = static_cast<std::size_t>(j) * static_cast<std::size_t>(cloth.stride);
-    for (std::size_t n = start; n < start + static_cast<std::size_t>(cloth.columns); ++n) {
-      append_little_endian(row_, cloth.x[n]);
-      append_little_endian(row_, cloth.y[n]);
-      append_little_endian(row_, cloth.z[n]);
-    }
-    file_.write(row_);
-  }
-
   OutputFile file_;
   std::int64_t points_;
   std::int32_t samples_ = 0;
-  std::string row_;  // bytes of one row, kept for its memory
+  std::string some_;  // bytes of one cloth, kept for its memory
 };
 
 }  // namespace
 
-std::unique_ptr<Animation> open_pc2(const std::string& path, const View& first) {
+std::unique_ptr<Animation> open_pc2(const std::string& path, const View& first, std::int64_t) {
   return std::make_unique<Pc2>(path, first);
 }
 

@@ -1,21 +1,15 @@
 // The report as JSON, in the order and with the names of the contract.
 #include "weft/report.h"
 
-#include <array>
-#include <cstdio>
 #include <nlohmann/json.hpp>
+
+#include "output/hex.h"
 
 namespace weft {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string hex16(std::uint64_t value) {
-  std::array<char, 17> digits{};
-  std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(value));
-  return digits.data();
-}
 
 Json stages_json(const std::vector<StageTime>& stages) {
   Json list = Json::array();

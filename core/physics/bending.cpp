@@ -14,6 +14,18 @@ Vec3 difference(const std::vector<Vec3>& x, int n, const int* particles, const d
 
 }  // namespace
 
+BendLinks::BendLinks(const Lattice& l)
+    : stride(l.stride),
+      along(l.inverse_mass.size()),
+      across(l.inverse_mass.size()),
+      twist(l.inverse_mass.size()) {
+  make_whole();
+}
+
+void BendLinks::make_whole() {
+  for (auto* terms : {&along, &across, &twist}) std::fill_n(terms->data(), terms->size(), 1.0f);
+}
+
 BendingStiffness bending_stiffness(const Cloth& cloth) {
   const Grid& g = cloth.grid;
   const double hu = spacing_u(g), hv = spacing_v(g), d = cloth.bending;
@@ -22,13 +34,13 @@ BendingStiffness bending_stiffness(const Cloth& cloth) {
           d * area * (g.nx - 1) / g.nx / (hv * hv * hv * hv), 2 * d / area};
 }
 
-double bending_energy(const Cloth& cloth, const std::vector<Vec3>& x) {
+double bending_energy(const Cloth& cloth, const std::vector<Vec3>& x, const BendLinks* left) {
   double energy = 0;
-  if (cloth.bending > 0)
-    for_each_bend(cloth, [&](double k, int n, const int* particles, const double* factor) {
-      const Vec3 d = difference(x, n, particles, factor);
-      energy += 0.5 * k * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    });
+  const auto add = [&](double k, int n, const int* particles, const double* factor) {
+    const Vec3 d = difference(x, n, particles, factor);
+    energy += 0.5 * k * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  };
+  if (cloth.bending > 0) for_each_bend(cloth, add, left);
   return energy;
 }
 

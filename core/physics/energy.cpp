@@ -59,7 +59,7 @@ std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Family>& f
 }
 
 void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Family>& families,
-                   const Lattice& l, bool damped, std::vector<Vec3>& a) {
+                   const Lattice& l, const BendLinks* left, bool damped, std::vector<Vec3>& a) {
   a.assign(std::size_t(l.columns) * l.rows, Vec3{});
   for (const Family& f : families)
     for (int j = 0; j + f.dj < l.rows; ++j) {
@@ -79,7 +79,8 @@ void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Fam
       }
     }
   add_bending_forces(
-      cloth, [&](int p, int c) { return double(l.x.at(c, p / l.columns, p % l.columns)); }, a);
+      cloth, [&](int p, int c) { return double(l.x.at(c, p / l.columns, p % l.columns)); }, a,
+      left);
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i) {
       const double w = l.w(j, i);

@@ -22,6 +22,8 @@ void for_each_constraint(const Cloth& cloth, const Family& f, Visit&& visit) {
   }
 }
 
+struct BendLinks;
+
 // Positions or velocities of a lattice in double, particle after particle.
 std::vector<Vec3> gather(const Lattice& lattice, const Rows& rows);
 
@@ -33,10 +35,11 @@ double elastic_energy(const Cloth& cloth, const std::vector<Family>& families,
 std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Family>& families,
                                 const std::vector<Vec3>& x, const std::vector<Vec3>* v);
 
-// Accelerations by springs, bending and gravity, zero for pinned particles [m/s²]. Into `a`, which
-// allocates nothing when it is large enough already.
+// Accelerations by springs, bending (the terms that are `left`, null: all) and gravity, zero for pinned
+// particles [m/s²]. Into `a`, which allocates nothing when it is large enough already.
 void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Family>& families,
-                   const Lattice& lattice, bool damped, std::vector<Vec3>& a);
+                   const Lattice& lattice, const BendLinks* left, bool damped,
+                   std::vector<Vec3>& a);
 
 struct Strain {
   double max = 0, mean = 0;  // |e|/l - 1

@@ -17,13 +17,17 @@ enum class Kind { structural, shear, bend };
 class Links {
  public:
   Links(int rows, int stride, int per_row);
-  std::int32_t* row(int j) { return lanes_.data() + static_cast<std::size_t>(j) * stride_; }
+  // Wide kernels may read up to 16 lanes before the first row and after the last.
+  std::int32_t* row(int j) { return lanes_.data() + kGuard + static_cast<std::size_t>(j) * stride_; }
   bool alive(int j, int a) const {
-    return lanes_[static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(a)] != 0;
+    return lanes_[kGuard + static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(a)] != 0;
   }
+  // Takes over the lanes of links of the same shape.
+  void copy(const Links& from) { std::copy_n(from.lanes_.data(), lanes_.size(), lanes_.data()); }
   std::size_t bytes() const { return lanes_.size() * sizeof(std::int32_t); }
 
  private:
+  static constexpr std::size_t kGuard = 16;
   std::size_t stride_;
   AlignedArray<std::int32_t> lanes_;
 };

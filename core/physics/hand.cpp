@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "physics/colliders/shapes.h"
+#include "physics/path.h"
 #include "physics/state.h"
 
 namespace weft {
@@ -31,6 +32,7 @@ void Simulation::State::plan_changed() {
   Plan now = describe(as_run, cloths, substeps);
   now.dt_limit = plan.dt_limit;
   now.notes = plan.notes;
+  now.fallback = plan.fallback;
   plan = std::move(now);
 }
 
@@ -47,31 +49,84 @@ void Simulation::State::grab(int cloth, int i, int j, const Vec3& target, double
     step.add_stage(std::move(stage));
     plan_changed();
   }
+  wake(cloth);
   grab_->column = i;
   grab_->row = j;
   grab_->target = target;
   grab_->stiffness = stiffness;
-  if (is_explicit(method) && scene.time.substeps == kAutoSubsteps) follow_stretch();
+  if (is_explicit(method)) follow_stretch(stretched_limit());
 }
 
 void Simulation::State::release() {
   if (!grab_) return;
+  wake(grabbed_);
   cloths[std::size_t(grabbed_)]->remove_stage(grab_);
   grab_ = nullptr;
+  plan_changed();
+}
+
+void Simulation::State::carry(int cloth, const Vec3& velocity) {
+  ClothStep& step = step_with(cloth, 0, 0);
+  if (!std::all_of(velocity.begin(), velocity.end(), [](double u) { return std::isfinite(u); }))
+    throw std::invalid_argument("held particles are carried at a finite velocity");
+  wake(cloth);
+  Carry*& stage = carried_[std::size_t(cloth)];
+  const bool rests = velocity == Vec3{};
+  if (!stage && !rests) {
+    auto made = std::make_unique<Carry>(step.parts());
+    stage = made.get();
+    step.add_stage(std::move(made));
+    plan_changed();
+  }
+  if (stage && !rests) stage->begin(double(frame) * scene.time.frame, velocity);
+  if (!stage || !rests) return;
+  step.remove_stage(stage);
+  stage = nullptr;
+  Lattice& l = step.lattice();
+  for (int j = 0; j < l.rows; ++j)
+    for (int i = 0; i < l.columns; ++i)
+      for (int k = 0; k < 3; ++k)
+        if (l.w(j, i) == 0) l.v.at(k, j, i) = 0;
   plan_changed();
 }
 
 void Simulation::State::hold(int cloth, int i, int j, bool held) {
   ClothStep& step = step_with(cloth, i, j);
   Lattice& l = step.lattice();
-  l.w(j)[i] = held ? 0 : float(1 / particle_mass(step.cloth(), i, j));
+  wake(cloth);
+  l.set_inverse_mass(j, i, held ? 0 : float(1 / particle_mass(step.cloth(), i, j)));
   if (held)
     for (int k = 0; k < 3; ++k) l.v.at(k, j, i) = 0;
+  if (rest) rest->keep_masses(cloth);
+  for (const auto& stage : step.stages()) stage->restart();
   // One particle more that can move raises the largest frequency, if at all.
   if (!held && is_explicit(method))
     spectra[std::size_t(cloth)] =
         estimate_spectrum(step.cloth(), step.families(), l, method == Method::spring_friction);
+  guard_.open(scene, method, cloths, double(frame) * scene.time.frame, dt);
   ++changes;
+}
+
+void Simulation::State::move_collider(int collider, const Vec3& target) {
+  if (collider < 0 || std::size_t(collider) >= scene.colliders.size())
+    throw std::out_of_range("there is no collider " + std::to_string(collider));
+  if (!std::all_of(target.begin(), target.end(), [](double t) { return std::isfinite(t); }))
+    throw std::invalid_argument("a collider's target is finite");
+  Collider& c = scene.colliders[std::size_t(collider)];
+  const double now = double(frame) * scene.time.frame;
+  const Vec3 from = c.keys.empty()
+                        ? std::visit([](const auto& shape) { return place_of(shape); }, c.shape)
+                        : position_at(c.keys, now);
+  c.keys = {{now, from}, {now + scene.time.frame, target}};
+  wake();
+  for (auto& step : cloths)
+    for (const auto& stage : step->stages()) stage->follow(c);
+}
+
+// Stages that a hand has added end before the stages of the cloth are chosen anew.
+void Simulation::State::let_go(int cloth) {
+  if (grabbed_ == cloth) release();
+  carry(cloth, {});
 }
 
 namespace {
@@ -113,8 +168,9 @@ int Simulation::State::cut(const Vec3& a, const Vec3& b, double width) {
         }
     }
     if (found.empty()) continue;
+    wake();
     if (!step->topology()) {
-      release();
+      let_go(int(&step - cloths.data()));
       step->allow_tearing();
       plan_changed();
     }

@@ -19,6 +19,17 @@ Rows::Rows(int rows, int stride)
       plane_(static_cast<std::size_t>(rows) * stride + 80),
       data_(3 * plane_) {}
 
+void Lattice::set_inverse_mass(int j, int i, float value) {
+  w(j)[i] = value;
+  weigh_row(j);
+}
+
+void Lattice::weigh_row(int j) {
+  const float* const row = w(j);
+  const bool alike = std::all_of(row, row + columns, [&](float value) { return value == row[0]; });
+  row_inverse_mass[static_cast<std::size_t>(j)] = alike ? row[0] : 0.0f;
+}
+
 Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bool keep_previous) {
   const Grid& g = cloth.grid;
   Lattice l;
@@ -29,6 +40,7 @@ Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bo
   l.v = Rows(l.rows, l.stride);
   if (keep_previous) l.previous = Rows(l.rows, l.stride);
   l.inverse_mass = AlignedArray<float>(static_cast<std::size_t>(l.rows) * l.stride);
+  l.row_inverse_mass = AlignedArray<float>(static_cast<std::size_t>(l.rows));
 
   Vec3 normal{g.u[1] * g.v[2] - g.u[2] * g.v[1], g.u[2] * g.v[0] - g.u[0] * g.v[2],
               g.u[0] * g.v[1] - g.u[1] * g.v[0]};
@@ -50,6 +62,7 @@ Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bo
     if (!pin.keys.empty())
       for (int k = 0; k < 3; ++k) l.x.at(k, pin.j, pin.i) = float(pin.keys.front().position[k]);
   }
+  for (int j = 0; j < g.ny; ++j) l.weigh_row(j);
   return l;
 }
 

@@ -62,6 +62,21 @@ class Rows {
   void clear() { std::fill_n(data_.data(), data_.size(), 0.0f); }
   // Takes over the values of rows of the same shape.
   void copy(const Rows& from) { std::copy_n(from.data_.data(), data_.size(), data_.data()); }
+  void scale(float factor) {
+    for (std::size_t i = 0; i < data_.size(); ++i) data_[i] *= factor;
+  }
+  // The greatest size of a value, padding included; lane by lane, so that no comparison waits for
+  // another.
+  float greatest() const {
+    constexpr std::size_t kLanes = 16;  // rows are multiples
+    float most[kLanes] = {};
+    for (std::size_t i = 0; i + kLanes <= data_.size(); i += kLanes)
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        const float size = std::fabs(data_[i + k]);
+        most[k] = size > most[k] ? size : most[k];
+      }
+    return *std::max_element(most, most + kLanes);
+  }
   // Whether every value is a number of size below `bound`.
   bool all_within(float bound) const {
     bool within = true;
@@ -75,13 +90,23 @@ class Rows {
   AlignedArray<float> data_;
 };
 
+inline void zero(Row3 row, int lanes) {
+  for (float* p : {row.x, row.y, row.z}) std::fill_n(p, lanes, 0.0f);
+}
+
 struct Lattice {
   int columns = 0, rows = 0, stride = 0;
   Rows x;                       // position [m]
   Rows v;                       // velocity [m/s]
-  Rows previous;                // positions before the substep; only for methods that project
+  Rows previous;                // positions before the substep; only where a stage needs them
   AlignedArray<float> inverse_mass;  // 1/kg, 0 = pinned or padding
+  // 1/kg, of every particle of row j, or 0 where they differ: kernels for a plain row are faster.
+  AlignedArray<float> row_inverse_mass;
 
+  // Changes the inverse mass of one particle.
+  void set_inverse_mass(int j, int i, float value);
+  // To be called after the inverse masses of row j were changed through w().
+  void weigh_row(int j);
   float* w(int j) { return inverse_mass.data() + static_cast<std::size_t>(j) * stride; }
   float w(int j, int i) const { return inverse_mass[static_cast<std::size_t>(j) * stride + i]; }
   std::size_t bytes() const {

@@ -17,12 +17,14 @@ namespace {
 void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   const ClothStep& step = *s.cloths[index];
   const Lattice& l = step.lattice();
+  const AlignedArray<float>& masses = s.masses(index);
   const std::vector<Vec3> x = gather(l, l.x), v = velocities_now(s, index);
   r.energy.elastic +=
-      elastic_energy(step.cloth(), step.families(), x) + bending_energy(step.cloth(), x);
+      elastic_energy(step.cloth(), step.families(), x) + 
+      bending_energy(step.cloth(), x, step.bend_links());
   for (std::size_t p = 0; p < x.size(); ++p) {
     const int i = int(p) % l.columns, j = int(p) / l.columns;
-    if (l.w(j, i) == 0) continue;
+    if (masses[std::size_t(j) * l.stride + i] == 0) continue;
     const double m = particle_mass(step.cloth(), i, j);
     const Vec3& a = x[p];
     const Vec3& b = v[p];
@@ -112,12 +114,26 @@ void add_idle(const Simulation::State& s, Report& r) {
         std::snprintf(why, sizeof why, "%.1f %% of the rows were out of reach", 100 * idle);
         r.skipped.push_back({stage->name, stage->detail + ": " + why});
       }
-  if (s.self_collision && s.self_collision_runs > 0) {
+  if (s.rest) {
     char why[96];
-    std::snprintf(why, sizeof why, "ran after %.1f %% of the substeps, searched in %.1f %% of those",
+    std::snprintf(why, sizeof why, "%lld particles are asleep; %.1f %% of all rows' frames were slept through",
+                  static_cast<long long>(s.rest->asleep()), 100 * s.rest->share());
+    r.skipped.push_back({"sleep", why});
+  }
+  if (s.self_collision && s.self_collision_runs > 0) {
+    char why[160];
+    std::snprintf(why, sizeof why,
+                  "looked after %.1f %% of the substeps, searched in %.1f %% of those; %.1f %% of the "
+                  "particles had nothing near",
                   100 * double(s.self_collision_runs) / double(std::max<std::int64_t>(s.total_substeps, 1)),
-                  100 * (1 - s.self_collision->kept()));
+                  100 * (1 - s.self_collision->kept()), 100 * s.self_collision->passed_over());
     r.skipped.push_back({"self_collision", why});
+    if (s.surface) {
+      std::snprintf(why, sizeof why, "surfaces measured after %.1f %% of the substeps; %lld moves of particles cut short",
+                    100 * double(s.surface->measured()) / double(std::max<std::int64_t>(s.total_substeps, 1)),
+                    static_cast<long long>(s.surface->held_back()));
+      r.skipped.push_back({"self_surface", why});
+    }
   }
 }
 
@@ -170,7 +186,7 @@ std::vector<Vec3> velocities_now(const Simulation::State& s, std::size_t index) 
   std::vector<Vec3> v = gather(step.lattice(), step.lattice().v);
   if (!is_explicit(s.method)) return v;
   std::vector<Vec3> a;
-  accelerations(s.scene, step.cloth(), step.families(), step.lattice(),
+  accelerations(s.scene, step.cloth(), step.families(), step.lattice(), step.bend_links(),
                 s.method == Method::spring_friction, a);
   for (std::size_t p = 0; p < v.size(); ++p)
     for (int k = 0; k < 3; ++k) v[p][k] += a[p][k] * s.dt / 2;
@@ -192,7 +208,7 @@ std::uint64_t state_hash(const Simulation::State& s) {
   return hash;
 }
 
-Report measure(const Simulation::State& s) {
+Report measure(const Simulation::State& s, bool contacts) {
   Report r;
   r.scene = s.scene.name;
   r.version = WEFT_VERSION;
@@ -216,11 +232,12 @@ Report measure(const Simulation::State& s) {
     add_constraints(step, r);
     add_energy(s, c, r);
     if (step.topology()) r.torn += step.topology()->torn();
-    add_penetration(s, step, r);
+    if (contacts) add_penetration(s, step, r);
   }
   r.energy.total = r.energy.kinetic + r.energy.elastic + r.energy.gravity;
   add_strain(s, r);
-  if (s.status.ok) add_self_contact(s, r);
+  if (contacts && s.status.ok) add_self_contact(s, r);
+  if (s.rest) r.asleep = s.rest->asleep();
   add_idle(s, r);
   add_wall_time(s, r);
   add_stages(s, r);

@@ -6,7 +6,7 @@
 
 namespace weft::physics {
 
-Report measure(const Simulation::State& state);
+Report measure(const Simulation::State& state, bool contacts);
 std::uint64_t state_hash(const Simulation::State& state);
 
 // Velocities of one cloth at the frame's time [m/s].

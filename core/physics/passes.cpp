@@ -40,9 +40,10 @@ Passes::Passes(const Stages& stages, int rows, std::size_t row_bytes) {
   close(stages.size());
 }
 
-void Passes::run(double time, double dt, int count, Threads& threads) {
+void Passes::run(double time, double dt, int count, Threads& threads,
+                 std::span<const RowSpan> awake) {
   if (rows_only()) {
-    for (Pass& p : passes_) p.wavefront->run(time, dt, count, threads);
+    for (Pass& p : passes_) p.wavefront->run(time, dt, count, threads, awake);
     return;
   }
   for (Pass& p : passes_)
@@ -52,7 +53,7 @@ void Passes::run(double time, double dt, int count, Threads& threads) {
     const Substep substep{dt, time + (s + 1) * dt, 0};
     for (Pass& p : passes_) {
       if (p.wavefront) {
-        p.wavefront->run(time + s * dt, dt, 1, threads);
+        p.wavefront->run(time + s * dt, dt, 1, threads, awake);
         continue;
       }
       const auto before = std::chrono::steady_clock::now();

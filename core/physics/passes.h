@@ -17,8 +17,9 @@ class Passes {
   // The stages outlive the passes. `row_bytes`: of one row of the lattice.
   Passes(const Stages& stages, int rows, std::size_t row_bytes);
 
-  // Runs `count` substeps of dt from `time` on.
-  void run(double time, double dt, int count, Threads& threads);
+  // Runs `count` substeps of dt from `time` on; rows outside `awake` are passed over (empty: none).
+  void run(double time, double dt, int count, Threads& threads,
+           std::span<const RowSpan> awake = {});
 
   // Adds to ticks[q] the time that stage q took.
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds);

@@ -4,6 +4,16 @@
 #include <algorithm>
 
 namespace weft::physics {
+namespace {
+
+// Whether a stage asks where particles were before the substep: velocities from positions, and the
+// second order.
+bool keeps_previous(const Solver& solver, Method method) {
+  if (is_explicit(method)) return false;
+  return method == Method::positional || solver.sweep == Sweep::line || solver.order == 2;
+}
+
+}  // namespace
 
 ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::uint64_t seed,
                      const KernelTable& kernels)
@@ -11,12 +21,12 @@ ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::ui
       method_(method),
       seed_(seed),
       families_(families_of(cloth_)),
-      lattice_(make_lattice(cloth_, cloth_index, seed, !is_explicit(method))),
-      parts_{scene, cloth_, lattice_, families_, kernels} {
+      lattice_(make_lattice(cloth_, cloth_index, seed, keeps_previous(scene.solver, method))),
+      parts_{scene, cloth_, lattice_, families_, kernels, starts_} {
+  for (const Collider& c : scene.colliders) starts_.push_back(start_inside(lattice_, c));
   const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                [](const Collider& c) { return c.cuts; });
-  if (cut || cloth_.tear_strain > 0)
-    topology_ = std::make_unique<Topology>(lattice_.columns, lattice_.rows, lattice_.stride, families_);
+  if (cut || cloth_.tear_strain > 0) make_topology();
   choose_stages();
   make_passes();
 }
@@ -24,10 +34,22 @@ ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::ui
 // The same stages with masks; what they carry from substep to substep starts anew.
 void ClothStep::allow_tearing() {
   if (topology_) return;
-  topology_ = std::make_unique<Topology>(lattice_.columns, lattice_.rows, lattice_.stride, families_);
+  make_topology();
   stages_.clear();
   choose_stages();
   make_passes();
+}
+
+void ClothStep::make_topology() {
+  topology_ = std::make_unique<Topology>(lattice_, families_, cloth_.bending > 0);
+  if (cloth_.tears == Tears::split) seams_ = std::make_unique<Seams>();
+  parts_.topology = topology_.get();
+}
+
+const Seams* ClothStep::seams() {
+  if (!seams_ || topology_->version() == 0) return nullptr;
+  seams_->update(*topology_, lattice_);
+  return seams_.get();
 }
 
 void ClothStep::make_passes() {
@@ -59,11 +81,13 @@ void ClothStep::choose_stages() {
   } else {
     SweepOptions sweep;
     sweep.compliant = method == Method::compliant;
-    // Lines know no torn constraints: a cloth that can tear is swept in colours.
-    const bool lines = solver.sweep == Sweep::line && !topology_;
+    const bool lines = solver.sweep == Sweep::line;
     if (sweep.compliant && !lines && solver.iterations > 1)
       multipliers_ = std::make_unique<Multipliers>(lattice_, families_.size());
     sweep.multipliers = multipliers_.get();
+    if (sweep.compliant && solver.sweep != Sweep::jacobi && !lines)
+      corrections_ = std::make_unique<Rows>(lattice_.rows, lattice_.stride);
+    sweep.corrections = corrections_.get();
     if (solver.order == 2) history_ = std::make_unique<History>(lattice_);
     stages_.push_back(history_
                           ? make_predict_second_order(parts, *history_, multipliers_.get())
@@ -84,6 +108,7 @@ void ClothStep::choose_stages() {
       else
         append_gauss_seidel(parts, sweep, stages_);
     }
+    if (corrections_) stages_.push_back(make_corrections(parts, *corrections_));
     if (history_) stages_.push_back(make_velocity_second_order(parts, *history_));
     else if (!sweep.compliant || lines) stages_.push_back(make_velocity(parts, sweep.compliant));
   }
@@ -111,8 +136,10 @@ void ClothStep::append_contact() {
 
 std::size_t ClothStep::bytes() const {
   std::size_t bytes = lattice_.bytes() + (multipliers_ ? multipliers_->bytes() : 0) +
+                      (corrections_ ? corrections_->bytes() : 0) +
                       (history_ ? history_->bytes() : 0);
   if (topology_) bytes += topology_->bytes();
+  if (seams_) bytes += seams_->bytes();
   for (const auto& s : stages_) bytes += s->bytes();
   return bytes;
 }
@@ -155,6 +182,7 @@ void describe_skipped(const Scene& scene, Method method, Plan& plan) {
   if (std::none_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.cuts; }))
     skip("cut", "no collider cuts");
   if (scene.wind.drag == 0 && scene.wind.lift == 0) skip("wind", "drag and lift are 0");
+  if (scene.solver.sleep == 0) skip("sleep", "sleep is 0");
 }
 
 }  // namespace
@@ -176,6 +204,15 @@ Plan describe(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>&
   if (particles > 0)
     plan.stages.push_back({"self_collision", "all cloths together, as often as they move",
                            double(substeps), particles, "particles"});
+  const bool surface = std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const Cloth& c) {
+    return c.self_collision.mode == SelfCollisionMode::surface;
+  });
+  if (surface)
+    plan.stages.push_back({"self_surface",
+                           "vertices against triangles, edges against edges; nothing passes through",
+                           double(substeps), particles, "squares"});
+  else if (particles > 0)
+    plan.skipped.push_back({"self_surface", "self_collision is particles in all cloths"});
   describe_skipped(scene, scene.solver.method, plan);
   return plan;
 }

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "physics/passes.h"
+#include "physics/seams.h"
 #include "physics/stages/stages.h"
 #include "physics/topology.h"
 #include "weft/report.h"
@@ -30,6 +31,8 @@ class ClothStep {
             const KernelTable& kernels);
 
   const Cloth& cloth() const { return cloth_; }
+  // Of every collider of the scene.
+  const std::vector<StartInside>& starts() const { return starts_; }
   Lattice& lattice() { return lattice_; }
   const Lattice& lattice() const { return lattice_; }
   const std::vector<Family>& families() const { return families_; }
@@ -43,9 +46,14 @@ class ClothStep {
   Topology* topology() { return topology_.get(); }
   const Topology* topology() const { return topology_.get(); }
   void allow_tearing();
+  // The seams of the tears as they lie now; null unless the cloth has torn and shows its tears split.
+  const Seams* seams();
+  // Bending terms that are left; null: all.
+  const BendLinks* bend_links() const { return topology_ ? topology_->bend_links() : nullptr; }
   std::size_t bytes() const;
 
  private:
+  void make_topology();
   void choose_stages();
   void append_contact();
   void make_passes();
@@ -55,11 +63,14 @@ class ClothStep {
   const std::uint64_t seed_;
   std::vector<Family> families_;
   Lattice lattice_;
+  std::vector<StartInside> starts_;
   ClothParts parts_;
   std::unique_ptr<Multipliers> multipliers_;
+  std::unique_ptr<Rows> corrections_;
   std::unique_ptr<History> history_;
   Stages stages_;
   std::unique_ptr<Topology> topology_;
+  std::unique_ptr<Seams> seams_;
   std::unique_ptr<Passes> passes_;
 };
 

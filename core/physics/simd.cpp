@@ -7,7 +7,7 @@ namespace weft {
 
 #define WEFT_DECLARE(simd)                 \
   namespace kernels_##simd {               \
-  extern const physics::KernelTable kTable; \
+  const physics::KernelTable& table(); \
   }
 WEFT_EACH_SIMD(WEFT_DECLARE)
 #undef WEFT_DECLARE
@@ -38,7 +38,7 @@ namespace physics {
 const KernelTable& kernel_table(Simd simd) {
   switch (simd) {
 #define WEFT_CASE(name) \
-  case Simd::name: return kernels_##name::kTable;
+  case Simd::name: return kernels_##name::table();
     WEFT_EACH_SIMD(WEFT_CASE)
 #undef WEFT_CASE
     case Simd::best: break;

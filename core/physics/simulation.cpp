@@ -60,7 +60,8 @@ View Simulation::view() const {
   View view;
   view.version = std::uint64_t(state_->frame) + state_->changes;
   view.time = time();
-  for (const auto& step : state_->cloths) {
+  for (std::size_t n = 0; n < state_->cloths.size(); ++n) {
+    const auto& step = state_->cloths[n];
     const Lattice& l = step->lattice();
     ClothView c;
     c.columns = l.columns;
@@ -72,11 +73,16 @@ View Simulation::view() const {
     c.vx = l.v.component(0);
     c.vy = l.v.component(1);
     c.vz = l.v.component(2);
-    c.inverse_mass = l.inverse_mass.span();
+    c.inverse_mass = state_->masses(n).span();
     if (const Topology* t = step->topology()) {
       c.topology_version = t->version();
       c.triangles = t->triangles();
       c.torn = t->torn() > 0;
+      if (const Seams* s = step->seams()) {
+        c.seam_points = s->points();
+        c.seam_particles = s->particles();
+        c.seams = s->triangles();
+      }
     }
     view.cloths.push_back(c);
   }
@@ -106,12 +112,17 @@ void Simulation::grab(int cloth, int i, int j, const Vec3& target, double stiffn
   state_->grab(cloth, i, j, target, stiffness);
 }
 void Simulation::release() { state_->release(); }
+void Simulation::carry(int cloth, const Vec3& velocity) { state_->carry(cloth, velocity); }
 void Simulation::pin(int cloth, int i, int j) { state_->hold(cloth, i, j, true); }
 void Simulation::unpin(int cloth, int i, int j) { state_->hold(cloth, i, j, false); }
 
+void Simulation::move_collider(int collider, const Vec3& target) {
+  state_->move_collider(collider, target);
+}
+
 int Simulation::cut(const Vec3& a, const Vec3& b, double width) { return state_->cut(a, b, width); }
 
-Report Simulation::report() const { return measure(*state_); }
+Report Simulation::report(bool contacts) const { return measure(*state_, contacts); }
 std::uint64_t Simulation::hash() const { return state_hash(*state_); }
 
 double Simulation::bytes_per_particle() const {
@@ -120,6 +131,7 @@ double Simulation::bytes_per_particle() const {
     bytes += step->bytes();
     particles += std::size_t(step->lattice().columns) * step->lattice().rows;
   }
+  if (state_->rest) bytes += state_->rest->bytes();
   return double(bytes + state_->backup_bytes()) / double(particles);
 }
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "weft/scene.h"
+
 namespace weft::physics {
 
 class Threads;
@@ -15,6 +17,11 @@ struct Substep {
   double dt = 0;    // s
   double time = 0;  // s, at the end of the substep
   int slot = 0;     // which of a stage's carried buffers this substep uses
+};
+
+// Rows begin … end-1.
+struct RowSpan {
+  int begin = 0, end = 0;
 };
 
 // One stage of the plan.
@@ -36,6 +43,8 @@ class Stage {
   virtual void run_alone(int rows, const Substep& substep, Threads& threads) = 0;
   // Forgets what it keeps from one substep to the next: the state was set from outside.
   virtual void restart() {}
+  // The path of this collider has changed.
+  virtual void follow(const Collider& collider) { (void)collider; }
   virtual std::size_t bytes() const { return 0; }
   // Share of the rows so far that had nothing to do and were passed over, 0 … 1.
   virtual double idle() const { return 0; }
@@ -60,6 +69,9 @@ class RowStage : public Stage {
   virtual void run(int begin, int end, const Substep& substep) {
     for (int j = begin; j < end; ++j) run(j, substep);
   }
+  // Called before a row that does not follow on from the row before it, where rows are passed over:
+  // what is carried from row to row starts anew.
+  virtual void start(const Substep& substep) { (void)substep; }
   // Makes room for substeps of slots 0 … slots-1.
   virtual void reserve_slots(int slots) { (void)slots; }
 

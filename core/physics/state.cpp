@@ -1,5 +1,5 @@
-// The frame: substeps through the plan, the substep kept inside the stability limit, and a stop with
-// the place of the fault when the state turns non-finite.
+// The frame: substeps through the plan, and a stop with the place of the fault when the state turns
+// non-finite.
 #include "physics/state.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "physics/energy.h"
-#include "physics/stability.h"
+#include "physics/stages/colliders.h"
 
 namespace weft {
 
@@ -16,11 +16,7 @@ using namespace physics;
 
 namespace {
 
-constexpr double kLimitShare = 0.9;      // of the stability limit that an automatic substep takes
-constexpr int kMostSubsteps = 100000;    // per frame
-constexpr double kProjectionRate = 960;  // automatic substeps a second of the projecting methods
 constexpr int kSmallCloth = 4096;        // particles up to which one thread is faster
-constexpr double kGrabbed = 0.6;         // of follow_stretch's t, room for what a hand may do in a frame
 constexpr float kFarAway = 1e7f;         // m; nothing in a sane scene gets there
 
 Simd resolve(Simd simd) {
@@ -30,21 +26,32 @@ Simd resolve(Simd simd) {
   return Simd::sse2;
 }
 
-// Without shear springs (or with nothing else) a sheet folds onto a line that stretches nothing, where
-// all its springs pull the same way: up to twice the flat sheet's ω², and no stretch adds to that.
-constexpr double kFolded = 2;
-bool folds_freely(const ClothStep& step) {
-  const auto has = [&](Kind kind) {
-    return std::any_of(step.families().begin(), step.families().end(),
-                       [&](const Family& f) { return f.kind == kind; });
-  };
-  return !has(Kind::structural) || !has(Kind::shear);
-}
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", v);
-  return text;
+// Jacobi adds up corrections that each constraint works out for two ends of like mass; where a light
+// particle has heavy neighbours they add up to more than the whole. And a single sweep with compliance
+// is an explicit spring as stiff as the sweep allows, which large motions feed: two sweeps damp. Puts
+// what is stable into the scene and returns what to tell, "" where nothing changed.
+constexpr double kAlikeMasses = 4;  // greatest over least
+std::string steady_jacobi(Scene& scene) {
+  if (scene.solver.sweep != Sweep::jacobi) return "";
+  const double dt = scene.time.substeps == kAutoSubsteps ? 1 / kProjectionRate
+                                                         : scene.time.frame / scene.time.substeps;
+  bool stiff = false;
+  for (const Cloth& c : scene.cloths) {
+    double lightest = particle_mass(c, 0, 0), heaviest = lightest;
+    for (const double mass : c.masses) {
+      lightest = std::min(lightest, mass);
+      heaviest = std::max(heaviest, mass);
+    }
+    if (heaviest > kAlikeMasses * lightest) {
+      scene.solver.sweep = Sweep::gauss_seidel;
+      return "Jacobi sweeps do not converge for masses this unequal; gauss_seidel runs in their place";
+    }
+    const double k = std::max({c.stiffness.structural, c.stiffness.shear, c.stiffness.bend});
+    stiff |= 2 * k * dt * dt > lightest;
+  }
+  if (!stiff || scene.solver.method != Method::compliant || scene.solver.iterations > 1) return "";
+  scene.solver.iterations = 2;
+  return "one Jacobi sweep of constraints this stiff is not stable in large motions; two run";
 }
 
 }  // namespace
@@ -56,69 +63,59 @@ Simulation::State::State(Scene given, const Options& given_options)
       threads(options.threads),
       one_thread(1),
       method(scene.solver.method) {
+  const std::string changed = steady_jacobi(scene);
   build_cloths();
   choose_method_and_substeps();
+  if (!changed.empty()) fall_back(changed);
   frame_ms.reserve(std::size_t(std::clamp(scene.time.seconds / scene.time.frame, 1.0, 1e6)) + 1);
 }
 
 void Simulation::State::build_cloths() {
   cloths.clear();
+  carried_.clear();
   backups_.clear();
   stage_ns.clear();
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     cloths.push_back(std::make_unique<ClothStep>(scene, int(c), method, options.seed,
                                                  kernel_table(simd)));
     const Lattice& l = cloths.back()->lattice();
+    carried_.push_back(nullptr);
     backups_.push_back({Rows(l.rows, l.stride), Rows(l.rows, l.stride)});
     stage_ns.emplace_back(cloths.back()->stages().size());
     if (options.profile) cloths.back()->passes().profile(stage_ns.back());
   }
   self_collision = SelfContact::make(scene, cloths, kernel_table(simd));
+  surface = self_collision ? SurfaceContact::make(scene, self_collision->sheets(), kernel_table(simd))
+                           : nullptr;
+  rest = Rest::make(scene, cloths, kernel_table(simd));
 }
 
-// Explicit springs: the substep from the stability limit, or the user's if it is inside; beyond it,
-// the compliant method in their place, which is stable at any substep.
-void Simulation::State::choose_method_and_substeps() {
-  std::vector<std::string> notes;
-  for (const Cloth& c : scene.cloths)
-    if (c.self_collision.mode == SelfCollisionMode::surface) {
-      notes.push_back("self_collision: surface is not available yet; particles runs in its place");
-      break;
+// What is odd about how the cloths start, and what is done about it.
+void Simulation::State::note_starts(std::vector<std::string>& notes) const {
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const std::string which = "cloth " + std::to_string(c);
+    for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+      const StartInside& start = cloths[c]->starts()[k];
+      if (start.particles == 0) continue;
+      const bool course = scene.colliders[k].friction.model == FrictionModel::course;
+      notes.push_back(which + " starts inside collider " + std::to_string(k) + ": " +
+                      std::to_string(start.particles) + " particles, up to " +
+                      number(start.deepest) + " m deep; " +
+                      (course ? "they are put out at once, as the course does"
+                              : "moved out over " + std::to_string(kPulledFrames) + " frames"));
     }
-  int count = scene.time.substeps;
-  double limit = 0;
-  if (is_explicit(method)) {
-    limit = std::numeric_limits<double>::infinity();
-    double safe = limit;  // for automatic substeps
-    for (const auto& c : cloths) {
-      spectra.push_back(estimate_spectrum(c->cloth(), c->families(), c->lattice(),
-                                          method == Method::spring_friction));
-      limit = std::min(limit, spectra.back().largest_substep());
-      Spectrum folded = spectra.back();
-      if (folds_freely(*c)) folded.omega_squared *= kFolded;
-      safe = std::min(safe, folded.largest_substep());
-    }
-    const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
-    if (count == kAutoSubsteps && needed <= kMostSubsteps) {
-      count = std::max(1, int(needed));
-      notes.push_back("substeps from the stability limit of " + number(limit) + " s");
-    } else if (count == kAutoSubsteps || scene.time.frame / count > limit) {
-      notes.push_back("springs need substeps below " + number(limit) + " s, " +
-                      number(needed) + " a frame at " + number(kLimitShare) +
-                      " of the limit; the compliant method runs in their place");
-      method = Method::compliant;
-      build_cloths();
-    }
+    const Cloth& cloth = scene.cloths[c];
+    const double spacing = std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
+    if (cloth.self_collision.mode != SelfCollisionMode::off &&
+        cloth.self_collision.thickness > spacing)
+      notes.push_back(which + ": the thickness of " + number(cloth.self_collision.thickness) +
+                      " m is above the spacing of " + number(spacing) +
+                      " m; particles nearer than the thickness on the flat sheet do not meet");
   }
-  if (count == kAutoSubsteps) count = std::max(1, int(std::lround(scene.time.frame * kProjectionRate)));
-  Scene as_run = scene;
-  as_run.solver.method = method;
-  plan = describe(as_run, cloths, count);
-  plan.dt_limit = std::isfinite(limit) ? limit : 0;
-  plan.notes = std::move(notes);
-  substeps = count;
-  dt = scene.time.frame / count;
-  if (is_explicit(method)) shift_velocities(-dt / 2);
+  if (!self_collision) return;
+  if (const SelfContact::Overlaps o = self_collision->overlaps(); o.pairs > 0)
+    notes.push_back(std::to_string(o.pairs) + " pairs of particles start nearer than the thickness, by up to " +
+                    number(o.deepest) + " m; they are pushed apart");
 }
 
 // v <- v + a·by: velocities of explicit springs lie half a substep behind the positions. `from`
@@ -127,7 +124,8 @@ void Simulation::State::shift_velocities(double by, const double* from) {
   for (auto& step : cloths) {
     Lattice& l = step->lattice();
     std::vector<Vec3>& a = accelerations_;
-    accelerations(scene, step->cloth(), step->families(), l, method == Method::spring_friction, a);
+    accelerations(scene, step->cloth(), step->families(), l, step->bend_links(),
+                  method == Method::spring_friction, a);
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i)
         for (int c = 0; c < 3; ++c) {
@@ -140,31 +138,27 @@ void Simulation::State::shift_velocities(double by, const double* from) {
   if (scene.time.substeps != kAutoSubsteps) accelerations_ = std::vector<Vec3>();
 }
 
-void Simulation::State::set_substeps(int count) {
-  const double before = dt;
-  substeps = std::min(count, kMostSubsteps);
-  dt = scene.time.frame / substeps;
-  shift_velocities((before - dt) / 2);
-  plan.substeps = substeps;
-  plan.dt = dt;
-  for (PlannedStage& s : plan.stages) s.calls_per_frame = substeps;
-}
-
 void Simulation::State::advance_frame() {
   if (!status.ok) return;
   const auto start = std::chrono::steady_clock::now();
+  for (std::size_t c = 0; c < cloths.size(); ++c)
+    if (carried_[c]) wake(int(c));
+  if (rest) rest->begin_frame(double(frame) * scene.time.frame);
   save();
   run_frame();
+  while (too_coarse()) run_frame();
   if (!finite()) {
     find_fault();
     restore();
     return;
   }
+  calm();
   for (auto& step : cloths)
     if (step->topology()) step->topology()->update();
   ++frame;
   total_substeps += substeps;
-  if (is_explicit(method) && scene.time.substeps == kAutoSubsteps) follow_stretch();
+  if (rest) rest->end_frame([&](std::size_t c) -> const Rows& { return backups_[c].x; });
+  if (is_explicit(method) && !(rest && rest->all_asleep())) follow_stretch(limit_);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   total_ms += spent.count();
   // A run longer than the scene says keeps the times of its last frames.
@@ -175,15 +169,20 @@ void Simulation::State::advance_frame() {
 }
 
 void Simulation::State::run_frame() {
+  if (rest && rest->all_asleep()) return;
   if (!self_collision) return run_substeps(0, substeps);
+  if (surface && !surface->valid()) surface->begin(threads);
   for (int s = 0; s < substeps;) {
     const int count = std::min(until_collision_ - since_collision_, substeps - s);
     run_substeps(s, count);
     s += count;
     since_collision_ += count;
-    if (since_collision_ < until_collision_) break;
+    // A frame ends with surfaces that have not crossed.
+    if (since_collision_ < until_collision_ && !(surface && s == substeps)) break;
     const auto start = std::chrono::steady_clock::now();
     until_collision_ = self_collision->run(dt, since_collision_, threads);
+    if (surface)
+      until_collision_ = std::min(until_collision_, surface->run(dt, since_collision_, threads));
     since_collision_ = 0;
     const auto spent = std::chrono::steady_clock::now() - start;
     self_collision_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
@@ -193,44 +192,13 @@ void Simulation::State::run_frame() {
 
 void Simulation::State::run_substeps(int first, int count) {
   const double time = double(frame) * scene.time.frame + first * dt;
-  for (auto& step : cloths) {
-    const Lattice& l = step->lattice();
-    const bool small = l.columns * l.rows <= kSmallCloth;
-    step->passes().run(time, dt, count, small ? one_thread : threads);
-  }
-}
-
-// Stretched springs resist sideways too, which raises the largest frequency:
-// ω² <= ω²_flat + t (ω²_all - ω²_flat), t = max (1 - l/|e|). Every fourth row is looked at.
-void Simulation::State::follow_stretch() {
-  double limit = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < cloths.size(); ++c) {
-    const ClothStep& step = *cloths[c];
-    const Lattice& l = step.lattice();
-    float most = 0;
-    for (const Family& f : step.families()) {
-      if (f.kind != Kind::structural) continue;
-      for (int j = 0; j + f.dj < l.rows; j += 4)
-        for (int n = 0; n < f.per_row(l.columns); ++n) {
-          if (!f.alive(j, n)) continue;
-          float squared = 0;
-          for (int k = 0; k < 3; ++k) {
-            const float e = l.x.at(k, j + f.dj, n + f.far()) - l.x.at(k, j, n + f.near());
-            squared += e * e;
-          }
-          most = std::max(most, squared / float(f.rest * f.rest));
-        }
-    }
-    double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
-    if (grab_) t = std::max(t, kGrabbed);
-    // Springs in all directions: never more than twice the flat sheet's ω² for the families here.
-    Spectrum stretched = spectra[c];
-    stretched.omega_squared *= folds_freely(step) ? kFolded : 1 + t;
-    limit = std::min(limit, stretched.largest_substep());
+    if (asleep(c)) continue;
+    const Lattice& l = cloths[c]->lattice();
+    const bool small = l.columns * l.rows <= kSmallCloth;
+    cloths[c]->passes().run(time, dt, count, small ? one_thread : threads,
+                            rest ? rest->rows(c) : std::span<const RowSpan>());
   }
-  const int count = int(std::ceil(scene.time.frame / (kLimitShare * limit)));
-  // A few percent of slack either way keeps the substep from changing every frame.
-  if (count > substeps || count < substeps - substeps / 12) set_substeps(std::max(1, count));
 }
 
 void Simulation::State::set(std::span<const double> positions, std::span<const double> velocities) {
@@ -245,6 +213,7 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
       std::any_of(velocities.begin(), velocities.end(), bad))
     throw std::invalid_argument("a state holds a value that is not finite");
   std::size_t p = 0;
+  wake();
   for (auto& step : cloths) {
     Lattice& l = step->lattice();
     for (int j = 0; j < l.rows; ++j)
@@ -257,27 +226,42 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
   for (auto& step : cloths)
     for (const auto& stage : step->stages()) stage->restart();
   if (self_collision) self_collision->restart();
+  if (surface) surface->restart();
   since_collision_ = 0;
   until_collision_ = 1;
   if (is_explicit(method)) {
     shift_velocities(-dt / 2, velocities.data());
-    if (scene.time.substeps == kAutoSubsteps) follow_stretch();
+    follow_stretch(stretched_limit());
   }
+  guard_.open(scene, method, cloths, double(frame) * scene.time.frame, dt);
   ++changes;
 }
 
+// Somebody changed a cloth, or all of them.
+void Simulation::State::wake(int cloth) {
+  for (std::size_t c = 0; rest && c < cloths.size(); ++c)
+    if (cloth < 0 || std::size_t(cloth) == c) rest->wake(int(c));
+}
+
 void Simulation::State::save() {
+  saved_substeps_ = substeps;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (asleep(c)) continue;
     backups_[c].x.copy(cloths[c]->lattice().x);
     backups_[c].v.copy(cloths[c]->lattice().v);
+    if (Topology* topology = cloths[c]->topology()) topology->remember();
   }
 }
 
 void Simulation::State::restore() {
   for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (asleep(c)) continue;
     cloths[c]->lattice().x.copy(backups_[c].x);
     cloths[c]->lattice().v.copy(backups_[c].v);
+    if (Topology* topology = cloths[c]->topology()) topology->go_back();
   }
+  // The velocities lie half a substep of that length behind the positions.
+  take_substeps(saved_substeps_);
 }
 
 std::size_t Simulation::State::backup_bytes() const {
@@ -287,8 +271,8 @@ std::size_t Simulation::State::backup_bytes() const {
 }
 
 bool Simulation::State::finite() const {
-  for (const auto& step : cloths)
-    if (!step->lattice().x.all_within(kFarAway) ) return false;
+  for (std::size_t c = 0; c < cloths.size(); ++c)
+    if (!asleep(c) && !cloths[c]->lattice().x.all_within(kFarAway)) return false;
   return true;
 }
 

@@ -2,16 +2,30 @@
 #pragma once
 
 #include <atomic>
+#include <cstdio>
 #include <deque>
 
+#include "physics/energy_guard.h"
 #include "physics/plan.h"
+#include "physics/rest.h"
 #include "physics/self_collision/self_collision.h"
+#include "physics/self_collision/surface.h"
 #include "physics/stability.h"
+#include "physics/stages/carry.h"
 #include "physics/stages/grab.h"
 #include "physics/threads.h"
 #include "weft/simulation.h"
 
 namespace weft {
+
+inline constexpr double kProjectionRate = 960;  // automatic substeps a second of methods that project
+
+// A number as notes give it.
+inline std::string number(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", v);
+  return text;
+}
 
 struct Simulation::State {
   State(Scene given, const Options& given_options);
@@ -19,12 +33,16 @@ struct Simulation::State {
   void advance_frame();
   void grab(int cloth, int i, int j, const Vec3& target, double stiffness);
   void release();
+  void carry(int cloth, const Vec3& velocity);
   void hold(int cloth, int i, int j, bool held);
   int cut(const Vec3& a, const Vec3& b, double width);
   void set(std::span<const double> positions, std::span<const double> velocities);
+  void move_collider(int collider, const Vec3& target);
+  Moment moment() const;
+  void restore(const Moment& moment);
   std::size_t backup_bytes() const;
 
-  Scene scene;  // as simulated; never changes
+  Scene scene;  // as simulated; only move_collider() changes it
   Options options;
   Simd simd;
   physics::Threads threads;
@@ -32,6 +50,12 @@ struct Simulation::State {
   Method method;                // the scene's, or the stable one put in its place
   std::vector<std::unique_ptr<physics::ClothStep>> cloths;
   std::unique_ptr<physics::SelfContact> self_collision;  // over all cloths; null when all are off
+  std::unique_ptr<physics::SurfaceContact> surface;      // the same; null unless one asks for it
+  std::unique_ptr<physics::Rest> rest;  // null when nothing may sleep
+  // Inverse masses of a cloth, of sleeping particles too.
+  const physics::AlignedArray<float>& masses(std::size_t cloth) const {
+    return rest ? rest->masses(cloth) : cloths[cloth]->lattice().inverse_mass;
+  }
   Plan plan;
   Status status;
   std::int64_t frame = 0, total_substeps = 0;
@@ -51,19 +75,35 @@ struct Simulation::State {
     physics::Rows x, v;
   };
   std::vector<Backup> backups_;
+  int saved_substeps_ = 1;
   physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
   int grabbed_ = 0;
+  std::vector<physics::Carry*> carried_;  // in the plan of each cloth; null while it rests
   int since_collision_ = 0, until_collision_ = 1;  // substeps
   std::vector<Vec3> accelerations_;  // of one cloth, kept where automatic substeps change (explicit)
+  physics::EnergyGuard guard_;
+  double limit_ = 0;  // s; the stability limit at the end of the last frame (explicit)
+  int finer_ = 1;     // times as many substeps as the stability limit asks for (explicit)
 
   void choose_method_and_substeps();
+  void note_starts(std::vector<std::string>& notes) const;
   void build_cloths();
+  void take_substeps(int count);
   void set_substeps(int count);
   void shift_velocities(double by, const double* from = nullptr);
-  void follow_stretch();
+  double stretched_limit() const;
+  int substeps_within(double limit) const;
+  void follow_stretch(double limit);
+  bool driven() const;
+  bool too_coarse();
+  void calm();
+  void fall_back(const std::string& note);
+  void wake(int cloth = -1);
+  bool asleep(std::size_t cloth) const { return rest && rest->rows(cloth).empty(); }
   void run_frame();
   physics::ClothStep& step_with(int cloth, int i, int j);
   void plan_changed();
+  void let_go(int cloth);
   void run_substeps(int first, int count);
   void save();
   void restore();

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <cstddef>
 #include <memory>
+#include <utility>
 
 namespace weft::physics {
 
@@ -17,6 +20,16 @@ class Threads {
   template <class Work>
   void run(Work&& work) {
     arena_.execute(std::forward<Work>(work));
+  }
+
+  // work(0) … work(tasks - 1), in any order; `alone`: on this thread, because they are short.
+  template <class Work>
+  void share(std::size_t tasks, bool alone, Work&& work) {
+    if (alone || count_ == 1) {
+      for (std::size_t k = 0; k < tasks; ++k) work(k);
+      return;
+    }
+    arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t(0), tasks, work); });
   }
 
  private:

@@ -6,19 +6,51 @@
 
 namespace weft::physics {
 
-Topology::Topology(int columns, int rows, int stride, std::vector<Family>& families)
-    : columns_(columns),
-      rows_(rows),
-      stride_(stride),
+Topology::Topology(const Lattice& l, std::vector<Family>& families, bool bends)
+    : columns_(l.columns),
+      rows_(l.rows),
+      stride_(l.stride),
       families_(families),
-      died_(static_cast<std::size_t>(rows)),
-      squares_(static_cast<std::size_t>(columns - 1) * (rows - 1), 3) {
+      bend_links_(bends ? std::make_unique<BendLinks>(l) : nullptr),
+      died_(static_cast<std::size_t>(l.rows)),
+      followed_(died_),
+      squares_(static_cast<std::size_t>(l.columns - 1) * (l.rows - 1)) {
   for (Family& f : families_) {
-    links_.push_back(std::make_unique<Links>(rows, stride, f.per_row(columns)));
+    links_.push_back(std::make_unique<Links>(rows_, stride_, f.per_row(columns_)));
     f.links = links_.back().get();
-    for (int j = rows - f.dj; j < rows; ++j) std::fill_n(f.links->row(j), f.per_row(columns), 0);
   }
+  make_whole();
   triangles_.reserve(2 * squares_.size());
+}
+
+void Topology::make_whole() {
+  for (Family& f : families_)
+    for (int j = 0; j < rows_; ++j)
+      std::fill_n(f.links->row(j), f.per_row(columns_), j + f.dj < rows_ ? -1 : 0);
+  if (bend_links_) bend_links_->make_whole();
+  std::fill(died_.begin(), died_.end(), 0);
+  followed_ = died_;
+  std::fill(squares_.begin(), squares_.end(), std::uint8_t(0));
+  torn_ = 0;
+}
+
+std::vector<Topology::Torn> Topology::torn_list() const {
+  std::vector<Torn> list;
+  if (torn_ == 0) return list;
+  for (const Family& f : families_)
+    for (int j = 0; j + f.dj < rows_; ++j)
+      for (int a = 0; a < f.per_row(columns_); ++a)
+        if (!f.alive(j, a)) list.push_back({f.di, f.dj, j, a});
+  return list;
+}
+
+void Topology::set_torn(const std::vector<Torn>& torn) {
+  make_whole();
+  for (const Torn& t : torn)
+    if (const Family* f = family_at(t.di, t.dj)) end(*f, t.j, t.a);
+  update();
+  ++version_;
+  list_triangles();
 }
 
 const Family* Topology::family_at(int di, int dj) const {
@@ -27,19 +59,19 @@ const Family* Topology::family_at(int di, int dj) const {
   return nullptr;
 }
 
-// Whether the constraint (di, dj) from particle (i, j) is there; true when the cloth has none such.
 bool Topology::alive(int di, int dj, int i, int j) const {
   const Family* f = family_at(di, dj);
   return !f || f->alive(j, i - f->near());
 }
 
-// A constraint over g steps of a shorter family goes when one of the steps it spans is gone.
-void Topology::end_spanning() {
+// A constraint over g steps of a shorter family goes when one of the steps it spans, one of them in
+// the row, is gone.
+void Topology::end_spanning(int row) {
   for (const Family& f : families_) {
     const int g = std::gcd(f.di, f.dj);
     const Family* step = g > 1 ? family_at(f.di / g, f.dj / g) : nullptr;
     if (!step) continue;
-    for (int j = 0; j + f.dj < rows_; ++j)
+    for (int j = std::max(0, row - f.dj); j <= row && j + f.dj < rows_; ++j)
       for (int a = 0; a < f.per_row(columns_); ++a)
         for (int m = 0; m < g; ++m) {
           const int i = a + f.near() + m * step->di - step->near();
@@ -48,44 +80,86 @@ void Topology::end_spanning() {
   }
 }
 
-void Topology::rebuild_triangles() {
+// Bending goes with the structural constraints that it bends.
+void Topology::end_bending(int row) {
+  BendLinks& b = *bend_links_;
+  for (int j = std::max(0, row - 1); j <= row; ++j)
+    for (int i = 0; i < columns_; ++i) {
+      const std::size_t at = static_cast<std::size_t>(j) * stride_ + i;
+      const bool right = i + 1 < columns_ && alive(1, 0, i, j);
+      const bool down = j + 1 < rows_ && alive(0, 1, i, j);
+      if (i + 2 < columns_ && !(right && alive(1, 0, i + 1, j))) b.along[at] = 0;
+      if (j + 2 < rows_ && !(down && alive(0, 1, i, j + 1))) b.across[at] = 0;
+      if (i + 1 < columns_ && j + 1 < rows_ &&
+          !(right && down && alive(1, 0, i, j + 1) && alive(0, 1, i + 1, j)))
+        b.twist[at] = 0;
+    }
+}
+
+// The squares above and below a row; returns whether any lost an edge.
+bool Topology::look_at_squares(int row) {
   bool changed = false;
-  for (int j = 0; j + 1 < rows_; ++j)
+  for (int j = std::max(0, row - 1); j <= row && j + 1 < rows_; ++j)
     for (int i = 0; i + 1 < columns_; ++i) {
       const bool diagonal = alive(-1, 1, i + 1, j);
-      const bool first = diagonal && alive(1, 0, i, j) && alive(0, 1, i, j);
-      const bool second = diagonal && alive(1, 0, i, j + 1) && alive(0, 1, i + 1, j);
-      const auto left = static_cast<std::uint8_t>(first | second << 1);
+      const bool edges[6] = {alive(1, 0, i, j),     diagonal, alive(0, 1, i, j),
+                             alive(0, 1, i + 1, j), alive(1, 0, i, j + 1), diagonal};
+      std::uint8_t gone = 0;
+      for (int n = 0; n < 6; ++n) gone |= static_cast<std::uint8_t>(!edges[n] << n);
       std::uint8_t& square = squares_[static_cast<std::size_t>(j) * (columns_ - 1) + i];
-      changed |= square != left;
-      square = left;
+      changed |= square != gone;
+      square = gone;
     }
-  if (!changed) return;
-  ++version_;
+  return changed;
+}
+
+void Topology::list_triangles() {
   triangles_.clear();
   for (int j = 0; j + 1 < rows_; ++j)
     for (int i = 0; i + 1 < columns_; ++i) {
-      const std::uint8_t left = squares_[static_cast<std::size_t>(j) * (columns_ - 1) + i];
+      const std::uint8_t lost = gone(i, j);
       const auto p = static_cast<std::uint32_t>(j * stride_ + i);
       const auto below = p + static_cast<std::uint32_t>(stride_);
-      if (left & 1) triangles_.push_back({p, p + 1, below});
-      if (left & 2) triangles_.push_back({p + 1, below + 1, below});
+      if (!(lost & 7)) triangles_.push_back({p, p + 1, below});
+      if (!(lost >> 3)) triangles_.push_back({p + 1, below + 1, below});
     }
 }
 
 bool Topology::update() {
-  const auto count = [&] { return std::accumulate(died_.begin(), died_.end(), std::int64_t(0)); };
-  if (count() == torn_) return false;
-  end_spanning();
-  torn_ = count();
-  rebuild_triangles();
+  if (died_ == followed_) return false;
+  bool changed = false;
+  for (int j = 0; j < rows_; ++j) {
+    if (died_[static_cast<std::size_t>(j)] == followed_[static_cast<std::size_t>(j)]) continue;
+    end_spanning(j);
+    if (bend_links_) end_bending(j);
+    changed |= look_at_squares(j);
+  }
+  followed_ = died_;
+  torn_ = std::accumulate(died_.begin(), died_.end(), std::int64_t(0));
+  if (changed) {
+    ++version_;
+    list_triangles();
+  }
   return true;
 }
 
+void Topology::remember() {
+  if (remembered_.empty())
+    for (std::size_t f = 0; f < links_.size(); ++f)
+      remembered_.push_back(std::make_unique<Links>(rows_, stride_, 0));
+  for (std::size_t f = 0; f < links_.size(); ++f) remembered_[f]->copy(*links_[f]);
+}
+
+void Topology::go_back() {
+  for (std::size_t f = 0; f < remembered_.size(); ++f) links_[f]->copy(*remembered_[f]);
+  died_ = followed_;
+}
+
 std::size_t Topology::bytes() const {
-  std::size_t bytes = squares_.size() + died_.size() * 8 + triangles_.capacity() * 12;
+  std::size_t bytes = squares_.size() + died_.size() * 16 + triangles_.capacity() * 12;
   for (const auto& l : links_) bytes += l->bytes();
-  return bytes;
+  for (const auto& l : remembered_) bytes += l->bytes();
+  return bytes + (bend_links_ ? bend_links_->bytes() : 0);
 }
 
 }  // namespace weft::physics

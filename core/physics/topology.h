@@ -1,7 +1,10 @@
-// What holds together of a cloth that can tear: which constraints and triangles are left.
+// What holds together of a cloth that can tear: which constraints, bending terms and triangles are
+// left.
 //
 // A constraint dies past its tear strain, where a cutter passes, or where a caller cuts. With the
-// constraints along a line die the longer ones that span it, and with an edge the triangles at it.
+// constraints along a line die the longer ones that span it, with a structural one the bending over
+// it, and with an edge the triangles at it, of which each side keeps its part (seams.h). Looked at
+// again is only what lies about the rows where something died.
 #pragma once
 
 #include <array>
@@ -9,14 +12,15 @@
 #include <memory>
 #include <vector>
 
+#include "physics/bending.h"
 #include "physics/family.h"
 
 namespace weft::physics {
 
 class Topology {
  public:
-  // Gives every family of a whole cloth its links.
-  Topology(int columns, int rows, int stride, std::vector<Family>& families);
+  // Gives every family of a whole cloth its links; `bends`: it has bending too.
+  Topology(const Lattice& lattice, std::vector<Family>& families, bool bends);
 
   // Notes that constraints of row j died. Rows may be worked on side by side.
   void died(int j, int count) { died_[static_cast<std::size_t>(j)] += count; }
@@ -26,29 +30,57 @@ class Topology {
     if (lane != 0) died(j, 1);
     lane = 0;
   }
-  // Follows what died since the last call: spanning constraints, triangles. Returns whether any
-  // did.
+  // Follows what died since the last call: spanning constraints, bending, triangles. Returns whether
+  // any did.
   bool update();
 
+  // Remembers which links there are; go_back() undoes what died since.
+  void remember();
+  void go_back();
+  // One constraint that is gone: its family's offset, its row and its place in the row.
+  struct Torn {
+    int di, dj, j, a;
+  };
+  std::vector<Torn> torn_list() const;
+  // Exactly these are gone, and what spans them; those of families not here are passed over.
+  void set_torn(const std::vector<Torn>& torn);
+
   std::int64_t torn() const { return torn_; }         // constraints that are gone
+  std::int64_t torn(int j) const { return died_[static_cast<std::size_t>(j)]; }  // of row j
   std::uint64_t version() const { return version_; }  // rises when triangles change
-  // Triangles that are left, corners as j*stride + i; empty while the cloth is whole.
+  // Triangles that are left whole, corners as j*stride + i; empty while the cloth is whole.
   const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
+  // Null without bending.
+  const BendLinks* bend_links() const { return bend_links_.get(); }
   std::size_t bytes() const;
 
- private:
-  const Family* family_at(int di, int dj) const;
+  // Edges of the first and the second triangle of square (i, j) that are gone: bits 0 to 2 and 3 to
+  // 5, edge n from corner n to the next. Corners: (i,j) (i+1,j) (i,j+1) and (i+1,j) (i+1,j+1) (i,j+1).
+  std::uint8_t gone(int i, int j) const {
+    return squares_[static_cast<std::size_t>(j) * (columns_ - 1) + i];
+  }
+  // Whether the constraint (di, dj) from particle (i, j) is there; true when the cloth has none such.
   bool alive(int di, int dj, int i, int j) const;
-  void end_spanning();
-  void rebuild_triangles();
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  int stride() const { return stride_; }
+
+ private:
+  void make_whole();
+  const Family* family_at(int di, int dj) const;
+  void end_spanning(int row);
+  void end_bending(int row);
+  bool look_at_squares(int row);
+  void list_triangles();
 
   int columns_, rows_, stride_;
   std::vector<Family>& families_;
-  std::vector<std::unique_ptr<Links>> links_;
-  std::vector<std::int64_t> died_;  // per row, ever
+  std::vector<std::unique_ptr<Links>> links_, remembered_;
+  std::unique_ptr<BendLinks> bend_links_;
+  std::vector<std::int64_t> died_, followed_;  // per row, ever
   std::int64_t torn_ = 0;
   std::uint64_t version_ = 0;
-  std::vector<std::uint8_t> squares_;  // which triangles of every square are left, bits 1 and 2
+  std::vector<std::uint8_t> squares_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
 };
 

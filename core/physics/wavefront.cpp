@@ -14,6 +14,9 @@ namespace {
 
 // A core's share of the second-level cache that a tile may fill.
 constexpr std::size_t kTileBytes = 384 * 1024;
+// So many stages that their rows are better kept in the first-level cache: measured with sweeps.
+constexpr std::size_t kManyStages = 5;
+constexpr int kManyStagesHeight = 16;
 // The least work worth a task [ns].
 constexpr double kTaskNanoseconds = 12000;
 
@@ -22,6 +25,7 @@ constexpr double kTaskNanoseconds = 12000;
 struct Wavefront::Run {
   double time, dt;
   int count, chunks;
+  std::span<const RowSpan> awake;
 };
 
 Wavefront::Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes,
@@ -40,7 +44,9 @@ void Wavefront::choose_tiles(int count, int threads) {
   const bool fits = row_bytes_ * rows_ <= kTileBytes;
   chunk_substeps_ = 1;
   height_ = rows_ + reach;
-  if (threads > 1 || !fits) {
+  if (threads == 1 && stages_.size() >= kManyStages) {
+    height_ = std::min(height_, kManyStagesHeight);
+  } else if (threads > 1 || !fits) {
     const int cache_rows = std::max<int>(4, int(kTileBytes / std::max<std::size_t>(row_bytes_, 1)));
     // A tile and its lean share the cache; several tiles per thread keep all threads busy.
     height_ = std::max(2 * reach, cache_rows / 2);
@@ -63,12 +69,13 @@ void Wavefront::choose_tiles(int count, int threads) {
   ring_ = threads > 1 ? threads + 1 : 1;
 }
 
-void Wavefront::run(double time, double dt, int count, Threads& threads) {
+void Wavefront::run(double time, double dt, int count, Threads& threads,
+                    std::span<const RowSpan> awake) {
   choose_tiles(count, threads.count());
   if (dt != prepared_dt_)
     for (RowStage* s : stages_) s->prepare(dt);
   prepared_dt_ = dt;
-  const Run r{time, dt, count, (count + chunk_substeps_ - 1) / chunk_substeps_};
+  const Run r{time, dt, count, (count + chunk_substeps_ - 1) / chunk_substeps_, awake};
   if (const int slots = chunk_substeps_ * ring_; slots > slots_) {
     for (RowStage* s : stages_) s->reserve_slots(slots);
     slots_ = slots;
@@ -76,6 +83,16 @@ void Wavefront::run(double time, double dt, int count, Threads& threads) {
   if (threads.count() > 1 && tiles_ > 1) return run_parallel(r, threads);
   for (int c = 0; c < r.chunks; ++c)
     for (int k = 0; k < tiles_; ++k) run_tile(r, k, c);
+}
+
+void Wavefront::run_rows(const Run& r, RowStage& stage, RowSpan rows, const Substep& substep) {
+  if (r.awake.empty()) return stage.run(rows.begin, rows.end, substep);
+  for (const RowSpan& span : r.awake) {
+    const int begin = std::max(rows.begin, span.begin), end = std::min(rows.end, span.end);
+    if (begin >= end) continue;
+    if (begin == span.begin) stage.start(substep);
+    stage.run(begin, end, substep);
+  }
 }
 
 void Wavefront::run_tile(const Run& r, int tile, int chunk) const {
@@ -91,11 +108,11 @@ void Wavefront::run_tile(const Run& r, int tile, int chunk) const {
       if (begin >= end) continue;
       RowStage& stage = *stages_[q];
       if (profile_.empty()) {
-        stage.run(begin, end, substep);
+        run_rows(r, stage, {begin, end}, substep);
         continue;
       }
       const auto before = std::chrono::steady_clock::now();
-      stage.run(begin, end, substep);
+      run_rows(r, stage, {begin, end}, substep);
       const auto spent = std::chrono::steady_clock::now() - before;
       profile_[q] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
     }

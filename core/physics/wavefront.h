@@ -27,8 +27,10 @@ class Wavefront {
   Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes,
             double row_nanoseconds);
 
-  // Runs substeps first … first+count-1 of a frame; dt and time are those of the first.
-  void run(double time, double dt, int count, Threads& threads);
+  // Runs substeps first … first+count-1 of a frame; dt and time are those of the first. Only the
+  // rows of `awake` are worked on, spans in order and apart; empty: all rows.
+  void run(double time, double dt, int count, Threads& threads,
+           std::span<const RowSpan> awake = {});
 
   // Adds to ticks[q] the time that stage q took; off when null.
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds) { profile_ = nanoseconds; }
@@ -37,6 +39,7 @@ class Wavefront {
   struct Run;
   void choose_tiles(int count, int threads);
   void run_tile(const Run& run, int tile, int chunk) const;
+  static void run_rows(const Run& run, RowStage& stage, RowSpan rows, const Substep& substep);
   void run_parallel(const Run& run, Threads& threads);
 
   std::vector<RowStage*> stages_;

@@ -96,7 +96,6 @@ Cloth cloth_of(const CourseCloth& from) {
   cloth.strain_limit = kStrainLimit;
   cloth.self_collision.mode = SelfCollisionMode::particles;
   cloth.self_collision.thickness = 2 * from.thickness;
-  cloth.self_collision.response = SelfCollisionResponse::course;
   cloth.pins = from.pinned;
   return cloth;
 }

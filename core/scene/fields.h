@@ -31,6 +31,10 @@ constexpr std::array<const char*, 2> words(SelfCollisionResponse) {
   return {"stiff", "course"};
 }
 
+constexpr std::array<const char*, 2> words(Tears) {
+  return {"split", "holes"};
+}
+
 template <class Walk>
 void fields(Walk& walk, Time& time) {
   walk("frame", time.frame);
@@ -46,6 +50,7 @@ void fields(Walk& walk, Solver& solver) {
   walk("order", solver.order);
   walk("iterations", solver.iterations);
   walk("collision_iterations", solver.collision_iterations);
+  walk("sleep", solver.sleep);
 }
 
 template <class Walk>
@@ -87,6 +92,7 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("bending", cloth.bending);
   walk("strain_limit", cloth.strain_limit);
   walk("tear_strain", cloth.tear_strain);
+  walk("tears", cloth.tears);
   walk("self_collision", cloth.self_collision);
   walk("pins", cloth.pins);
 }

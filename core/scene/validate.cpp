@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -18,6 +19,7 @@ constexpr std::int64_t kMaxParticles = std::int64_t{1} << 24;  // of all cloths 
 constexpr double kMinSpacing = 1e-6;  // m; float positions resolve no finer grid
 constexpr double kMaxThickness = 4;   // spacings; a particle has some 50 neighbours within it
 constexpr double kMinSine = 1e-3;     // between u and v
+constexpr double kMinReach = 0.01;    // spacings; a cutter that reaches less passes between particles
 
 double length(const Vec3& a) {
   return std::hypot(a[0], a[1], a[2]);
@@ -79,6 +81,9 @@ class Together {
       fault("/solver/tethers", "tethers are on", "only with " + sweeping);
     if (solver.order == 2 && solver.method != Method::compliant && sound({"/solver/order"}))
       fault("/solver/order", "order is 2", "only with method compliant; the method is " + method);
+    // Relaxed corrections lag behind what the extrapolation from two substeps expects of them.
+    else if (solver.order == 2 && solver.sweep == Sweep::jacobi && sound({"/solver/order"}))
+      fault("/solver/order", "order is 2", "only with sweep gauss_seidel or line; the sweep is jacobi");
   }
 
   void cloth(const Cloth& cloth, const std::string& place) {
@@ -186,7 +191,27 @@ class Together {
             "dynamic at most static");
     if (sound({place + "/keys"})) keys(collider.keys, place + "/keys");
     std::visit([&](const auto& shape) { this->shape(shape, place); }, collider.shape);
+    if (collider.cuts && sound({place})) cutter(collider, place);
   }
+
+  void cutter(const Collider& collider, const std::string& place) {
+    double spacing = std::numeric_limits<double>::infinity();
+    for (const Cloth& c : scene_.cloths)
+      spacing = std::min({spacing, spacing_u(c.grid), spacing_v(c.grid)});
+    const double reach =
+        std::visit([](const auto& shape) { return half_of(shape); }, collider.shape) +
+        collider.offset;
+    if (reach < kMinReach * spacing)
+      fault(place + "/cuts", "the cutter reaches " + number_words(reach) + " m",
+            "at least " + number_words(kMinReach * spacing) +
+                " m by its size and offset, a hundredth of the spacing of the grid");
+  }
+
+  // Half of the least thickness.
+  static double half_of(const Sphere& s) { return s.radius; }
+  static double half_of(const Plane&) { return std::numeric_limits<double>::infinity(); }
+  static double half_of(const Capsule& c) { return c.radius; }
+  static double half_of(const Box& b) { return std::min({b.half[0], b.half[1], b.half[2]}); }
 
   void shape(const Sphere&, const std::string&) {}
 

@@ -72,14 +72,19 @@ class Animation {
 };
 
 // The animation formats, by file extension:
-//   .pc2  point cache that Blender's Mesh Cache modifier reads (axes: y up, -z forward); one
-//   float32
+//   .pc2  point cache that Blender's Mesh Cache modifier reads (axes: y up, -z forward); one float32
 //         x,y,z per particle in scene order and sample
-//   .obj  numbered sequence run_0000.obj, run_0001.obj, …: one object of quads per cloth
+//   .obj  numbered sequence run_0000.obj, run_0001.obj, …: one object of quads per cloth, of triangles
+//         once it is torn
+//   .mdd  point cache as .pc2, big-endian, with the time of every sample
+//   .glb, .gltf (with a .bin beside it)  meshes with a morph target for every sample; refuses cloth that
+//         tears, more than 4000 samples, and more than 1 GiB of positions
 std::vector<std::string> animation_extensions();
 
 // Opens an animation of the particles of `first` (nothing is appended yet). Throws WriteError when
-// it cannot be written and std::invalid_argument when the extension is not one of the above.
-std::unique_ptr<Animation> open_animation(const std::string& path, const View& first);
+// it cannot be written, or `samples` would not fit the format (0: nobody knows how many are to come),
+// and std::invalid_argument when the extension is not one of the above.
+std::unique_ptr<Animation> open_animation(const std::string& path, const View& first,
+                                          std::int64_t samples = 0);
 
 }  // namespace weft

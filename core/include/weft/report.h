@@ -30,6 +30,7 @@ struct Plan {
   int substeps = 0;             // per frame
   double dt = 0;                // s
   double dt_limit = 0;          // s; the stability limit of explicit methods, 0 when there is none
+  bool fallback = false;        // runs another way than the scene asks, to stay stable; notes say how
   std::vector<std::string> notes;  // what was chosen for the user, and why
 };
 
@@ -84,7 +85,7 @@ struct Report {
     std::int64_t crossings = 0;
   } penetration;
   std::int64_t torn = 0;
-  std::int64_t asleep = 0;
+  std::int64_t asleep = 0;  // particles at rest that are not worked on
   bool finite = true;
   Status status;
 };

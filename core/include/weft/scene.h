@@ -65,6 +65,10 @@ struct SelfCollision {
   friend bool operator==(const SelfCollision&, const SelfCollision&) = default;
 };
 
+// What is shown of the triangles that a tear passes through: each side's share, so that the tear is a
+// line that opens, or nothing (seed 000).
+enum class Tears { split, holes };
+
 struct Cloth {
   Grid grid;
   double density = 0.3;       // kg/m²; total mass density*|u x v|, shared equally by all particles
@@ -80,6 +84,7 @@ struct Cloth {
   double bending = 0;         // N·m; flexural rigidity of a curvature energy
   double strain_limit = 0;    // 0.1 = structural and shear constraints never beyond 110 %; 0 = off
   double tear_strain = 0;     // 0.5 = a constraint beyond 150 % is cut; 0 = cannot tear
+  Tears tears = Tears::split;
   SelfCollision self_collision;
   std::vector<Pin> pins;
   friend bool operator==(const Cloth&, const Cloth&) = default;
@@ -154,6 +159,8 @@ struct Solver {
   int order = 1;                      // 2: second-order substep (compliant)
   int iterations = 1;                 // constraint sweeps per substep, 1 … 1000
   int collision_iterations = 1;       // passes over the colliders per substep, 1 … 100
+  double sleep = 0;                   // m/s; 0 … 1: row-blocks slower than this for half a second rest
+                                      // until something moves them; 0 = nothing ever rests
   friend bool operator==(const Solver&, const Solver&) = default;
 };
 

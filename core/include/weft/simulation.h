@@ -6,6 +6,7 @@
 // The result is the same, bit for bit, for any number of threads and any instruction set.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -41,6 +42,24 @@ struct SceneError : std::invalid_argument {
   std::vector<Fault> faults;
 };
 
+// All that changes while a simulation runs: kept to go back to, or to go on with after the scene has
+// changed. What is left out is what stages carry from one substep to the next; they start anew.
+struct Moment {
+  struct Torn {  // a constraint that is gone, by its family's offset on the grid
+    int di, dj, j, a;
+  };
+  struct ClothMoment {
+    int columns = 0, rows = 0;
+    std::vector<float> positions, velocities;  // x,y,z per particle, row-major [m], [m/s]
+    std::vector<std::array<int, 2>> held;      // particles [i, j] that cannot move
+    std::vector<Torn> torn;
+  };
+  double time = 0;  // s
+  std::vector<ClothMoment> cloths;
+  std::vector<std::vector<Key>> paths;  // of the colliders
+  std::size_t bytes() const;
+};
+
 class Simulation {
  public:
   // Builds the state and the step plan. Throws SceneError when validate(scene) is not empty and
@@ -54,7 +73,7 @@ class Simulation {
   // No allocation after the first frame.
   void advance_frame();
 
-  const Scene& scene() const;
+  const Scene& scene() const; // as simulated: plan() notes where its sweep is not the one asked for
   const Options& options() const;
   int threads() const;        // as resolved from the options
   Simd simd() const;          // as resolved from the options
@@ -82,13 +101,30 @@ class Simulation {
   // Holds a particle where it is; lets a held one go, be it held by the scene or by pin().
   void pin(int cloth, int i, int j);
   void unpin(int cloth, int i, int j);
+  // Moves all held particles of a cloth that have no keys at a velocity [m/s], until told another;
+  // zero lets them rest.
+  void carry(int cloth, const Vec3& velocity);
   // Cuts every constraint of any cloth that comes within `width` [m] of the segment from a to b, and
   // returns how many. A cloth that could not tear so far can from then on.
   int cut(const Vec3& a, const Vec3& b, double width);
-  // These throw std::out_of_range for a particle that is not there.
+  // Moves a collider evenly to `target` within the next frame, where it then rests: its sphere's or
+  // box's center, its plane's point, its capsule's a. Replaces the keys of the scene.
+  void move_collider(int collider, const Vec3& target);
+  // These throw std::out_of_range for a particle or collider that is not there.
 
-  // Everything measured so far (weft/report.h). Evaluates energies and strains now.
-  Report report() const;
+  // The state as it is now, and back to one: positions, velocities, time (to the nearest frame),
+  // what is held and torn, paths of the colliders. restore() throws std::invalid_argument for a moment of
+  // other grids; what it has no room for (constraints of absent families) is left out.
+  Moment moment() const;
+  void restore(const Moment& moment);
+  // Goes on with another scene: cloths whose grids have the same points keep their state, pins that
+  // differ between the scenes are set, colliders that differ take the new scene's place and keys.
+  // Otherwise it starts anew. What is grabbed or carried is let go. Throws as the constructor does, and then nothing has changed.
+  void set_scene(Scene scene);
+
+  // Everything measured so far (weft/report.h). Evaluates energies and strains now. Without
+  // `contacts` penetration and crossings, which cost most, are left out.
+  Report report(bool contacts = true) const;
 
   // FNV-1a hash of the bits of all positions, in scene order.
   std::uint64_t hash() const;

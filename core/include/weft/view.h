@@ -24,6 +24,13 @@ struct ClothView {
   // With topology_version > 0: the triangles that are left, corners as j*stride + i. Else all, two of
   // every square: (i,j) (i+1,j) (i,j+1) and (i+1,j) (i+1,j+1) (i,j+1).
   std::span<const std::array<std::uint32_t, 3>> triangles;
+  // What each side of a tear keeps of the triangles that the tear passes through, so that no hole is
+  // seen: triangles of points of their own, corners as numbers of points. Each point goes with a
+  // particle (j*stride + i), whose colour and force are its own. They change with topology_version;
+  // none with the scene's tears "holes".
+  std::span<const std::array<std::uint32_t, 3>> seams;
+  std::span<const std::array<float, 3>> seam_points;  // m
+  std::span<const std::uint32_t> seam_particles;
 };
 
 struct View {

@@ -28,13 +28,18 @@ using physics::TwistRow;
 
 namespace {
 
+// Terms that are torn are none.
+WEFT_INLINE Wide3 of_those_left(Wide3 term, const float* left, int i) {
+  return left ? term * load(left + i) : term;
+}
+
 // Force of the row's own second differences on its particles: d[a] belongs to a, a+1, a+2.
 struct AlongRow {
   Delay3<1> one;
   Delay3<2> two;
-  WEFT_INLINE Wide3 next(ConstRow3 x, int i, int columns) {
+  WEFT_INLINE Wide3 next(ConstRow3 x, const float* left, int i, int columns) {
     const Wide3 all = load3(x, i) - load3(x, i + 1) * wide(2) + load3(x, i + 2);
-    const Wide3 d = select(lanes_below(columns - 2 - i), all, Wide3{});
+    const Wide3 d = of_those_left(select(lanes_below(columns - 2 - i), all, Wide3{}), left, i);
     return one.next(d) * wide(2) - d - two.next(d);
   }
 };
@@ -42,9 +47,9 @@ struct AlongRow {
 // Difference of neighbouring twists of the cells between two rows.
 struct Twist {
   Delay3<1> one;
-  WEFT_INLINE Wide3 next(ConstRow3 x, ConstRow3 below, int i, int columns) {
+  WEFT_INLINE Wide3 next(ConstRow3 x, ConstRow3 below, const float* left, int i, int columns) {
     const Wide3 all = (load3(x, i) - load3(x, i + 1)) - (load3(below, i) - load3(below, i + 1));
-    const Wide3 t = select(lanes_below(columns - 1 - i), all, Wide3{});
+    const Wide3 t = of_those_left(select(lanes_below(columns - 1 - i), all, Wide3{}), left, i);
     return t - one.next(t);
   }
 };
@@ -61,15 +66,15 @@ void bend_row(const BendRow& given) {
   AlongRow along;
   Twist twist;
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    Wide3 own = along.next(r.x[0], i, r.columns) * wide(r.k.along), next{};
+    Wide3 own = along.next(r.x[0], r.along, i, r.columns) * wide(r.k.along), next{};
     if (r.rows > 1) {
-      const Wide3 t = twist.next(r.x[0], r.x[1], i, r.columns) * wide(r.k.twist);
+      const Wide3 t = twist.next(r.x[0], r.x[1], r.twist, i, r.columns) * wide(r.k.twist);
       own = own - t;
       next = t;
     }
     if (r.rows > 2) {
-      const Wide3 d =
-          (load3(r.x[0], i) - load3(r.x[1], i) * wide(2) + load3(r.x[2], i)) * wide(r.k.across);
+      const Wide3 all = load3(r.x[0], i) - load3(r.x[1], i) * wide(2) + load3(r.x[2], i);
+      const Wide3 d = of_those_left(all * wide(r.k.across), r.across, i);
       own = own - d;
       next = next + d * wide(2);
       push(r, 2, i, Wide3{} - d);
@@ -118,7 +123,9 @@ WEFT_INLINE void bend_block(const BendLine& p, int lane) {
     const Wide u = (wa + wb) * -2.0f - two * u1;
     const Wide one = u * r1;
     const Wide pivot = (wa + wb * 4.0f + wc + p.compliance) - (u * one + wa * two);
-    const Wide r = select(pivot > 0.0f, 1.0f / pivot, Wide{});
+    // One that is torn has no multiplier, and couples with none.
+    Wide r = select(pivot > 0.0f, 1.0f / pivot, Wide{});
+    if (p.left) r = r * load(p.left + lane + m * p.step);
     const Wide3 g = d - (g1 * one + g2 * two);
     store(scratch(m), r);
     store(scratch(m) + kBendLines, u);
@@ -161,7 +168,8 @@ void bend_twist(const TwistRow& given) {
   Delay3<1> left;
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide3 xa = load3(r.x, i), xc = load3(r.below, i);
-    const Wide3 t = (xa - load3(r.x, i + 1)) - (xc - load3(r.below, i + 1));
+    const Wide3 t =
+        of_those_left((xa - load3(r.x, i + 1)) - (xc - load3(r.below, i + 1)), r.left, i);
     const Wide wa = load(r.w + i), wb = load(r.w + i + 1);
     const Wide wc = load(r.w_below + i), wd = load(r.w_below + i + 1);
     const WideInt chosen =

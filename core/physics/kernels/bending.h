@@ -23,6 +23,8 @@ struct BendRow {
   ConstRow3 x[3];
   Row3 v[3];
   const float* w[3];
+  // Terms that are left of row j, 1 or 0; null: all.
+  const float *along, *across, *twist;
   BendStiffness k;
   float dt;  // s, over what the force takes of the velocity that follows
 };
@@ -36,6 +38,7 @@ struct BendLine {
   Row3 v;            // velocities, laid out as x; gain corrections times inverse_dt
   float inverse_dt;  // 1/s; 0 = velocities are not touched
   float compliance;  // 1/(k dt²) [1/kg]
+  const float* left;  // 1 for second differences that are left, else 0, laid out as w; null: all
   float* scratch;    // particles * kBendScratch floats
 };
 
@@ -48,6 +51,7 @@ struct TwistRow {
   const float* w;
   const float* w_below;
   bool odd;
+  const float* left;  // 1 for twists that are left, else 0; null: all
   float compliance;
 };
 

@@ -135,13 +135,60 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
   return {least(clearance), __builtin_sqrtf(greatest(fastest))};
 }
 
-// A convex shape's distance is never below its tangents: d(y) >= d(x) + n(x)·(y - x). On a triangle
-// the tangent at each vertex is least at a vertex, so that
-//   d >= max over vertices V of min over vertices W of d(V) + n(V)·(W - V).
-// On a flat side the bound is exact: sheets that lie on one have no triangles to look at.
-WEFT_INLINE Wide tangent_bound(const Surface& at, Wide3 v, Wide3 a, Wide3 b) {
-  return at.distance + min(Wide{}, min(dot(a - v, at.normal), dot(b - v, at.normal)));
+// A convex shape's distance is never below its tangents: d(y) >= d(p) + n(p)·(y - p). On a triangle
+// the tangent at any point p is least at a vertex, so that
+//   d >= d(p) + min over vertices W of n(p)·(W - p).
+// The vertices as p are enough for sheets that lie on a flat side. Where they say too little, p
+// descends: a step against the normal, and back to the nearest point of the triangle.
+struct Face {
+  Wide3 a, b, c;
+};
+
+WEFT_INLINE Wide tangent_bound(const Surface& at, Wide3 p, const Face& f) {
+  return at.distance + min(dot(f.a - p, at.normal),
+                           min(dot(f.b - p, at.normal), dot(f.c - p, at.normal)));
 }
+
+WEFT_INLINE Wide within_unit(Wide t) { return min(max(t, Wide{}), wide(1)); }
+
+// The point of a face nearest to q: in its plane, or on one of its sides.
+WEFT_INLINE Wide3 nearest_on(const Face& f, Wide3 q) {
+  const Wide3 ab = f.b - f.a, ac = f.c - f.a, bc = f.c - f.b, aq = q - f.a;
+  const Wide bb = dot(ab, ab), bd = dot(ab, ac), cc = dot(ac, ac);
+  const Wide qb = dot(aq, ab), qc = dot(aq, ac);
+  const Wide scale = 1.0f / (bb * cc - bd * bd);
+  const Wide v = (cc * qb - bd * qc) * scale, w = (bb * qc - bd * qb) * scale;
+  Wide3 best = f.a + ab * within_unit(qb / bb);
+  Wide least = dot(best - q, best - q);
+  const Wide3 others[2] = {f.a + ac * within_unit(qc / cc),
+                           f.b + bc * within_unit(dot(q - f.b, bc) / dot(bc, bc))};
+  for (const Wide3& side : others) {
+    const Wide square = dot(side - q, side - q);
+    best = select(square < least, side, best);
+    least = min(square, least);
+  }
+  return select((v >= 0.0f) & (w >= 0.0f) & (v + w <= 1.0f), f.a + ab * v + ac * w, best);
+}
+
+constexpr int kDescents = 6;
+
+// Raises the bounds of faces that are below `enough`, as far as a few descents do.
+template <class Shape>
+WEFT_INLINE Wide descend(const Shape& shape, const FacesRow& f, const Face& face, WideInt wanted,
+                         Wide bound, float enough) {
+  WideInt pending = wanted & (bound < enough);
+  Wide3 p = (face.a + face.b + face.c) * wide(1.0f / 3.0f);
+  const Wide least = wide(0.1f * f.edge);
+  for (int n = 0; n < kDescents && any(pending); ++n) {
+    const Surface s = shape.at(p);
+    bound = select(pending, max(tangent_bound(s, p, face), bound), bound);
+    pending = pending & (bound < enough);
+    p = nearest_on(face, p - s.normal * max(s.distance + f.row.shape.radius, least));
+  }
+  return bound;
+}
+
+constexpr float kFaceReach = 2;  // edges; triangles reach no farther from their corners
 
 template <class Shape>
 WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
@@ -149,26 +196,37 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
   const Shape shape(r.shape);
   const Wide3 place = wide3(r.cx, r.cy, r.cz), u = wide3(r.ux, r.uy, r.uz);
   Wide clearance = wide(kFar), fastest{};
-  for (int i = 0; i < padded(r.columns - 1); i += kLanes) {
-    const Wide3 x00 = load3(r.x, i) - place, x10 = load3(r.x, i + 1) - place;
-    const Wide3 x01 = load3(f.x_next, i) - place, x11 = load3(f.x_next, i + 1) - place;
-    const Surface s00 = shape.at(x00), s10 = shape.at(x10), s01 = shape.at(x01),
-                  s11 = shape.at(x11);
-    const Wide first =
-        max(tangent_bound(s00, x00, x01, x10),
-            max(tangent_bound(s01, x01, x00, x10), tangent_bound(s10, x10, x00, x01)));
-    const Wide second =
-        max(tangent_bound(s11, x11, x01, x10),
-            max(tangent_bound(s01, x01, x11, x10), tangent_bound(s10, x10, x11, x01)));
-    const WideInt inside = lanes_below(r.columns - 1 - i);
-    store(f.bound + i, select(inside, min(first, second) - r.offset, wide(kFar)));
-    const Wide nearest = min(min(s00.distance, s10.distance), min(s01.distance, s11.distance));
-    clearance = min(clearance, select(inside, nearest - r.offset, wide(kFar)));
-    for (const Wide3& v :
-         {load3(r.v, i), load3(r.v, i + 1), load3(f.v_next, i), load3(f.v_next, i + 1)})
-      fastest = max(fastest, select(inside, dot(v - u, v - u), Wide{}));
+  for (int i = 0; i < padded(r.columns); i += kLanes)
+    for (const Wide3& v : {load3(r.v, i) - u, load3(f.v_next, i) - u})
+      fastest = max(fastest, select(lanes_below(r.columns - i), dot(v, v), Wide{}));
+  const float speed = __builtin_sqrtf(greatest(fastest));
+  const float enough = r.offset - f.slack;
+  const float far = r.offset + kFaceReach * f.edge + speed * r.dt;
+  for (int i = 0; i < padded(r.columns); i += kLanes) {
+    const WideInt there = lanes_below(r.columns - i), inside = lanes_below(r.columns - 1 - i);
+    const Wide3 x00 = load3(r.x, i) - place, x01 = load3(f.x_next, i) - place;
+    const Surface s00 = shape.at(x00), s01 = shape.at(x01);
+    const Wide nearest = min(s00.distance, s01.distance);
+    clearance = min(clearance, select(there, nearest - r.offset, wide(kFar)));
+    const WideInt close = inside & (nearest < far);
+    Wide bound = wide(kFar);
+    if (any(close)) {
+      const Wide3 x10 = load3(r.x, i + 1) - place, x11 = load3(f.x_next, i + 1) - place;
+      const Surface s10 = shape.at(x10), s11 = shape.at(x11);
+      const Face one{x00, x10, x01}, two{x10, x11, x01};
+      const Wide first =
+          max(tangent_bound(s00, x00, one),
+              max(tangent_bound(s01, x01, one), tangent_bound(s10, x10, one)));
+      const Wide second =
+          max(tangent_bound(s11, x11, two),
+              max(tangent_bound(s01, x01, two), tangent_bound(s10, x10, two)));
+      bound = min(descend(shape, f, one, close, first, enough),
+                  descend(shape, f, two, close, second, enough)) -
+              r.offset;
+    }
+    store(f.bound + i, select(close, bound, wide(kFar)));
   }
-  return {least(clearance), __builtin_sqrtf(greatest(fastest))};
+  return {least(clearance), speed};
 }
 
 // Defines the kernels of a shape under `name`.

@@ -43,20 +43,39 @@ struct Advance {
   float gx, gy, gz;      // velocity gained from gravity in one substep [m/s]
 };
 
-// The six families of a plain cloth at once, and the leapfrog step, for rows begin … end-1. Row j is
-// finished, and the forces it exerts on rows j+1 and j+2 are carried to those; calls for successive
+// The six families of a plain cloth at once for rows begin … end-1 (kernels/plain_rows.h). Row j is
+// finished, and what its constraints do to rows j+1 and j+2 is carried to those; calls for successive
 // ranges of rows carry on from each other.
 inline constexpr int kPlainFamilies = 6;
-struct SpringRows {
+struct PlainRows {
   int begin, end, rows;
   int columns, stride;
   Row3 x, v;       // row 0
   const float* w;  // inverse mass of row 0 [1/kg]
-  // Negated forces of earlier rows: of row j-1 on row j, and of row j-2 on rows j even and odd.
+  // Negated sums of earlier rows: of row j-1 on row j, and of row j-2 on rows j even and odd.
   Row3 carry[3];
+};
+
+// Springs as forces, and the leapfrog step.
+struct SpringRows : PlainRows {
   // Six for each row: (1,0) (0,1) (1,1) (-1,1) (2,0) (0,2); zero where row j+dj does not exist.
   const SpringConstants* springs;
   Advance advance;
+};
+
+// One family's constraints of one row in a Jacobi sweep.
+struct JacobiConstants {
+  float compliance = 0;  // 1/(k dt²) [1/kg], infinite where there is no constraint
+  float k = 0, kl = 0;   // κ [kg] and κ times rest length [kg·m] between particles of one mass
+};
+
+// A Jacobi sweep: the corrections of all constraints, added up.
+struct JacobiRows : PlainRows {
+  bool alike;                          // whether all particles of rows begin … end+1 have one mass
+  const JacobiConstants* constraints;  // six for each row, as the springs
+  float rest[kPlainFamilies];          // m
+  float weight;                // of w_a + w_b: 1/relaxation
+  float inverse_dt;            // > 0: the velocity gains the correction times it [1/s]
 };
 
 // One family between row j and row j+dj: constraint a joins lane a+near of row j and lane a+far of
@@ -82,8 +101,10 @@ struct FamilyRow {
 struct ProjectRows {
   int begin, end, rows;
   int stride;
-  Row3 x, v;       // row 0; v is not used by rigid constraints
-  const float* w;  // inverse mass of row 0 [1/kg]
+  Row3 x, v;           // row 0; v is used by the strain limit alone
+  Row3 u;              // corrections of row 0, which compliant constraints change in place of x
+  const float* w;      // inverse mass of row 0 [1/kg]
+  const float* row_w;  // of all particles of each row, 0 where they differ; or null
   int count;       // constraints in a row: a joins lane a+near of row j and lane a+far of row j+dj
   int near, far, dj;
   int colour;                 // between rows: those with j/dj % 2 == colour
@@ -94,7 +115,7 @@ struct ProjectRows {
   float* lambda;              // multipliers of row 0 [kg·m], or null
   bool limit;                 // one-sided: nothing happens below the rest length
   const std::int32_t* alive;  // of row 0: -1 for constraints, 0 for torn ones; null: cannot tear
-  float inverse_dt;           // limit, compliance: the change of position goes into the velocity too
+  float inverse_dt;           // strain limit: the change of position goes into the velocity too
 };
 
 struct AdvanceRow {
@@ -102,7 +123,7 @@ struct AdvanceRow {
   Row3 x, v;
   const float* w;
   Row3 f;         // force [N], negated never; unused by predict
-  Row3 previous;  // predict: receives the positions before
+  Row3 previous;  // predict: receives the positions before, if given
   Advance advance;
   float inverse_dt;
 };
@@ -135,6 +156,8 @@ struct CollideRow {
 struct FacesRow {
   CollideRow row;
   ConstRow3 x_next, v_next;
+  float edge;   // m, longest of a flat triangle
+  float slack;  // m; bounds above -slack need not be sharp
   float* bound;
 };
 
@@ -152,36 +175,6 @@ struct Run {
   std::int32_t first, last;
 };
 
-// The flat sheet that a particle lies in: two at (i, j) and (i + a, j + b) are neighbours there, and
-// no pair, when a² uu + 2 a b uv + b² vv < range². Columns of different sheets are far apart.
-struct RestMetric {
-  float uu, uv, vv, range_squared;  // m²
-};
-
-// The particles of one cell against those in the 27 cells about it.
-struct NearCell {
-  ConstRow3 sorted;           // all particles, cell by cell, with 16 lanes of padding
-  Run members;                // of the cell
-  const Run* runs;            // the 27 cells
-  int run_count;
-  const float* column;        // of all particles, as sorted
-  const float* row;
-  const std::uint16_t* sheet;  // the same
-  const RestMetric* metric;    // of every sheet
-  float* columns;              // room as for the candidates
-  float* rows;
-  Row3 candidates;            // room for all particles of the runs, 16 lanes more for each run
-  std::int32_t* numbers;      // the same
-  float range_squared;        // m²
-  std::int32_t* counts;       // out, per member: how many candidates are in range and no neighbours
-  std::int32_t* hits;         // out, member after member: their numbers
-};
-
-// Least and greatest of some values, component by component.
-struct Spread {
-  float low[3], high[3];
-};
-
 // Gusts: each component of the wind gains three waves, of phase k·x + at.
 inline constexpr int kGusts = 9;  // 3 for each component
 struct Gust {
@@ -195,7 +188,8 @@ struct WindRow {
   ConstRow3 x, x_next, v, v_next;
   const float *w, *w_next;
   Row3 f, f_next;          // N, added to
-  float dt;
+  float dt;                // s, that the air pushes for
+  float steps;             // how many substeps that is; the force is that of all of them
   float wx, wy, wz;        // m/s
   float drag, lift;        // kg/m³
   float gust_speed;        // m/s; 0: none
@@ -203,6 +197,11 @@ struct WindRow {
 };
 
 struct LineStrip;      // kernels/line.h
+struct BlockRows;      // kernels/contact.h
+struct NearSearch;
+struct NearFound;
+struct SeparateGroup;
+struct SurfaceSquare;  // kernels/surface.h
 struct TransposeRows;
 struct SecondOrderRow;  // kernels/second_order.h
 struct TetherRow;
@@ -219,9 +218,12 @@ struct KernelTable {
   void (*predict)(const AdvanceRow&);               // previous <- x, v and x advanced by gravity
   void (*velocity)(const AdvanceRow&);              // v <- (x - previous)/dt
   void (*project)(const ProjectRows&);              // Gauss-Seidel, in place
-  // Jacobi: the corrections of one row's constraints added to the sums of rows j and j+dj
-  void (*project_jacobi)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
-  void (*apply_corrections)(const AdvanceRow&);     // x += f, v += f/dt if inverse_dt > 0, f <- 0
+  void (*jacobi_rows)(const JacobiRows&);
+  // Jacobi: the corrections of one row's constraints, by unit inverse mass, added to the sums of rows
+  // j and j+dj
+  void (*jacobi_family)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
+  // x += w f, v += w f/dt if inverse_dt > 0, f <- 0 (w null: 1)
+  void (*apply_corrections)(const AdvanceRow&);
   void (*line_strip)(const LineStrip&);             // a strip of lines, each solved as a whole
   void (*rows_to_lanes)(const TransposeRows&);
   void (*lanes_to_rows)(const TransposeRows&);
@@ -233,11 +235,13 @@ struct KernelTable {
   void (*bend_twist)(const TwistRow&);              // and of every second cell between two rows
   RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
   RowReach (*below_faces[kShapes])(const FacesRow&);
-  void (*near_pairs)(const NearCell&);
   void (*wind)(const WindRow&);
   void (*push)(const AdvanceRow&);                  // v += dt f/m, x with it, then f <- 0
-  // Widens `spread` by the differences a - b of a row (b null: by a).
-  void (*spread)(ConstRow3 a, ConstRow3 b, int columns, Spread& spread);
+  void (*block_bounds)(const BlockRows&);           // how a block lies and moves
+  NearFound (*near_pairs)(const NearSearch&);       // who is in range of whom
+  // Pushes pairs apart; returns the greatest squared relative speed of two that touch [m²/s²].
+  float (*separate)(const SeparateGroup&);
+  void (*surface_square)(const SurfaceSquare&);     // a square against those near it
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

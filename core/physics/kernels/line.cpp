@@ -24,6 +24,10 @@ using physics::kStripScratch;
 using physics::LineStrip;
 using physics::TransposeRows;
 
+// Pivots below belong to no constraint, or to one of no length and so no direction; their reciprocals
+// would not be finite.
+constexpr float kTinyPivot = 1e-30f;
+
 // Writes only the lanes of the mask: what lies in the others may belong to another thread.
 WEFT_INLINE void store_where(float* p, WideInt mask, Wide v) {
 #if WEFT_LANES == 16
@@ -107,16 +111,18 @@ struct Block {
   // e_c where the constraint exists, else 0.
   WEFT_INLINE Wide3 existing(Wide3 e, int m) const {
     const int lane = line + m * p.lean;
-    e = select(on_sheet(p, lane) & on_sheet(p, lane + p.lean), e, Wide3{});
-    if (p.alive) e = select(load_int(p.alive + at(m)), e, Wide3{});
-    return e;
+    return select(on_sheet(p, lane) & on_sheet(p, lane + p.lean), e, Wide3{});
+  }
+  // e_c where the constraint is not cut, else 0.
+  WEFT_INLINE Wide3 holding(Wide3 e, int m) const {
+    return p.alive ? select(load_int(p.alive + at(m)), e, Wide3{}) : e;
   }
 
   template <bool kWhole>
   WEFT_INLINE void eliminate(int m) {
     const Wide3 far = load3_at(p.x, at(m + 1));
     const Wide w_far = load(p.w + at(m + 1));
-    Wide3 e = far - x;
+    Wide3 e = holding(far - x, m);
     if constexpr (!kWhole) e = existing(e, m);
     const Wide alpha = load(p.compliance + m * p.compliance_step + offset);
     const Wide squared = dot(e, e);
@@ -128,7 +134,7 @@ struct Block {
     if constexpr (kLambda)
       if (!p.fresh) violation = violation + alpha * load(p.lambda + at(m));
     right = length * violation + factor * right;
-    reciprocal = select(pivot > 0.0f, 1.0f / pivot, Wide{});
+    reciprocal = select(pivot > kTinyPivot, 1.0f / pivot, Wide{});
     store(scratch(m), reciprocal);
     store(scratch(m) + kStripLines, right);
     if constexpr (kLambda) store(scratch(m) + 2 * kStripLines, length);
@@ -146,7 +152,7 @@ struct Block {
     is_whole(m) ? eliminate<true>(m) : eliminate<false>(m);
   }
   WEFT_INLINE bool is_whole(int m) const {
-    return m >= range.whole_begin && m < range.whole_end && !p.alive;
+    return m >= range.whole_begin && m < range.whole_end;
   }
 
   // Moves particle m by the pulls of the constraints before and after it.
@@ -169,7 +175,7 @@ struct Block {
   template <bool kWhole>
   WEFT_INLINE void substitute(int m) {
     const Wide3 near = load3_at(p.x, at(m));
-    Wide3 e = x - near;
+    Wide3 e = holding(x - near, m);
     if constexpr (!kWhole) e = existing(e, m);
     const Wide coupling = w * dot(e, edge);
     mu = load(scratch(m)) * (load(scratch(m) + kStripLines) + coupling * mu);
@@ -214,7 +220,7 @@ void solve_blocks(const LineStrip& given, int first) {
   whole = greatest(whole, greatest(a.range.begin, b.range.begin) + 1);
   int whole_end = least(a.range.whole_end, b.range.whole_end);
   whole_end = least(whole_end, least(a.range.end, b.range.end) - 1);
-  if (p.alive || whole_end <= whole) whole = whole_end = end;
+  if (whole_end <= whole) whole = whole_end = end;
   int m = begin;
   const auto eliminate = [&]<bool kWhole>(int to) __attribute__((always_inline)) {
     for (; m < to; ++m) {

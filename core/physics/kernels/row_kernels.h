@@ -75,7 +75,8 @@ void integrate(const AdvanceRow&);
 void predict(const AdvanceRow&);
 void velocity(const AdvanceRow&);
 void project(const ProjectRows&);
-void project_jacobi(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
+void jacobi_rows(const physics::JacobiRows&);
+void jacobi_family(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
 void apply_corrections(const AdvanceRow&);
 void line_strip(const physics::LineStrip&);
 void rows_to_lanes(const physics::TransposeRows&);
@@ -89,8 +90,10 @@ void bend_twist(const physics::TwistRow&);
 
 void wind(const physics::WindRow&);
 void push(const AdvanceRow&);
-void near_pairs(const physics::NearCell&);
-void spread(ConstRow3 a, ConstRow3 b, int columns, physics::Spread&);
+void block_bounds(const physics::BlockRows&);
+physics::NearFound near_pairs(const physics::NearSearch&);
+float separate(const physics::SeparateGroup&);
+void surface_square(const physics::SurfaceSquare&);
 
 // A collider's kernels: its own file in colliders/ defines them by WEFT_COLLIDER (collide.h).
 struct ColliderKernels {

@@ -3,22 +3,43 @@
 
 namespace weft::WEFT_KERNELS {
 
-extern const physics::KernelTable kTable;
-const physics::KernelTable kTable = {
-    spring_rows,    spring_family, damped_spring_family, tear, integrate,
-    predict,        velocity,      project,              project_jacobi, apply_corrections,
-    line_strip,     rows_to_lanes, lanes_to_rows,        predict_second_order,
-    velocity_second_order, tethers, bend_row, bend_line,
-    bend_twist,
-    {{kSphere.collide[0], kSphere.collide[1]},
-     {kPlane.collide[0], kPlane.collide[1]},
-     {kCapsule.collide[0], kCapsule.collide[1]},
-     {kBox.collide[0], kBox.collide[1]}},
-    {kSphere.below_faces, kPlane.below_faces, kCapsule.below_faces, kBox.below_faces},
-    near_pairs,
-    wind,
-    push,
-    spread,
-};
+// Made when first asked for: before main() it would run instructions that the machine may lack.
+const physics::KernelTable& table();
+const physics::KernelTable& table() {
+  static const physics::KernelTable table = {
+      spring_rows,
+      spring_family,
+      damped_spring_family,
+      tear,
+      integrate,
+      predict,
+      velocity,
+      project,
+      jacobi_rows,
+      jacobi_family,
+      apply_corrections,
+      line_strip,
+      rows_to_lanes,
+      lanes_to_rows,
+      predict_second_order,
+      velocity_second_order,
+      tethers,
+      bend_row,
+      bend_line,
+      bend_twist,
+      {{kSphere.collide[0], kSphere.collide[1]},
+       {kPlane.collide[0], kPlane.collide[1]},
+       {kCapsule.collide[0], kCapsule.collide[1]},
+       {kBox.collide[0], kBox.collide[1]}},
+      {kSphere.below_faces, kPlane.below_faces, kCapsule.below_faces, kBox.below_faces},
+      wind,
+      push,
+      block_bounds,
+      near_pairs,
+      separate,
+      surface_square,
+  };
+  return table;
+}
 
 }  // namespace weft::WEFT_KERNELS

@@ -127,6 +127,21 @@ WEFT_INLINE unsigned bits(WideInt mask) {
 #endif
 }
 
+// The lanes of a mask next to each other in memory; the lanes after those may be overwritten, whole
+// groups of them. Returns how many.
+template <class Lane, class Lanes>
+WEFT_INLINE int store_lanes(Lane* p, WideInt mask, Lanes v) {
+#if WEFT_LANES == 16
+  const __mmask16 m = _mm512_movepi32_mask((__m512i)mask);
+  _mm512_storeu_si512(p, _mm512_maskz_compress_epi32(m, (__m512i)v));
+  return __builtin_popcount(m);
+#else
+  int count = 0;
+  for (unsigned set = bits(mask); set != 0; set &= set - 1) p[count++] = v[__builtin_ctz(set)];
+  return count;
+#endif
+}
+
 struct Wide3 {
   Wide x, y, z;
 };

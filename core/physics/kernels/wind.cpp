@@ -51,7 +51,7 @@ WEFT_INLINE Wide3 third_of_force(const WindRow& r, Wide3 air, Wide3 a, Wide3 b, 
   const Wide3 across = n - u * (into / square);
   const Wide area = size * 0.5f;
   const Wide taken = (r.drag * into + r.lift * speed) * area * w3 * (r.dt * 6.0f / 9.0f);
-  const Wide scale = area * into * third / (1.0f + taken);
+  const Wide scale = area * into * third * r.steps / (1.0f + taken);
   return n * (scale * (r.drag * into)) + across * (scale * (r.lift * speed));
 }
 

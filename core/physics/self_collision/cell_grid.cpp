@@ -3,42 +3,53 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace weft::physics {
 namespace {
 
 constexpr std::int64_t kTablePerParticle = 4;  // buckets
+constexpr std::int64_t kSmallestTable = 1024;
+constexpr std::size_t kFew = 4096;  // particles that one thread sorts faster
 
 std::int64_t modulo(std::int64_t a, std::int64_t m) {
   const std::int64_t r = a % m;
   return r < 0 ? r + m : r;
 }
 
+// The cell along an axis; what is no number, or too far away, lands somewhere.
+std::int32_t cell(float along, float inverse) {
+  constexpr float kMost = 1e9f;
+  return std::int32_t(std::max(0.0f, std::min(kMost, along * inverse)));
+}
+
+std::int64_t largest_table(std::size_t particles) {
+  return std::int64_t(std::bit_ceil(std::size_t(kTablePerParticle) * particles + kSmallestTable));
+}
+
 }  // namespace
 
 void CellGrid::reserve(std::size_t particles) {
-  const auto table = std::bit_ceil(std::size_t(kTablePerParticle) * particles + 1024);
+  room_ = particles;
   key_.resize(particles);
+  dealt_.resize(particles);
   number_.resize(particles);
-  start_.reserve(table + 2);
-  x_ = AlignedArray<float>(particles + 16);
-  y_ = AlignedArray<float>(particles + 16);
-  z_ = AlignedArray<float>(particles + 16);
+  bucket_.resize(particles);
+  start_.reserve(std::size_t(largest_table(particles)) + 1);
+  for (AlignedArray<float>* a : {&x_, &y_, &z_}) *a = AlignedArray<float>(particles + 16);
 }
 
 // The whole box when it fits the table; else strides for which the nine runs of the 27 cells stay
 // apart modulo the table.
 void CellGrid::choose_strides(const int cells[3]) {
-  const auto most = std::int64_t(std::bit_ceil(std::size_t(kTablePerParticle) * count_ + 1024));
+  const std::int64_t most = largest_table(count_);
   stride_y_ = cells[0] + 2;
   const std::int64_t rows = cells[1] + 2;
   stride_z_ = stride_y_ * rows;
   const std::int64_t whole = stride_z_ * (cells[2] + 2);
-  if (whole <= most) {
-    table_ = whole;
-    return;
-  }
-  table_ = most;
+  wraps_ = whole > most;
+  table_ = wraps_ ? most : whole;
+  if (!wraps_) return;
   const auto apart = [&] {
     for (std::int64_t b = -2; b <= 2; ++b)
       for (std::int64_t c = -2; c <= 2; ++c) {
@@ -53,63 +64,79 @@ void CellGrid::choose_strides(const int cells[3]) {
   }
 }
 
-void CellGrid::build(ConstRow3 x, std::size_t particles, const float low[3], const float high[3],
-                     float size) {
+void CellGrid::build(ConstRow3 x, std::size_t particles, const Spread& box, float size,
+                     Threads& threads) {
   count_ = particles;
-  const float inverse = 1 / size;
+  inverse_ = 1 / size;
   int cells[3];
-  for (int k = 0; k < 3; ++k) cells[k] = int((high[k] - low[k]) * inverse) + 1;
+  for (int k = 0; k < 3; ++k) {
+    low_[k] = box.low[k];
+    cells[k] = cell(box.high[k] - box.low[k], inverse_) + 1;
+  }
   choose_strides(cells);
   for (int c = -1; c <= 1; ++c)
     for (int b = -1; b <= 1; ++b)
       offset_[3 * (c + 1) + b + 1] = modulo(b * stride_y_ + c * stride_z_ - 1, table_);
-  start_.assign(std::size_t(table_) + 1, 0);
-  const bool wraps = stride_z_ * (cells[2] + 2) > table_;
-  for (std::size_t p = 0; p < particles; ++p) {
-    const std::int64_t a = std::int64_t((x.x[p] - low[0]) * inverse) + 1;
-    const std::int64_t b = std::int64_t((x.y[p] - low[1]) * inverse) + 1;
-    const std::int64_t c = std::int64_t((x.z[p] - low[2]) * inverse) + 1;
-    std::int64_t key = a + b * stride_y_ + c * stride_z_;
-    if (wraps) key = modulo(key, table_);
-    key_[p] = std::int32_t(key);
-    ++start_[std::size_t(key) + 1];
+  start_.resize(std::size_t(table_) + 1);
+  shift_ = 0;
+  while (((table_ - 1) >> shift_) >= kParts) ++shift_;
+  // Counts of every part and share, then where each begins: part after part, share after share.
+  const bool few = particles < kFew;
+  threads.share(kShares, few, [&](std::size_t share) { deal(x, int(share)); });
+  std::int32_t before = 0;
+  for (int p = 0; p <= kParts; ++p)
+    for (int s = 0; s < kShares; ++s)
+      before += std::exchange(dealt_to_[p][s], before);
+  threads.share(kShares, few, [&](std::size_t share) {
+    std::int32_t at[kParts];
+    for (int p = 0; p < kParts; ++p) at[p] = dealt_to_[p][share];
+    for (std::size_t i = share * count_ / kShares; i < (share + 1) * count_ / kShares; ++i)
+      dealt_[std::size_t(at[key_[i] >> shift_]++)] = std::int32_t(i);
+  });
+  threads.share(kParts, few, [&](std::size_t part) { sort_part(x, int(part)); });
+  start_[std::size_t(table_)] = std::int32_t(count_);
+}
+
+// The buckets of a share of the particles, and how many of them are in each part of the table.
+void CellGrid::deal(ConstRow3 x, int share) {
+  const std::size_t begin = std::size_t(share) * count_ / kShares;
+  const std::size_t end = std::size_t(share + 1) * count_ / kShares;
+  for (std::size_t p = begin; p < end; ++p) {
+    const std::int64_t a = cell(x.x[p] - low_[0], inverse_) + 1;
+    const std::int64_t b = cell(x.y[p] - low_[1], inverse_) + 1;
+    const std::int64_t c = cell(x.z[p] - low_[2], inverse_) + 1;
+    const std::int64_t key = a + b * stride_y_ + c * stride_z_;
+    key_[p] = std::int32_t(wraps_ ? modulo(key, table_) : std::min(key, table_ - 1));
   }
-  for (std::size_t k = 1; k < start_.size(); ++k) start_[k] += start_[k - 1];
-  for (std::size_t p = 0; p < particles; ++p) {
-    const auto at = std::size_t(start_[std::size_t(key_[p])]++);
+  for (int p = 0; p <= kParts; ++p) dealt_to_[p][share] = 0;
+  for (std::size_t p = begin; p < end; ++p) ++dealt_to_[key_[p] >> shift_][share];
+}
+
+void CellGrid::sort_part(ConstRow3 x, int part) {
+  const std::int64_t first = std::min(std::int64_t(part) << shift_, table_);
+  const std::int64_t last = std::min(std::int64_t(part + 1) << shift_, table_);
+  const std::int32_t begin = dealt_to_[part][0], end = dealt_to_[part + 1][0];
+  std::int32_t* const start = start_.data();
+  std::fill(start + first, start + last, 0);
+  for (std::int32_t i = begin; i < end; ++i) ++start[key_[std::size_t(dealt_[std::size_t(i)])]];
+  std::int32_t before = begin;
+  for (std::int64_t k = first; k < last; ++k) before += std::exchange(start[k], before);
+  for (std::int32_t i = begin; i < end; ++i) {
+    const auto p = std::size_t(dealt_[std::size_t(i)]);
+    const auto at = std::size_t(start[key_[p]]++);
     number_[at] = std::int32_t(p);
+    bucket_[at] = key_[p];
     x_[at] = x.x[p];
     y_[at] = x.y[p];
     z_[at] = x.z[p];
   }
-  // Each start has moved to its bucket's end: the start of the next.
-  for (std::size_t k = start_.size() - 1; k > 0; --k) start_[k] = start_[k - 1];
-  start_[0] = 0;
-}
-
-std::size_t CellGrid::bucket_start_from(std::size_t sorted) const {
-  if (sorted == 0 || sorted >= count_) return std::min(sorted, count_);
-  return key_of_sorted(sorted) == key_of_sorted(sorted - 1) ? bucket_end(sorted) : sorted;
-}
-
-int CellGrid::runs_about(std::size_t sorted, Run* runs) const {
-  const std::int64_t key = key_of_sorted(sorted);
-  int n = 0;
-  const auto add = [&](std::int64_t from, std::int64_t to) {
-    const Run run{start_[std::size_t(from)], start_[std::size_t(to)]};
-    if (run.first < run.last) runs[n++] = run;
-  };
-  for (const std::int64_t offset : offset_) {
-    std::int64_t from = key + offset;
-    if (from >= table_) from -= table_;
-    add(from, std::min(from + 3, table_));
-    if (from + 3 > table_) add(0, from + 3 - table_);
-  }
-  return n;
+  // Each start has moved to its bucket's end, the start of the next.
+  for (std::int64_t k = last - 1; k > first; --k) start[k] = start[k - 1];
+  if (first < last) start[first] = begin;
 }
 
 std::size_t CellGrid::bytes() const {
-  return (key_.size() + number_.size() + start_.capacity() + 3 * x_.size()) * 4;
+  return (4 * key_.size() + start_.capacity() + 3 * x_.size()) * 4;
 }
 
 }  // namespace weft::physics

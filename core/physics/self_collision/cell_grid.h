@@ -3,15 +3,19 @@
 //
 // Cell (a,b,c) is bucket (a + b s + c s t) modulo the table's size, with s and t the box's true
 // strides: cells that follow each other along x are neighbours in memory, and the 27 are nine runs
-// of three. Particles are put in order of bucket, then of number, by a counting sort: no locks, and
-// the same order however it is done. (Teschner et al. 2003 hash the three indices instead.)
+// of three. (Teschner et al. 2003 hash the three indices instead.)
+//
+// Particles are put in order of bucket, then of number, by a stable counting sort in two rounds
+// without locks: shares of the particles count and deal them out to parts of the table, share after
+// share within a part; then every part sorts its own. The order is the same for any threads.
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
+#include "physics/kernels/contact.h"
 #include "physics/lattice.h"
+#include "physics/threads.h"
 
 namespace weft::physics {
 
@@ -19,38 +23,36 @@ class CellGrid {
  public:
   // Makes room for this many particles.
   void reserve(std::size_t particles);
-  // Sorts particles into cells of `size` [m]; all lie in the box from low to high.
-  void build(ConstRow3 x, std::size_t particles, const float low[3], const float high[3],
-             float size);
+  // Sorts particles into cells of `size` [m]; all lie in the box.
+  void build(ConstRow3 x, std::size_t particles, const Spread& box, float size, Threads& threads);
 
   std::size_t particles() const { return count_; }
-  // Numbers of the particles in sorted order.
-  std::int32_t number(std::size_t sorted) const { return number_[sorted]; }
-  // Positions in sorted order.
-  ConstRow3 sorted(std::size_t first) const {
-    return {x_.data() + first, y_.data() + first, z_.data() + first};
-  }
-  // One past the last particle of the bucket that starts at `sorted`.
-  std::size_t bucket_end(std::size_t sorted) const {
-    return std::size_t(start_[std::size_t(key_of_sorted(sorted)) + 1]);
-  }
-  // The first start of a bucket at or after `sorted`.
-  std::size_t bucket_start_from(std::size_t sorted) const;
-
-  // The runs of the 27 cells about the bucket of a sorted particle, at most 18; returns how many.
-  int runs_about(std::size_t sorted, Run* runs) const;
+  // Numbers of the particles in sorted order, their buckets and positions (16 lanes of padding).
+  const std::int32_t* numbers() const { return number_.data(); }
+  const std::int32_t* buckets() const { return bucket_.data(); }
+  ConstRow3 sorted() const { return {x_.data(), y_.data(), z_.data()}; }
+  // Where the buckets start, one more than table().
+  const std::int32_t* starts() const { return start_.data(); }
+  std::int64_t table() const { return table_; }
+  // From a bucket to the first of each of the nine runs about it, modulo the table.
+  const std::int64_t* offsets() const { return offset_; }
   std::size_t bytes() const;
 
  private:
-  std::int32_t key_of_sorted(std::size_t sorted) const {
-    return key_[std::size_t(number_[sorted])];
-  }
-  void choose_strides(const int cells[3]);
-  std::int64_t offset_[9] = {};  // from a bucket to the first of each of the nine runs about it
+  static constexpr int kShares = 16, kParts = 64;  // of the particles, of the table
 
-  std::size_t count_ = 0;
+  void choose_strides(const int cells[3]);
+  void deal(ConstRow3 x, int share);
+  void sort_part(ConstRow3 x, int part);
+
+  std::size_t count_ = 0, room_ = 0;
   std::int64_t table_ = 1, stride_y_ = 1, stride_z_ = 1;
-  std::vector<std::int32_t> key_, number_, start_;
+  std::int64_t offset_[9] = {};
+  bool wraps_ = false;
+  int shift_ = 0;  // of a bucket to its part
+  float low_[3] = {}, inverse_ = 1;
+  std::int32_t dealt_to_[kParts + 1][kShares] = {};  // where a share's particles of a part begin
+  std::vector<std::int32_t> key_, dealt_, number_, bucket_, start_;
   AlignedArray<float> x_, y_, z_;  // 16 more than particles
 };
 

@@ -8,6 +8,7 @@
 #include "physics/kernels/bending.h"
 #include "physics/stages/stages.h"
 #include "physics/stages/strips.h"
+#include "physics/topology.h"
 
 namespace weft::physics {
 namespace {
@@ -19,6 +20,12 @@ std::int64_t terms(const Lattice& l) {
   const std::int64_t nx = l.columns, ny = l.rows;
   return std::max<std::int64_t>(nx - 2, 0) * ny + nx * std::max<std::int64_t>(ny - 2, 0) +
          (nx - 1) * (ny - 1);
+}
+
+// Which terms are left from lane `at` on; null: all.
+const float* left(const ClothParts& parts, AlignedArray<float> BendLinks::*terms, std::size_t at) {
+  const BendLinks* links = parts.topology ? parts.topology->bend_links() : nullptr;
+  return links ? (links->*terms).data() + at : nullptr;
 }
 
 class BendingForce final : public RowStage {
@@ -41,6 +48,10 @@ class BendingForce final : public RowStage {
       r.w[n] = l.w(j + n);
     }
     r.k = stiffness_;
+    const std::size_t at = std::size_t(j) * l.stride;
+    r.along = left(parts_, &BendLinks::along, at);
+    r.across = left(parts_, &BendLinks::across, at);
+    r.twist = left(parts_, &BendLinks::twist, at);
     // The leapfrog step that follows takes drag off the velocity that it finds, but not off forces.
     const double kept = 1 - s.dt * parts_.cloth.drag;
     r.dt = float(kept > 0.01 ? s.dt / kept : s.dt);
@@ -61,9 +72,14 @@ class BendingConstraints final : public WholeStage {
         strips_(parts.lattice, parts.kernels, kBendScratch),
         compliant_(compliant) {
     if (parts.scene.solver.order == 2) strips_.follow_masses();
+    if (left(parts, &BendLinks::along, 0)) torn_ = TurnedLinks<float>(parts.lattice, strips_.row_groups());
   }
 
-  std::size_t bytes() const override { return strips_.bytes(); }
+  std::size_t bytes() const override { return strips_.bytes() + torn_.bytes(); }
+  void restart() override {
+    strips_.turn_masses();
+    torn_.forget();
+  }
 
   void run(const Substep& s, Threads& threads) override {
     const BendingStiffness k = bending_stiffness(parts_.cloth);
@@ -82,6 +98,9 @@ class BendingConstraints final : public WholeStage {
     const Lattice& l = parts_.lattice;
     strips_.share_out(strips_.row_groups(), kDifferenceNs * kStripLines * l.columns,
                       [&](int group, StripMemory& memory) {
+                        const float* terms = left(parts_, &BendLinks::along, 0);
+                        const float* turned =
+                            terms ? torn_.follow(group, *parts_.topology, terms) : nullptr;
                         strips_.turned(group, memory, inverse_dt_ > 0, [&](int rows) {
                           for (int first = 0; first < rows; first += kBendLines) {
                             const Row3 x = memory.tile.row(0);
@@ -94,6 +113,7 @@ class BendingConstraints final : public WholeStage {
                             p.step = kStripLines;
                             p.particles = l.columns;
                             p.compliance = compliance;
+                            if (turned) p.left = turned + first;
                             p.scratch = memory.scratch.data();
                             parts_.kernels.bend_line(p);
                           }
@@ -115,6 +135,7 @@ class BendingConstraints final : public WholeStage {
                         p.step = l.stride;
                         p.particles = l.rows;
                         p.compliance = compliance;
+                        p.left = left(parts_, &BendLinks::across, std::size_t(first));
                         p.scratch = memory.scratch.data();
                         parts_.kernels.bend_line(p);
                       });
@@ -135,6 +156,7 @@ class BendingConstraints final : public WholeStage {
         r.w = l.w(j);
         r.w_below = l.w(j + 1);
         r.compliance = compliance;
+        r.left = left(parts_, &BendLinks::twist, std::size_t(j) * l.stride);
         for (const bool odd : {false, true}) {
           r.odd = odd;
           parts_.kernels.bend_twist(r);
@@ -144,6 +166,7 @@ class BendingConstraints final : public WholeStage {
 
   ClothParts parts_;
   Strips strips_;
+  TurnedLinks<float> torn_;  // of the rows
   bool compliant_;        // velocities gain the corrections as computed
   float inverse_dt_ = 0;  // 1/s, or 0
 };

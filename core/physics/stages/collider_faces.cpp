@@ -15,7 +15,8 @@ namespace {
 constexpr double kSmall = 1.5;    // in diagonals of the mesh: a larger radius needs no triangles
 constexpr int kProjections = 12;  // between triangle and core
 constexpr int kMostPlaces = 16;   // on the way of a fast collider
-constexpr double kSlack = 1e-4;   // of an edge: a triangle may be as deep
+constexpr double kSlack = 1e-3;   // of an edge: a triangle may be as deep
+constexpr double kDeep = 1e-2;    // of an edge: one that was as deep is looked at again at once
 constexpr int kTurns = 8;         // of one triangle in a substep
 
 using Weights = std::array<double, 3>;
@@ -136,6 +137,11 @@ class ColliderFaces final : public RowStage {
   void reserve_slots(int slots) override { bound_ = Rows(slots, parts_.lattice.stride); }
   std::size_t bytes() const override { return bound_.bytes(); }
   double idle() const override { return far_.share(); }
+  void follow(const Collider& collider) override {
+    if (&collider != &collider_.collider()) return;
+    collider_.follow_keys();
+    far_.restart(collider_.fastest());
+  }
 
   void run(int j, const Substep& s) override {
     Lattice& l = parts_.lattice;
@@ -144,6 +150,8 @@ class ColliderFaces final : public RowStage {
     f.row = collider_.row(parts_, j, s);
     f.x_next = l.x.row(j + 1);
     f.v_next = l.v.row(j + 1);
+    f.edge = float(edge_);
+    f.slack = float(kSlack * edge_);
     f.bound = bound_.row(s.slot).x;
     RowReach reach = parts_.kernels.below_faces[collider_.shape()](f);
     // The way of a substep matters only where it is long against the collider.
@@ -162,7 +170,7 @@ class ColliderFaces final : public RowStage {
   }
 
  private:
-  // Lifts one triangle out once; false when it does not touch.
+  // Lifts one triangle out once; whether it may be in by another side still.
   bool touch(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i) {
     Lattice& l = parts_.lattice;
     const Vec3 place{r.cx, r.cy, r.cz}, u{r.ux, r.uy, r.uz};
@@ -201,7 +209,7 @@ class ColliderFaces final : public RowStage {
         l.v.at(m, j[k], i[k]) = float(l.v.at(m, j[k], i[k]) + share * gained[m]);
       }
     }
-    return true;
+    return touch.depth > kDeep * edge_;
   }
 
   Vec3 into_shape(const Vec3& p) const {

@@ -8,6 +8,8 @@
 namespace weft::physics {
 namespace {
 
+constexpr double kTouching = 1e-4;  // m; sheets that lie on a surface start no deeper
+
 const char* const kShapeNames[kShapes] = {"sphere", "plane", "capsule", "box"};
 
 std::string detail_of(const Collider& c) {
@@ -31,6 +33,11 @@ class ColliderStage final : public RowStage {
     far_.found(j, s, kernel_(collider_.row(parts_, j, s)));
   }
   double idle() const override { return far_.share(); }
+  void follow(const Collider& collider) override {
+    if (&collider != &collider_.collider()) return;
+    collider_.follow_keys();
+    far_.restart(collider_.fastest());
+  }
 
  private:
   ClothParts parts_;
@@ -41,7 +48,28 @@ class ColliderStage final : public RowStage {
 
 }  // namespace
 
-MovingCollider::MovingCollider(const ClothParts&, const Collider& collider) : collider_(collider) {
+StartInside start_inside(const Lattice& l, const Collider& collider) {
+  StartInside found;
+  if (collider.cuts) return found;
+  for (int j = 0; j < l.rows; ++j)
+    for (int i = 0; i < l.columns; ++i) {
+      const Vec3 x{l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)};
+      const double depth =
+          l.w(j, i) > 0 ? collider.offset - signed_distance(collider, 0, x) : 0;
+      found.deepest = std::max(found.deepest, depth);
+      found.particles += depth > kTouching;
+    }
+  if (found.particles == 0) found.deepest = 0;
+  return found;
+}
+
+MovingCollider::MovingCollider(const ClothParts& parts, const Collider& collider)
+    : collider_(collider) {
+  const StartInside& start = parts.starts[std::size_t(&collider - parts.scene.colliders.data())];
+  if (start.particles > 0 && collider.friction.model == FrictionModel::coulomb) {
+    deepest_ = start.deepest;
+    pulled_ = kPulledFrames * parts.scene.time.frame;
+  }
   CollideRow& r = constants_;
   r.friction_static = float(collider.friction.statik);
   r.friction_dynamic = float(collider.friction.dynamic);
@@ -55,11 +83,17 @@ MovingCollider::MovingCollider(const ClothParts&, const Collider& collider) : co
         r.cz = float(place[2]);
       },
       collider.shape);
-  for (std::size_t n = 1; n < collider.keys.size(); ++n) {
-    const Key &a = collider.keys[n - 1], &b = collider.keys[n];
+  follow_keys();
+}
+
+void MovingCollider::follow_keys() {
+  double along = 0;
+  for (std::size_t n = 1; n < collider_.keys.size(); ++n) {
+    const Key &a = collider_.keys[n - 1], &b = collider_.keys[n];
     const Vec3 e = minus(b.position, a.position);
-    fastest_ = std::max(fastest_, std::sqrt(dot(e, e)) / (b.time - a.time));
+    along = std::max(along, std::sqrt(dot(e, e)) / (b.time - a.time));
   }
+  fastest_ = along + (pulled_ > 0 ? deepest_ / pulled_ : 0);
 }
 
 CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s) const {
@@ -71,6 +105,7 @@ CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s)
   r.w = l.w(j);
   r.dt = float(s.dt);
   r.inverse_dt = float(1 / s.dt);
+  if (s.time < pulled_) r.offset -= float(deepest_ * (1 - s.time / pulled_));
   if (collider_.keys.empty()) return r;
   const Vec3 c = position_at(collider_.keys, s.time);
   const Vec3 u = velocity_over(collider_.keys, s.time, s.dt);
@@ -94,6 +129,11 @@ OutOfReach::OutOfReach(const ClothParts& parts, double collider_speed)
     acceleration_ += 2 * f.stiffness * f.rest * kStrain * heaviest;
   const Vec3& g = parts.scene.gravity;
   acceleration_ += 2 * std::sqrt(dot(g, g));
+}
+
+void OutOfReach::restart(double collider_speed) {
+  collider_speed_ = collider_speed;
+  for (Row& row : rows_) row.resume = row.ran;
 }
 
 bool OutOfReach::skip(int j, const Substep& s) {

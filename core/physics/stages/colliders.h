@@ -7,14 +7,21 @@
 
 namespace weft::physics {
 
-// A collider in motion, as the kernels take it.
+// Frames over which a collider that holds particles at the start grows to its size.
+inline constexpr int kPulledFrames = 10;
+
+// A collider in motion, as the kernels take it. Particles that start inside it would be torn from
+// their neighbours if they were put onto its surface at once: it begins as much smaller as the
+// deepest of them lies below the surface.
 class MovingCollider {
  public:
   MovingCollider(const ClothParts& parts, const Collider& collider);
   // The collider at the end of the substep, and row j of the cloth.
   CollideRow row(const ClothParts& parts, int j, const Substep& s) const;
-  // Greatest speed along its keys [m/s].
+  // Greatest speed along its keys, and of its growth at the start [m/s].
   double fastest() const { return fastest_; }
+  // Takes up keys that have changed.
+  void follow_keys();
   const Collider& collider() const { return collider_; }
   std::size_t shape() const { return collider_.shape.index(); }
 
@@ -22,6 +29,7 @@ class MovingCollider {
   const Collider& collider_;
   CollideRow constants_{};
   double fastest_ = 0;
+  double deepest_ = 0, pulled_ = 0;  // m below the surface at the start; s, until it has grown
 };
 
 // Rows that cannot touch a collider before a time. A particle at distance c, of speed s towards the
@@ -33,6 +41,8 @@ class OutOfReach {
   OutOfReach(const ClothParts& parts, double collider_speed);
   // Whether row j has nothing to do in this substep.
   bool skip(int j, const Substep& s);
+  // All rows are looked at again: the collider's path has changed.
+  void restart(double collider_speed);
   // Row j has just been worked on and lies so.
   void found(int j, const Substep& s, const RowReach& reach);
   // Share of the rows so far that were skipped.

@@ -30,6 +30,7 @@ struct LineFamily {
   AlignedArray<float> compliance;  // [row][kStripLines], or one row where all are alike
   bool alike = true;
   AlignedArray<float> lambda;  // shaped like the lattice; families along rows: like the tiles
+  TurnedLinks<std::int32_t> links;  // of families along rows that can tear
 };
 
 class Line final : public WholeStage {
@@ -51,6 +52,7 @@ class Line final : public WholeStage {
       const int groups = strips_.row_groups();
       const int rows = l.alike ? 1 : f.dj == 0 ? groups : parts.lattice.rows;
       l.compliance = AlignedArray<float>(std::size_t(rows) * kStripLines);
+      if (f.links && f.dj == 0) l.links = TurnedLinks<std::int32_t>(parts.lattice, groups);
       if (options.compliant && options.iterations > 1)
         l.lambda = AlignedArray<float>(
             f.dj == 0 ? std::size_t(groups) * kStripLines * parts.lattice.columns
@@ -72,8 +74,13 @@ class Line final : public WholeStage {
   std::size_t bytes() const override {
     std::size_t floats = 0;
     for (const auto* families : {&along_rows_, &between_rows_})
-      for (const LineFamily& l : *families) floats += l.compliance.size() + l.lambda.size();
+      for (const LineFamily& l : *families)
+        floats += l.compliance.size() + l.lambda.size() + l.links.bytes() / sizeof(float);
     return floats * sizeof(float) + strips_.bytes();
+  }
+  void restart() override {
+    strips_.turn_masses();
+    for (LineFamily& l : along_rows_) l.links.forget();
   }
 
   void run(const Substep& s, Threads& threads) override {
@@ -134,6 +141,7 @@ class Line final : public WholeStage {
     p.compliance = l.compliance.data() + (l.alike ? 0 : start * kStripLines);
     p.compliance_step = l.alike ? 0 : f.dj * kStripLines;
     if (l.lambda.size() > 0) p.lambda = l.lambda.data() + std::ptrdiff_t(start) * lattice.stride;
+    if (f.links) p.alive = f.links->row(start) - f.near();
     return p;
   }
 
@@ -141,6 +149,8 @@ class Line final : public WholeStage {
     const int columns = parts_.lattice.columns;
     for (LineFamily& l : along_rows_) {
       const int n = l.family->di;
+      const std::int32_t* alive =
+          l.family->links ? l.links.follow(group, *parts_.topology, l.family->links->row(0)) : nullptr;
       for (int start = 0; start < n; ++start) {
         LineStrip p{};
         p.x = memory.tile.row(start);
@@ -157,6 +167,7 @@ class Line final : public WholeStage {
         if (l.lambda.size() > 0)
           p.lambda = l.lambda.data() + (std::ptrdiff_t(group) * columns + start) * kStripLines;
         p.fresh = fresh;
+        if (alive) p.alive = alive + start * kStripLines;
         p.scratch = memory.scratch.data();
         parts_.kernels.line_strip(p);
       }

@@ -5,14 +5,15 @@
 namespace weft::physics {
 namespace {
 
-AdvanceRow row_of(const ClothParts& parts, int j) {
+// Rows begin … end-1 as one long row, padding and all.
+AdvanceRow rows_of(const ClothParts& parts, int begin, int end) {
   Lattice& l = parts.lattice;
   AdvanceRow a{};
-  a.columns = l.columns;
-  a.x = l.x.row(j);
-  a.v = l.v.row(j);
-  a.w = l.w(j);
-  a.previous = l.previous.row(j);
+  a.columns = (end - begin) * l.stride;
+  a.x = l.x.row(begin);
+  a.v = l.v.row(begin);
+  a.w = l.w(begin);
+  if (l.previous.bytes() > 0) a.previous = l.previous.row(begin);
   return a;
 }
 
@@ -22,11 +23,11 @@ class Predict final : public RowStage {
       : RowStage("predict", "positions by velocity and gravity", 0, parts.particles(), "particles"),
         parts_(parts),
         multipliers_(multipliers) {}
-  void run(int j, const Substep& s) override {
-    AdvanceRow a = row_of(parts_, j);
+  void run(int begin, int end, const Substep& s) override {
+    AdvanceRow a = rows_of(parts_, begin, end);
     a.advance = advance_of(parts_, s.dt);
     parts_.kernels.predict(a);
-    if (multipliers_) multipliers_->clear(j);
+    if (multipliers_) multipliers_->clear(begin, end);
   }
 
  private:
@@ -40,9 +41,9 @@ class Velocity final : public RowStage {
       : RowStage("velocity", "from the change of position", 0, parts.particles(), "particles"),
         parts_(parts),
         compliant_(compliant) {}
-  void run(int j, const Substep& s) override {
+  void run(int begin, int end, const Substep& s) override {
     if (!velocity_from_positions(parts_.scene.solver, compliant_, s.dt)) return;
-    AdvanceRow a = row_of(parts_, j);
+    AdvanceRow a = rows_of(parts_, begin, end);
     a.inverse_dt = float(1 / s.dt);
     parts_.kernels.velocity(a);
   }
@@ -64,8 +65,8 @@ float* Multipliers::row(std::size_t family, int j) {
   return data.data() + (family * rows + j) * stride;
 }
 
-void Multipliers::clear(int j) {
-  for (std::size_t f = 0; f < families; ++f) std::fill_n(row(f, j), stride, 0.0f);
+void Multipliers::clear(int begin, int end) {
+  for (std::size_t f = 0; f < families; ++f) std::fill(row(f, begin), row(f, end), 0.0f);
 }
 
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* multipliers) {

@@ -32,7 +32,11 @@ class Predict final : public RowStage {
         history_(history),
         multipliers_(multipliers),
         dt_(parts.lattice.rows, 0.0) {}
-  void restart() override { std::fill(dt_.begin(), dt_.end(), 0.0); }
+  void restart() override {
+    std::fill(dt_.begin(), dt_.end(), 0.0);
+    const AlignedArray<float>& mass = parts_.lattice.inverse_mass;
+    std::copy_n(mass.data(), mass.size(), history_.inverse_mass.data());
+  }
   void run(int j, const Substep& s) override {
     SecondOrderRow r = row_of(parts_, history_, j);
     const Vec3& g = parts_.scene.gravity;
@@ -44,7 +48,7 @@ class Predict final : public RowStage {
     r.gy = float(g[1]);
     r.gz = float(g[2]);
     parts_.kernels.predict_second_order(r);
-    if (multipliers_) multipliers_->clear(j);
+    if (multipliers_) multipliers_->clear(j, j + 1);
   }
 
  private:

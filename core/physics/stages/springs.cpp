@@ -1,7 +1,7 @@
 // Stage "springs": all spring forces on a cloth and its leapfrog step, in one pass over the rows.
 // Every spring is evaluated once, in the row of its near end; what it exerts on later rows is
 // carried along, so that a row is finished, and moved in place, as soon as its own springs are done.
-#include "physics/stages/stages.h"
+#include "physics/stages/plain_rows.h"
 
 namespace weft::physics {
 namespace {
@@ -9,55 +9,31 @@ namespace {
 constexpr int kGuard = 16;  // zero lanes that a family's kernel reads before a row
 
 // The six families of a plain cloth in one kernel.
-class PlainSprings final : public RowStage {
+class PlainSprings final : public PlainRowsStage {
  public:
   explicit PlainSprings(const ClothParts& parts)
-      : RowStage("springs", "structural, shear and bend springs, leapfrog step", 2,
-                 parts.constraints(), "constraints"),
-        parts_(parts),
+      : PlainRowsStage("springs", "structural, shear and bend springs, leapfrog step", parts),
         springs_(std::size_t(parts.lattice.rows) * kPlainFamilies) {
     for (int j = 0; j < parts.lattice.rows; ++j)
       for (int f = 0; f < kPlainFamilies; ++f)
         springs_[std::size_t(j) * kPlainFamilies + f] =
             spring_constants(parts.cloth, parts.families[f], j);
   }
-
-  void reserve_slots(int slots) override { carry_ = Rows(3 * slots, parts_.lattice.stride); }
   std::size_t bytes() const override {
-    return carry_.bytes() + springs_.size() * sizeof(SpringConstants);
+    return PlainRowsStage::bytes() + springs_.size() * sizeof(SpringConstants);
   }
   void prepare(double dt) override { advance_ = advance_of(parts_, dt); }
-
   void run(int begin, int end, const Substep& s) override {
-    Lattice& l = parts_.lattice;
-    if (begin == 0) clear(s.slot);
     SpringRows r{};
-    r.begin = begin;
-    r.end = end;
-    r.rows = l.rows;
-    r.columns = l.columns;
-    r.stride = l.stride;
-    r.x = l.x.row(0);
-    r.v = l.v.row(0);
-    r.w = l.w(0);
-    for (int k = 0; k < 3; ++k) r.carry[k] = carry_.row(3 * s.slot + k);
+    fill(r, begin, end, s);
     r.springs = springs_.data();
     r.advance = advance_;
     parts_.kernels.spring_rows(r);
   }
 
  private:
-  void clear(int slot) {
-    for (int k = 0; k < 3; ++k) {
-      const Row3 c = carry_.row(3 * slot + k);
-      for (float* p : {c.x, c.y, c.z}) std::fill_n(p, parts_.lattice.stride, 0.0f);
-    }
-  }
-
-  ClothParts parts_;
   std::vector<SpringConstants> springs_;
   Advance advance_{};
-  Rows carry_;
 };
 
 // Any families, one kernel call each: levels, subsets, damping along the spring.
@@ -77,6 +53,11 @@ class FamilySprings final : public RowStage {
   }
   std::size_t bytes() const override {
     return force_.bytes() + scratch_.size() * sizeof(float);
+  }
+
+  void start(const Substep& s) override {
+    for (int k = 0; k <= reach; ++k)
+      zero(force_.row(s.slot * (reach + 1) + k), parts_.lattice.stride);
   }
 
   void run(int j, const Substep& s) override {
@@ -120,6 +101,12 @@ std::int64_t ClothParts::constraints() const {
   return n;
 }
 
+int greatest_reach(const ClothParts& parts) {
+  int reach = 0;
+  for (const Family& f : parts.families) reach = std::max(reach, f.dj);
+  return reach;
+}
+
 Advance advance_of(const ClothParts& parts, double dt) {
   const Vec3& g = parts.scene.gravity;
   return {float(dt), float(std::max(0.0, 1 - dt * parts.cloth.drag)), float(g[0] * dt),
@@ -127,12 +114,8 @@ Advance advance_of(const ClothParts& parts, double dt) {
 }
 
 std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped) {
-  // families_of lists the six of a plain cloth in one order, which PlainSprings takes for granted.
-  if (!damped && parts.cloth.level == 0 && parts.families.size() == 6 && !parts.families[0].links)
-    return std::make_unique<PlainSprings>(parts);
-  int reach = 0;
-  for (const Family& f : parts.families) reach = std::max(reach, f.dj);
-  return std::make_unique<FamilySprings>(parts, reach, damped);
+  if (!damped && is_plain(parts)) return std::make_unique<PlainSprings>(parts);
+  return std::make_unique<FamilySprings>(parts, greatest_reach(parts), damped);
 }
 
 }  // namespace weft::physics

@@ -11,6 +11,15 @@
 
 namespace weft::physics {
 
+class Topology;
+
+// Free particles of a cloth that start inside a collider, and how deep at most [m].
+struct StartInside {
+  std::int64_t particles = 0;
+  double deepest = 0;
+};
+StartInside start_inside(const Lattice& lattice, const Collider& collider);
+
 // What every stage of one cloth refers to; outlives the stages.
 struct ClothParts {
   const Scene& scene;
@@ -18,9 +27,14 @@ struct ClothParts {
   Lattice& lattice;
   const std::vector<Family>& families;
   const KernelTable& kernels;
+  const std::vector<StartInside>& starts;  // of every collider
+  const Topology* topology = nullptr;  // null: the cloth cannot tear
   std::int64_t particles() const { return std::int64_t(lattice.columns) * lattice.rows; }
   std::int64_t constraints() const;
 };
+
+// The most rows that a constraint spans.
+int greatest_reach(const ClothParts& parts);
 
 // Constants of the leapfrog move over one substep.
 Advance advance_of(const ClothParts& parts, double dt);
@@ -29,7 +43,6 @@ std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped);
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, struct Multipliers* multipliers);
 std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant);
 std::unique_ptr<RowStage> make_keyed_pins(const ClothParts& parts);
-class Topology;
 std::unique_ptr<RowStage> make_tear(const ClothParts& parts, Topology& topology);
 std::unique_ptr<RowStage> make_cut(const ClothParts& parts, const Collider& collider,
                                    Topology& topology);
@@ -42,21 +55,23 @@ std::unique_ptr<RowStage> make_collider_faces(const ClothParts& parts, const Col
 struct Multipliers {
   Multipliers(const Lattice& lattice, std::size_t families);
   float* row(std::size_t family, int j);
-  void clear(int j);
+  void clear(int begin, int end);  // rows
   std::size_t bytes() const { return data.size() * sizeof(float); }
   int rows, stride;
   std::size_t families;
   AlignedArray<float> data;
 };
 
-// The Gauss–Seidel sweep: one stage per family and colour, appended in the fixed order.
+// The Gauss–Seidel sweep: one stage per row offset and colour, appended in the fixed order.
 struct SweepOptions {
   bool compliant = false;
   Multipliers* multipliers = nullptr;
+  Rows* corrections = nullptr;  // the compliant Gauss–Seidel sweep gathers what it finds there
   double limit = 0;  // > 0: the strain limit's one-sided sweep
 };
-void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
-                         Stages& stages);
+void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options, Stages& stages);
+// After the sweeps: positions and velocities gain the corrections, which are then zero again.
+std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections);
 // What the second-order substep keeps of the substep before (Lattice::previous is its position).
 struct History {
   explicit History(const Lattice& lattice);

@@ -9,8 +9,12 @@ Strips::Strips(Lattice& lattice, const KernelTable& kernels, int scratch)
       scratch_(scratch),
       // Transposing reads and writes whole tiles of four columns.
       masses_(std::size_t(row_groups()) * (lattice.columns + 3) * kStripLines) {
+  turn_masses();
+}
+
+void Strips::turn_masses() {
   for (int group = 0; group < row_groups(); ++group)
-    turn_masses(group, std::min(kStripLines, lattice.rows - group * kStripLines));
+    turn_masses(group, std::min(kStripLines, lattice_.rows - group * kStripLines));
 }
 
 std::size_t Strips::bytes() const {

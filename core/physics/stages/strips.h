@@ -13,6 +13,7 @@
 #include "physics/kernels/line.h"
 #include "physics/lattice.h"
 #include "physics/threads.h"
+#include "physics/topology.h"
 
 namespace weft::physics {
 
@@ -21,6 +22,39 @@ struct StripMemory {
   AlignedArray<float> scratch;
   Rows tile;    // kStripLines rows as lanes: [column][kStripLines] of x, y, z
   Rows gained;  // velocity that the solution adds, laid out as the tile
+};
+
+// What is left of the links along the rows, turned into lanes as the tiles are: [column][kStripLines]
+// for every group of rows, turned anew only where some have died.
+template <class T>
+class TurnedLinks {
+ public:
+  TurnedLinks() = default;
+  TurnedLinks(const Lattice& l, int groups)
+      : columns_(l.columns), lanes_(std::size_t(groups) * size()), torn_(std::size_t(groups), -1) {}
+
+  // The group's lanes, from `links`, laid out as the lattice.
+  const T* follow(int group, const Topology& topology, const T* links) {
+    const int begin = group * kStripLines, end = std::min(begin + kStripLines, topology.rows());
+    std::int64_t torn = 0;
+    for (int j = begin; j < end; ++j) torn += topology.torn(j);
+    T* lanes = lanes_.data() + std::size_t(group) * size();
+    if (torn == torn_[std::size_t(group)]) return lanes;
+    torn_[std::size_t(group)] = torn;
+    for (int j = begin; j < end; ++j)
+      for (int i = 0; i < columns_; ++i)
+        lanes[i * kStripLines + j - begin] = links[std::size_t(j) * topology.stride() + i];
+    return lanes;
+  }
+  // The links were set anew: all groups are to be turned again.
+  void forget() { std::fill(torn_.begin(), torn_.end(), -1); }
+  std::size_t bytes() const { return lanes_.size() * sizeof(T); }
+
+ private:
+  std::size_t size() const { return std::size_t(columns_ + 3) * kStripLines; }
+  int columns_ = 0;
+  AlignedArray<T> lanes_;
+  std::vector<std::int64_t> torn_;  // of each group, when it was turned
 };
 
 class Strips {
@@ -61,7 +95,8 @@ class Strips {
   const float* masses(int group) const {
     return masses_.data() + std::size_t(group) * (lattice_.columns + 3) * kStripLines;
   }
-  // They are turned once, unless they may change.
+  // They are turned once, again when told so, or every time where they may change.
+  void turn_masses();
   void follow_masses() { masses_change_ = true; }
 
   // Turns the rows of a group into the lanes of a tile, solves, turns them back and adds to the

@@ -1,181 +1,309 @@
 // Stages "gauss_seidel" and "jacobi": one sweep of projections over all constraint families.
 //
-// Gauss–Seidel goes family by family and, within one, colour by colour: constraints a of one row
-// alternate by a/|di|, those between rows by j/dj, so that the constraints of a colour are disjoint
-// and may be solved side by side. The order depends on nothing but the scene.
-#include "physics/stages/stages.h"
+// Gauss–Seidel goes by row offset dj, along the rows first, then colour by colour, family by family:
+// constraints a of one row alternate by a/|di|, those between rows by j/dj, so that the constraints
+// of a family and colour are disjoint and may be solved side by side. The order depends on nothing
+// but the scene.
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <numbers>
+
+#include "physics/stages/plain_rows.h"
 
 namespace weft::physics {
 namespace {
 
 constexpr int kColours = 2;
 
-// One family of a sweep as its kernel takes it, with the compliance of every row.
-class ProjectedFamily {
+// The families of a sweep with one row offset dj, as their kernel takes them.
+class ProjectedFamilies {
  public:
-  ProjectedFamily(const ClothParts& parts, const SweepOptions& options, std::size_t index)
-      : parts_(parts), options_(options), family_(parts.families[index]), index_(index) {
-    if (options.compliant) compliance_.resize(parts.lattice.rows);
+  ProjectedFamilies(const ClothParts& parts, const SweepOptions& options, int dj)
+      : parts_(parts), options_(options) {
+    for (std::size_t f = 0; f < parts.families.size(); ++f)
+      if (parts.families[f].dj == dj && swept(parts.families[f], options)) add(f);
   }
 
-  const Family& family() const { return family_; }
+  // Bend constraints join second neighbours; the strain limit is one on the cloth's own edges.
+  static bool swept(const Family& f, const SweepOptions& options) {
+    return !(options.limit > 0 && f.kind == Kind::bend);
+  }
+
+  std::int64_t constraints() const {
+    std::int64_t sum = 0;
+    for (const Member& m : members_)
+      sum += std::int64_t(m.rows.count) * (parts_.lattice.rows - m.rows.dj);
+    return sum;
+  }
+
+  std::string names() const {
+    std::string names;
+    for (const Member& m : members_) {
+      const Family& f = parts_.families[m.index];
+      names += " (" + std::to_string(f.di) + "," + std::to_string(f.dj) + ")";
+    }
+    return (members_.size() == 1 ? "family" : "families") + names;
+  }
+
+  std::size_t bytes() const {
+    std::size_t sum = 0;
+    for (const Member& m : members_) sum += (m.compliance.size() + m.lanes.size()) * sizeof(float);
+    return sum;
+  }
 
   void prepare(double dt) {
-    rows_ = {};
-    Lattice& l = parts_.lattice;
-    rows_.rows = l.rows;
-    rows_.stride = l.stride;
-    rows_.x = l.x.row(0);
-    rows_.v = l.v.row(0);
-    rows_.w = l.w(0);
-    rows_.count = family_.per_row(l.columns);
-    rows_.near = family_.near();
-    rows_.far = family_.far();
-    rows_.dj = family_.dj;
-    rows_.rest = float(family_.rest);
-    rows_.weight = 1;
-    if (family_.links) rows_.alive = family_.links->row(0);
-    if (options_.limit > 0) {
-      rows_.rest = float(family_.rest * (1 + options_.limit));
-      rows_.limit = true;
-      rows_.inverse_dt = float(1 / dt);
-    } else if (options_.compliant) {
-      for (int j = 0; j < l.rows; ++j) compliance_[j] = compliance_of(parts_, family_, j, dt);
-      rows_.compliance = compliance_.data();
-      // The velocity gains each correction as computed: the difference of rounded positions would
-      // be off by their rounding over dt, which a small substep's force does not outweigh.
-      rows_.inverse_dt = float(1 / (dt * implicit_share(parts_.scene.solver)));
-      if (options_.multipliers) rows_.lambda = options_.multipliers->row(index_, 0);
-    } else {
-      rows_.weight = float(1 / (2 * parts_.cloth.positional_k));
+    for (Member& m : members_) {
+      const Family& family = parts_.families[m.index];
+      ProjectRows& r = m.rows;
+      if (options_.limit > 0) r.inverse_dt = float(1 / dt);
+      for (std::size_t j = 0; j < m.compliance.size(); ++j)
+        m.compliance[j] = compliance_of(parts_, family, int(j), dt);
     }
   }
 
-  ProjectRows rows(int begin, int end) const {
-    ProjectRows r = rows_;
-    r.begin = begin;
-    r.end = end;
-    return r;
+  template <class Kernel>
+  void run(const Kernel& kernel) const {
+    for (const Member& m : members_) kernel(m.rows);
+  }
+
+ private:
+  struct Member {
+    std::size_t index;
+    std::vector<float> compliance;
+    AlignedArray<std::int32_t> lanes;
+    ProjectRows rows;
+  };
+
+  void add(std::size_t index) {
+    Lattice& l = parts_.lattice;
+    const Family& family = parts_.families[index];
+    Member& m = members_.emplace_back();
+    m.index = index;
+    m.rows = {};
+    ProjectRows& r = m.rows;
+    r.rows = l.rows;
+    r.stride = l.stride;
+    r.x = l.x.row(0);
+    r.v = l.v.row(0);
+    r.w = l.w(0);
+    // The second-order substep changes inverse masses on its way.
+    if (parts_.scene.solver.order == 1) r.row_w = l.row_inverse_mass.data();
+    r.count = family.per_row(l.columns);
+    r.near = family.near();
+    r.far = family.far();
+    r.dj = family.dj;
+    r.rest = float(family.rest * (1 + options_.limit));
+    r.weight = options_.compliant || options_.limit > 0
+                   ? 1.0f
+                   : float(1 / (2 * parts_.cloth.positional_k));
+    r.limit = options_.limit > 0;
+    if (family.links) r.alive = family.links->row(0);
+    if (options_.compliant) {
+      m.compliance.resize(std::size_t(l.rows));
+      r.compliance = m.compliance.data();
+    }
+    if (options_.corrections) r.u = options_.corrections->row(0);
+    if (options_.multipliers) r.lambda = options_.multipliers->row(index, 0);
+    if (family.dj == 0) {
+      m.lanes = AlignedArray<std::int32_t>(std::size_t(kColours) * l.stride);
+      for (int a = 0; a < r.count; ++a)
+        m.lanes[std::size_t(a / family.di % kColours) * l.stride + a] = -1;
+      r.lanes = m.lanes.data();
+    }
+  }
+
+  ClothParts parts_;
+  SweepOptions options_;
+  std::deque<Member> members_;  // their rows point into them
+};
+
+// The families of one row offset: along the rows both colours, between rows one.
+class GaussSeidel final : public RowStage {
+ public:
+  GaussSeidel(const ClothParts& parts, const std::string& name, int dj, int colour,
+              std::unique_ptr<ProjectedFamilies> families)
+      : RowStage(name,
+                 families->names() + (dj > 0 ? ", colour " + std::to_string(colour + 1) : ""), dj,
+                 families->constraints() / (dj > 0 ? kColours : 1), "constraints"),
+        project_(parts.kernels.project),
+        families_(std::move(families)),
+        colour_(colour) {}
+  std::size_t bytes() const override { return families_->bytes(); }
+  void prepare(double dt) override { families_->prepare(dt); }
+  void run(int begin, int end, const Substep&) override {
+    families_->run([&](ProjectRows rows) {
+      rows.begin = begin;
+      rows.end = end;
+      rows.colour = colour_;
+      project_(rows);
+    });
+  }
+
+ private:
+  void (*project_)(const ProjectRows&);
+  std::unique_ptr<ProjectedFamilies> families_;
+  int colour_;
+};
+
+// What the sweeps of the compliant method have found goes into positions and velocities.
+class Corrections final : public RowStage {
+ public:
+  Corrections(const ClothParts& parts, Rows& corrections)
+      : RowStage("velocity", "positions and velocities gain the corrections", 0, parts.particles(),
+                 "particles"),
+        parts_(parts),
+        corrections_(corrections) {}
+  void run(int begin, int end, const Substep& s) override {
+    Lattice& l = parts_.lattice;
+    AdvanceRow a{};
+    a.columns = (end - begin) * l.stride;  // rows as one long row, padding and all
+    a.x = l.x.row(begin);
+    a.v = l.v.row(begin);
+    a.f = corrections_.row(begin);
+    a.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
+    parts_.kernels.apply_corrections(a);
   }
 
  private:
   ClothParts parts_;
+  Rows& corrections_;
+};
+
+// Relaxation ω of the summed corrections. A mode of the constraint system, relative to its diagonal, with
+// the eigenvalue λ follows z² - p (2 z - 1) = 0, p = 1 - ω λ, where velocities are made of positions:
+// |z| <= 1 for ω λ <= 4/3. The largest λ is that of a stretched sheet, which resists in all directions: the
+// greatest Σ 1 - cos(a di + b dj) over the families, rounded up so that no library's last bit matters. It
+// applies to the part of the system that couples constraints, w_a + w_b: compliance needs none, so that a
+// single sweep of small substeps is a spring of the full stiffness.
+float relaxation(const std::vector<Family>& families) {
+  constexpr int kAngles = 32, kParts = 256;
+  constexpr double kLimit = 0.95 * 4 / 3;
+  double largest = 1;
+  for (int m = 0; m <= kAngles; ++m)
+    for (int n = -kAngles; n <= kAngles; ++n) {
+      double sum = 0;
+      for (const Family& f : families) sum += 1 - std::cos((m * f.di + n * f.dj) * std::numbers::pi / kAngles);
+      largest = std::max(largest, sum);
+    }
+  return float(kLimit * kParts / std::ceil(kParts * largest - 1e-6));
+}
+
+float velocity_share(const ClothParts& parts, const SweepOptions& options, double dt) {
+  return options.compliant ? float(1 / (dt * implicit_share(parts.scene.solver))) : 0.0f;
+}
+
+// The six families of a plain cloth in one kernel.
+class PlainJacobi final : public PlainRowsStage {
+ public:
+  PlainJacobi(const ClothParts& parts, const SweepOptions& options)
+      : PlainRowsStage("jacobi", "all families, corrections added up and relaxed", parts),
+        options_(options),
+        relaxation_(relaxation(parts.families)),
+        constraints_(std::size_t(parts.lattice.rows) * kPlainFamilies) {}
+  std::size_t bytes() const override {
+    return PlainRowsStage::bytes() + constraints_.size() * sizeof(JacobiConstants);
+  }
+  void prepare(double dt) override {
+    const float share = options_.compliant ? 1.0f : float(2 * parts_.cloth.positional_k);
+    weight_ = 1 / (share * relaxation_);
+    inverse_dt_ = velocity_share(parts_, options_, dt);
+    for (int j = 0; j < parts_.lattice.rows; ++j)
+      for (int f = 0; f < kPlainFamilies; ++f)
+        constraints_[std::size_t(j) * kPlainFamilies + std::size_t(f)] =
+            constants_of(parts_.families[std::size_t(f)], j, dt);
+  }
+  void run(int begin, int end, const Substep& s) override {
+    for (int first = begin; first < end;) {
+      const bool same = alike(first);
+      int last = first + 1;
+      while (last < end && alike(last) == same) ++last;
+      JacobiRows r{};
+      fill(r, first, last, s);
+      r.alike = same;
+      r.constraints = constraints_.data();
+      for (int f = 0; f < kPlainFamilies; ++f)
+        r.rest[f] = float(parts_.families[std::size_t(f)].rest);
+      r.weight = weight_;
+      r.inverse_dt = inverse_dt_;
+      parts_.kernels.jacobi_rows(r);
+      first = last;
+    }
+  }
+
+ private:
+  float free_inverse_mass(int j) const { return float(1 / particle_mass(parts_.cloth, 0, j)); }
+
+  JacobiConstants constants_of(const Family& family, int j, double dt) const {
+    if (j + family.dj >= parts_.lattice.rows)
+      return {std::numeric_limits<float>::infinity(), 0, 0};
+    const float compliance = options_.compliant ? compliance_of(parts_, family, j, dt) : 0;
+    const float k = 1 / (2 * free_inverse_mass(j) * weight_ + compliance);
+    return {compliance, k, k * float(family.rest)};
+  }
+
+  // Whether everything that row j's constraints join has the inverse mass of row j, nothing pinned.
+  bool alike(int j) const {
+    if (parts_.scene.solver.order != 1) return false;  // it changes inverse masses on its way
+    const Lattice& l = parts_.lattice;
+    for (int n = j; n <= std::min(j + reach, l.rows - 1); ++n)
+      if (l.row_inverse_mass[std::size_t(n)] != free_inverse_mass(j)) return false;
+    return true;
+  }
+
   SweepOptions options_;
-  Family family_;
-  std::size_t index_;
-  std::vector<float> compliance_;
-  ProjectRows rows_{};
+  float relaxation_;
+  std::vector<JacobiConstants> constraints_;
+  float weight_ = 1, inverse_dt_ = 0;
 };
 
-std::int64_t constraints_of(const ClothParts& parts, const Family& f) {
-  return std::int64_t(f.per_row(parts.lattice.columns)) * (parts.lattice.rows - f.dj);
-}
-
-std::string offset_text(const Family& f) {
-  return "(" + std::to_string(f.di) + "," + std::to_string(f.dj) + ")";
-}
-
-// Constraints along the rows, one colour after the other.
-class AlongRows final : public RowStage {
- public:
-  AlongRows(const ClothParts& parts, const SweepOptions& options, std::size_t index,
-            const std::string& name)
-      : RowStage(name, "family " + offset_text(parts.families[index]), 0,
-                 constraints_of(parts, parts.families[index]), "constraints"),
-        project_(parts.kernels.project),
-        family_(parts, options, index),
-        lanes_(std::size_t(kColours) * parts.lattice.stride) {
-    const Family& f = family_.family();
-    for (int a = 0; a < f.per_row(parts.lattice.columns); ++a)
-      lanes_[std::size_t(a / f.di % kColours) * parts.lattice.stride + a] = -1;
-  }
-  void prepare(double dt) override { family_.prepare(dt); }
-  void run(int begin, int end, const Substep&) override {
-    ProjectRows p = family_.rows(begin, end);
-    p.lanes = lanes_.data();
-    project_(p);
-  }
-
- private:
-  void (*project_)(const ProjectRows&);
-  ProjectedFamily family_;
-  AlignedArray<std::int32_t> lanes_;
-};
-
-// Constraints between rows j and j+dj, for the rows of one colour.
-class BetweenRows final : public RowStage {
- public:
-  BetweenRows(const ClothParts& parts, const SweepOptions& options, std::size_t index, int colour,
-              const std::string& name)
-      : RowStage(name,
-                 "family " + offset_text(parts.families[index]) + ", colour " +
-                     std::to_string(colour + 1),
-                 parts.families[index].dj, constraints_of(parts, parts.families[index]) / kColours,
-                 "constraints"),
-        project_(parts.kernels.project),
-        family_(parts, options, index),
-        colour_(colour) {}
-  void prepare(double dt) override { family_.prepare(dt); }
-  void run(int begin, int end, const Substep&) override {
-    ProjectRows p = family_.rows(begin, end);
-    p.colour = colour_;
-    project_(p);
-  }
-
- private:
-  void (*project_)(const ProjectRows&);
-  ProjectedFamily family_;
-  int colour_;
-};
-
-// Relaxation of the summed corrections. The largest eigenvalue of the constraint system, relative
-// to its diagonal, is at most half the constraints at a particle for sheets made of these families;
-// 2.7/n keeps the sweep convergent, 0.9 is the bound of a single chain. It applies to the part of the
-// system that couples constraints, w_a + w_b: compliance needs none, so that a single sweep of small
-// substeps is a spring of the full stiffness.
-float relaxation(std::size_t families) { return std::min(0.9f, 2.7f / float(2 * families)); }
-
+// Any families, one kernel call each.
 class Jacobi final : public RowStage {
  public:
   Jacobi(const ClothParts& parts, const SweepOptions& options, int reach)
       : RowStage("jacobi", "all families, corrections added up and relaxed", reach,
                  parts.constraints(), "constraints"),
         parts_(parts),
-        keeps_velocity_(options.compliant) {
-    for (std::size_t f = 0; f < parts.families.size(); ++f)
-      families_.emplace_back(parts, options, f);
+        options_(options),
+        relaxation_(relaxation(parts.families)) {
+    for (int dj = 0; dj <= reach; ++dj) families_.emplace_back(parts, options, dj);
   }
   void reserve_slots(int slots) override {
     sum_ = Rows((reach + 1) * slots, parts_.lattice.stride);
   }
   std::size_t bytes() const override { return sum_.bytes(); }
   void prepare(double dt) override {
-    for (ProjectedFamily& f : families_) f.prepare(dt);
+    for (ProjectedFamilies& f : families_) f.prepare(dt);
+  }
+  void start(const Substep& s) override {
+    for (int k = 0; k <= reach; ++k)
+      zero(sum_.row(s.slot * (reach + 1) + k), parts_.lattice.stride);
   }
   void run(int j, const Substep& s) override {
     Lattice& l = parts_.lattice;
     const auto sum = [&](int row) { return sum_.row(s.slot * (reach + 1) + row % (reach + 1)); };
-    for (const ProjectedFamily& f : families_) {
-      const int dj = f.family().dj;
-      if (j + dj >= l.rows) continue;
-      ProjectRows p = f.rows(j, j + 1);
-      p.weight /= relaxation(families_.size());
-      parts_.kernels.project_jacobi(p, j, sum(j), sum(j + dj));
-    }
+    for (const ProjectedFamilies& families : families_)
+      families.run([&](ProjectRows rows) {
+        if (j + rows.dj >= l.rows) return;
+        rows.weight /= relaxation_;
+        parts_.kernels.jacobi_family(rows, j, sum(j), sum(j + rows.dj));
+      });
     AdvanceRow a{};
     a.columns = l.columns;
     a.x = l.x.row(j);
     a.v = l.v.row(j);
+    a.w = l.w(j);
     a.f = sum(j);
-    a.inverse_dt =
-        keeps_velocity_ ? float(1 / (s.dt * implicit_share(parts_.scene.solver))) : 0.0f;
+    a.inverse_dt = velocity_share(parts_, options_, s.dt);
     parts_.kernels.apply_corrections(a);
   }
 
  private:
   ClothParts parts_;
-  bool keeps_velocity_;
-  std::vector<ProjectedFamily> families_;
+  SweepOptions options_;
+  float relaxation_;
+  std::deque<ProjectedFamilies> families_;
   Rows sum_;  // reach+1 rows in turn per slot
 };
 
@@ -187,25 +315,24 @@ float compliance_of(const ClothParts& parts, const Family& f, int j, double dt) 
   return float(1 / (std::max(k, 1e-12) * h * h));
 }
 
-void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options,
-                         Stages& stages) {
+void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options, Stages& stages) {
   const std::string name = options.limit > 0 ? "strain_limit" : "gauss_seidel";
-  for (std::size_t index = 0; index < parts.families.size(); ++index) {
-    // Bend constraints join second neighbours; the limit is one on the cloth's own edges.
-    if (options.limit > 0 && parts.families[index].kind == Kind::bend) continue;
-    if (parts.families[index].dj == 0) {
-      stages.push_back(std::make_unique<AlongRows>(parts, options, index, name));
-      continue;
+  for (int dj = 0; dj <= greatest_reach(parts); ++dj)
+    for (int colour = 0; colour < (dj > 0 ? kColours : 1); ++colour) {
+      auto families = std::make_unique<ProjectedFamilies>(parts, options, dj);
+      if (families->constraints() > 0)
+        stages.push_back(
+            std::make_unique<GaussSeidel>(parts, name, dj, colour, std::move(families)));
     }
-    for (int colour = 0; colour < kColours; ++colour)
-      stages.push_back(std::make_unique<BetweenRows>(parts, options, index, colour, name));
-  }
+}
+
+std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections) {
+  return std::make_unique<Corrections>(parts, corrections);
 }
 
 std::unique_ptr<RowStage> make_jacobi(const ClothParts& parts, const SweepOptions& options) {
-  int reach = 0;
-  for (const Family& f : parts.families) reach = std::max(reach, f.dj);
-  return std::make_unique<Jacobi>(parts, options, reach);
+  if (is_plain(parts) && !options.multipliers) return std::make_unique<PlainJacobi>(parts, options);
+  return std::make_unique<Jacobi>(parts, options, greatest_reach(parts));
 }
 
 }  // namespace weft::physics

@@ -49,6 +49,11 @@ class CutStage final : public RowStage {
     for (const Family& f : parts.families) longest_ = std::max(longest_, f.rest);
   }
   double idle() const override { return far_.share(); }
+  void follow(const Collider& collider) override {
+    if (&collider != &collider_.collider()) return;
+    collider_.follow_keys();
+    far_.restart(collider_.fastest());
+  }
   void reserve_slots(int slots) override {
     distances_ = AlignedArray<float>(std::size_t(slots) * parts_.lattice.stride);
   }

@@ -11,6 +11,7 @@
 #include "physics/kernels/second_order.h"
 #include "physics/path.h"
 #include "physics/stages/stages.h"
+#include "physics/topology.h"
 
 namespace weft::physics {
 namespace {
@@ -102,6 +103,8 @@ class Tethers final : public RowStage {
   }
 
   void run(int j, const Substep& s) override {
+    // The way over a torn sheet is another.
+    if (parts_.topology && parts_.topology->torn() > 0) return;
     for (Slot& slot : slots_) {
       if (slot.moves[j]) follow_pins(slot, j, s.time);
       TetherRow r{};

@@ -1,5 +1,8 @@
 // Stage "wind": air on the triangles of one cloth. Gusts are waves in space whose phases move with
 // the wind and turn in time, chosen by the seed: the same for any order of work.
+//
+// Air changes far more slowly than springs do: within a frame it pushes once for up to a millisecond
+// of substeps, with the impulse of all of them (multiple time steps: Tuckerman, Berne, Martyna 1992).
 #include <cmath>
 
 #include "physics/random.h"
@@ -9,6 +12,7 @@ namespace weft::physics {
 namespace {
 
 constexpr double kShortest = 0.4, kLongest = 2.5;  // m, of a gust
+constexpr double kPush = 1e-3;                     // s, from one push to the next at most
 constexpr double kSlowest = 0.3, kFastest = 2;     // turns a second, of a gust in still air
 constexpr std::uint64_t kStream = 1u << 20;        // apart from the cloths' streams
 
@@ -43,10 +47,16 @@ class WindStage final : public RowStage {
   void reserve_slots(int slots) override { force_ = Rows(2 * slots, parts_.lattice.stride); }
   std::size_t bytes() const override { return force_.bytes(); }
 
+  void start(const Substep& s) override {
+    for (int k = 0; k < 2; ++k) zero(force_.row(2 * s.slot + k), parts_.lattice.stride);
+  }
+
   void run(int j, const Substep& s) override {
+    const int steps = substeps_pushed(s);
+    if (steps == 0) return;
     Lattice& l = parts_.lattice;
     const auto force = [&](int row) { return force_.row(2 * s.slot + row % 2); };
-    if (j + 1 < l.rows) parts_.kernels.wind(wind_row(j, s, force(j), force(j + 1)));
+    if (j + 1 < l.rows) parts_.kernels.wind(wind_row(j, s, steps, force(j), force(j + 1)));
     AdvanceRow a{};
     a.columns = l.columns;
     a.x = l.x.row(j);
@@ -58,7 +68,17 @@ class WindStage final : public RowStage {
   }
 
  private:
-  WindRow wind_row(int j, const Substep& s, Row3 f, Row3 f_next) {
+  // For how many substeps this one pushes; 0: one before it has done so.
+  int substeps_pushed(const Substep& s) const {
+    const double frame = parts_.scene.time.frame;
+    const int all = int(std::lround(frame / s.dt));
+    const int together = std::clamp(int(kPush / s.dt), 1, all);
+    const double start = std::floor((s.time - 0.5 * s.dt) / frame) * frame;
+    const int number = int(std::lround((s.time - start) / s.dt)) - 1;  // in the frame
+    return number % together == 0 ? std::min(together, all - number) : 0;
+  }
+
+  WindRow wind_row(int j, const Substep& s, int steps, Row3 f, Row3 f_next) {
     Lattice& l = parts_.lattice;
     const Wind& wind = parts_.scene.wind;
     WindRow r{};
@@ -71,7 +91,8 @@ class WindStage final : public RowStage {
     r.w_next = l.w(j + 1);
     r.f = f;
     r.f_next = f_next;
-    r.dt = float(s.dt);
+    r.dt = float(steps * s.dt);
+    r.steps = float(steps);
     r.wx = float(wind.velocity[0]);
     r.wy = float(wind.velocity[1]);
     r.wz = float(wind.velocity[2]);

@@ -1,0 +1,108 @@
+// Self-collision by its parts, in nanoseconds per particle: a sheet folded into layers, where about
+// 200 others are near each particle, and a flat one, where nothing is near.
+#include <algorithm>
+#include <memory>
+
+#include "physics/plan.h"
+#include "physics/self_collision/self_collision.h"
+#include "throughput.h"
+
+namespace bench {
+namespace {
+
+using weft::physics::ClothStep;
+using weft::physics::SelfContact;
+
+constexpr double kMargin = 0.45;    // of the thickness, as the simulation searches
+constexpr double kThickness = 1.34; // spacings: 27 cells of layers a spacing apart hold 200 particles
+constexpr int kRowsOfLayer = 20;
+
+// A sheet of n x n and its self-collision.
+struct Sheet {
+  Sheet(int n, bool folded, int thread_count) : threads(thread_count) {
+    scene.cloths.emplace_back();
+    weft::Cloth& cloth = scene.cloths[0];
+    cloth.grid = {n, n, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 0};
+    cloth.self_collision.mode = weft::SelfCollisionMode::particles;
+    cloth.self_collision.thickness = kThickness / (n - 1);
+    const auto& kernels = weft::physics::kernel_table(widest());
+    cloths.push_back(std::make_unique<ClothStep>(scene, 0, weft::Method::spring, 1, kernels));
+    if (folded) fold(cloths[0]->lattice());
+    x.copy_from(cloths[0]->lattice());
+    self = SelfContact::make(scene, cloths, kernels);
+    self->search(margin(), threads);
+  }
+
+  // Layer upon layer, back and forth.
+  static void fold(weft::physics::Lattice& l) {
+    const float h = 1.0f / float(l.columns - 1);
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i) {
+        const int layer = j / kRowsOfLayer, along = j % kRowsOfLayer;
+        l.x.at(1, j, i) = float(layer) * h;
+        l.x.at(2, j, i) = float(layer % 2 ? kRowsOfLayer - 1 - along : along) * h;
+      }
+  }
+
+  double margin() const { return kMargin * scene.cloths[0].self_collision.thickness; }
+
+  struct Kept {
+    std::unique_ptr<weft::physics::Rows> x, v;
+    void copy_from(const weft::physics::Lattice& l) {
+      x = std::make_unique<weft::physics::Rows>(l.rows, l.stride);
+      v = std::make_unique<weft::physics::Rows>(l.rows, l.stride);
+      x->copy(l.x);
+      v->copy(l.v);
+    }
+  };
+  void put_back() {
+    cloths[0]->lattice().x.copy(*x.x);
+    cloths[0]->lattice().v.copy(*x.v);
+  }
+
+  weft::Scene scene;
+  std::vector<std::unique_ptr<ClothStep>> cloths;
+  std::unique_ptr<SelfContact> self;
+  weft::physics::Threads threads;
+  Kept x;
+};
+
+// The fastest of many times, each from the same state.
+template <class Part>
+void measure(benchmark::State& state, Sheet& sheet, Part&& part) {
+  double best = std::numeric_limits<double>::infinity();
+  for (auto _ : state) {
+    sheet.put_back();
+    const auto start = std::chrono::steady_clock::now();
+    part();
+    const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - start;
+    best = std::min(best, spent.count());
+  }
+  state.counters["ms"] = best * 1e-6;
+  state.counters["ns/particle"] = best / double(sheet.self->particles());
+}
+
+void add_part(const std::string& part, int n, int threads, bool folded,
+              std::function<void(Sheet&)> work) {
+  const std::string name = std::string("self_collision/") + (folded ? "folded" : "flat") + "/" + part + "/" +
+                           std::to_string(n) + "/threads:" + std::to_string(threads);
+  add_benchmark(name, [=](benchmark::State& state) {
+    Sheet sheet(n, folded, threads);
+    measure(state, sheet, [&] { work(sheet); });
+  });
+}
+
+}  // namespace
+
+void register_self_collision(bool quick) {
+  constexpr double dt = 1e-4;
+  for (int n : quick ? std::vector<int>{100} : std::vector<int>{100, 316, 1000})
+    for (int threads : {1, 2}) {
+      add_part("sort", n, threads, true, [](Sheet& s) { s.self->sort(s.margin(), s.threads); });
+      add_part("search", n, threads, true, [](Sheet& s) { s.self->find(s.margin(), s.threads); });
+      add_part("response", n, threads, true, [](Sheet& s) { s.self->respond(dt, 1, s.threads); });
+      add_part("look", n, threads, false, [](Sheet& s) { s.self->run(dt, 1, s.threads); });
+    }
+}
+
+}  // namespace bench

@@ -1,0 +1,80 @@
+// A run as it can be told again: the scene, every input of a person between two frames, and the hash
+// of each frame. A replay gives the same bits, or names the first frame that differs.
+//
+// The file has one JSON object a line: first {"weft_recording": 1, "seed": …, "scene": {…}}, then
+// inputs {"frame": f, "grab": {…}} in order, given before frame f + 1 is computed, and hashes
+// {"frame": f, "hash": "16 hex digits"} of the state after frame f.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "weft/output.h"
+#include "weft/simulation.h"
+
+namespace weft {
+
+// What a person does to a simulation: a call of the method of that name.
+struct Input {
+  enum class Kind { grab, release, pin, unpin, carry, cut, move_collider, set_scene };
+  Kind kind = Kind::release;
+  int cloth = 0, i = 0, j = 0;       // grab, pin, unpin; carry: cloth
+  int collider = 0;                  // move_collider
+  Vec3 a{}, b{};                     // grab, move_collider: a the target; carry: a the velocity; cut
+  double amount = 0;                 // grab: stiffness [N/m]; cut: width [m]
+  std::shared_ptr<const Scene> scene = nullptr;  // set_scene
+};
+
+// Makes the call; throws what it throws.
+void apply(const Input& input, Simulation& simulation);
+
+// Writes a recording as it happens. Throws WriteError.
+class Recorder {
+ public:
+  // The simulation stands at its start.
+  Recorder(const std::string& path, const Simulation& simulation);
+  // An input that was applied when the simulation stood at a frame.
+  void input(std::int64_t frame, const Input& input);
+  // Right after advance_frame().
+  void frame(const Simulation& simulation);
+  // Gives the file its name.
+  void finish();
+  const std::string& path() const { return file_.path(); }
+
+ private:
+  OutputFile file_;
+};
+
+// A recording cannot be read: what() says where and why.
+struct RecordingError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Recording {
+  struct Event {
+    std::int64_t frame = 0;
+    std::optional<Input> input;  // else a hash
+    std::uint64_t hash = 0;
+  };
+  Scene scene;
+  std::uint64_t seed = 1;
+  std::vector<Event> events;  // in order
+  std::int64_t frames() const;  // how many have a hash
+};
+
+// Throws RecordingError.
+Recording read_recording(const std::string& path);
+
+// Where two scenes differ first, as a JSON pointer; "" when they are equal.
+std::string difference(const Scene& a, const Scene& b);
+
+// The next input that comes before the next frame, null when there is none; `next` counts the events
+// done so far. Throws RecordingError when it belongs to another frame.
+const Input* next_input(const Recording& recording, std::size_t& next,
+                        const Simulation& simulation);
+// Compares with the hash of the frame just computed; throws RecordingError where it differs.
+void compare_hash(const Recording& recording, std::size_t& next, const Simulation& simulation);
+
+}  // namespace weft

@@ -1,0 +1,236 @@
+// glTF 2.0, as one file (.glb) or as JSON with its buffer beside it (.gltf and .bin): the first sample
+// is each cloth's mesh, every later one a morph target (its displacement from the first), and one
+// animation blends from each to the next at the times of the samples. Morph targets move vertices and
+// keep triangles, so that cloth that tears cannot be written, and each target is held whole by whoever
+// reads it, so that an animation may be too large.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "output/animation.h"
+#include "output/bytes.h"
+#include "output/spool.h"
+
+namespace weft {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t kMostBytes = std::int64_t{1} << 30;  // of positions
+constexpr std::int64_t kMostSamples = 4000;                 // their weights grow by the square
+constexpr int kFloat = 5126, kUnsignedInt = 5125;           // glTF's component types
+constexpr int kVertices = 34962, kIndices = 34963;          // and targets of buffer views
+
+struct Bounds {
+  std::array<float, 3> low, high;
+};
+
+class Gltf final : public Animation {
+ public:
+  Gltf(const std::string& path, const View& first, std::int64_t samples)
+      : file_(path), spool_(path) {
+    const std::filesystem::path target(path);
+    if (target.extension() != ".glb")
+      buffer_.emplace((target.parent_path() / (target.stem().string() + ".bin")).string());
+    refuse_size(std::max<std::int64_t>(samples, 1), particle_count(first));
+    for (const ClothView& cloth : first.cloths) {
+      shapes_.push_back({cloth.columns, cloth.rows});
+      append_indices(cloth);
+    }
+  }
+
+  void append(const View& view) override {
+    if (view.cloths.size() != shapes_.size())
+      throw std::invalid_argument("an animation keeps its cloths");
+    refuse_size(std::int64_t(times_.size()) + 1, particle_count(view));
+    const bool base = times_.empty();
+    times_.push_back(static_cast<float>(view.time));
+    std::size_t at = 0;  // in base_
+    for (std::size_t c = 0; c < view.cloths.size(); ++c) {
+      const ClothView& cloth = view.cloths[c];
+      if (cloth.columns != shapes_[c].columns || cloth.rows != shapes_[c].rows)
+        throw std::invalid_argument("an animation keeps its number of particles");
+      if (cloth.topology_version > 0)
+        throw WriteError(file_.path(),
+                         "the cloth tears, which morph targets cannot follow; .obj can");
+      append_positions(cloth, base, at);
+    }
+  }
+
+  void finish() override {
+    std::string tail;
+    for (const float time : times_) append_little_endian(tail, time);
+    // Each sample's weights: all 0 but its own target's; the first sample is the mesh itself.
+    for (std::size_t s = 0; s < times_.size(); ++s)
+      for (std::size_t target = 1; target < times_.size(); ++target)
+        append_little_endian(tail, s == target ? 1.0F : 0.0F);
+    const std::int64_t size = std::int64_t(indices_.size()) + spool_.bytes() + std::int64_t(tail.size());
+    const std::string text = document(size);
+    if (buffer_) {
+      file_.write(text + "\n");
+      write_buffer(*buffer_, tail);
+      buffer_->commit();
+    } else {
+      write_glb(text, size, tail);
+    }
+    file_.commit();
+  }
+
+  std::string written() const override {
+    return buffer_ ? file_.path() + ", " + buffer_->path() : file_.path();
+  }
+
+ private:
+  struct Shape {
+    int columns, rows;
+    std::int64_t vertices() const { return std::int64_t{columns} * rows; }
+    std::int64_t corners() const { return 6 * std::int64_t{columns - 1} * (rows - 1); }
+  };
+
+  void refuse_size(std::int64_t samples, std::int64_t particles) const {
+    if (samples > kMostSamples || samples * particles * 12 > kMostBytes)
+      throw WriteError(file_.path(), std::to_string(samples) + " samples of " +
+                                         std::to_string(particles) +
+                                         " particles do not fit morph targets; .pc2 and .mdd can");
+  }
+
+  void append_indices(const ClothView& cloth) {
+    const auto columns = static_cast<std::uint32_t>(cloth.columns);
+    for (int j = 0; j + 1 < cloth.rows; ++j)
+      for (int i = 0; i + 1 < cloth.columns; ++i) {
+        const std::uint32_t a = static_cast<std::uint32_t>(j) * columns + static_cast<std::uint32_t>(i);
+        for (const std::uint32_t corner :
+             {a, a + 1, a + columns, a + 1, a + columns + 1, a + columns})
+          append_little_endian(indices_, corner);
+      }
+  }
+
+  void append_positions(const ClothView& cloth, bool base, std::size_t& at) {
+    constexpr float far = std::numeric_limits<float>::max();
+    Bounds bounds{{far, far, far}, {-far, -far, -far}};
+    some_.clear();
+    for_each_particle(cloth, [&](float x, float y, float z) {
+      if (base) base_.push_back({x, y, z});
+      const std::array<float, 3> from = base ? std::array<float, 3>{} : base_[at++];
+      const std::array<float, 3> now{x - from[0], y - from[1], z - from[2]};
+      for (std::size_t k = 0; k < 3; ++k) {
+        bounds.low[k] = std::min(bounds.low[k], now[k]);
+        bounds.high[k] = std::max(bounds.high[k], now[k]);
+        append_little_endian(some_, now[k]);
+      }
+    });
+    spool_.write(some_);
+    bounds_.push_back(bounds);
+  }
+
+  std::string document(std::int64_t size) const {
+    Json json;
+    json["asset"] = {{"version", "2.0"}, {"generator", "weft"}};
+    json["scene"] = 0;
+    json["materials"] = Json::array({{{"doubleSided", true}}});
+    Json views = Json::array(), accessors = Json::array(), meshes = Json::array();
+    Json nodes = Json::array(), roots = Json::array(), channels = Json::array();
+    std::int64_t offset = 0;
+    const auto place = [&](std::int64_t bytes, int target) {
+      Json view{{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}};
+      if (target != 0) view["target"] = target;
+      views.push_back(view);
+      offset += bytes;
+      return std::int64_t(views.size()) - 1;
+    };
+    const auto accessor = [&](std::int64_t view, int type, std::int64_t count, const char* shape) {
+      accessors.push_back(
+          {{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
+      return std::int64_t(accessors.size()) - 1;
+    };
+    for (const Shape& s : shapes_)  // accessor c: triangles of cloth c
+      accessor(place(s.corners() * 4, kIndices), kUnsignedInt, s.corners(), "SCALAR");
+    const std::size_t samples = times_.size();
+    for (std::size_t n = 0; n < samples * shapes_.size(); ++n) {  // then sample after sample
+      const std::int64_t vertices = shapes_[n % shapes_.size()].vertices();
+      const std::int64_t a = accessor(place(vertices * 12, kVertices), kFloat, vertices, "VEC3");
+      accessors[std::size_t(a)]["min"] = bounds_[n].low;
+      accessors[std::size_t(a)]["max"] = bounds_[n].high;
+    }
+    for (std::size_t c = 0; c < shapes_.size(); ++c) {
+      const auto position = [&](std::size_t sample) { return shapes_.size() * (1 + sample) + c; };
+      Json primitive{{"attributes", {{"POSITION", position(0)}}}, {"indices", c}, {"material", 0}};
+      for (std::size_t s = 1; s < samples; ++s)
+        primitive["targets"].push_back({{"POSITION", position(s)}});
+      const std::string name = "cloth_" + std::to_string(c);
+      meshes.push_back({{"name", name}, {"primitives", Json::array({primitive})}});
+      nodes.push_back({{"name", name}, {"mesh", c}});
+      roots.push_back(c);
+      channels.push_back({{"sampler", 0}, {"target", {{"node", c}, {"path", "weights"}}}});
+    }
+    if (samples > 1) {
+      const auto count = std::int64_t(samples);
+      const std::int64_t times = accessor(place(count * 4, 0), kFloat, count, "SCALAR");
+      accessors[std::size_t(times)]["min"] = {times_.front()};
+      accessors[std::size_t(times)]["max"] = {times_.back()};
+      const std::int64_t weights =
+          accessor(place(count * (count - 1) * 4, 0), kFloat, count * (count - 1), "SCALAR");
+      json["animations"] = Json::array(
+          {{{"samplers", Json::array({{{"input", times}, {"output", weights}}})},
+            {"channels", channels}}});
+    }
+    json["scenes"] = Json::array({{{"nodes", roots}}});
+    json["nodes"] = nodes;
+    json["meshes"] = meshes;
+    json["accessors"] = accessors;
+    json["bufferViews"] = views;
+    Json buffer{{"byteLength", size}};
+    if (buffer_) buffer["uri"] = std::filesystem::path(buffer_->path()).filename().string();
+    json["buffers"] = Json::array({buffer});
+    return json.dump();
+  }
+
+  void write_buffer(OutputFile& file, const std::string& tail) {
+    file.write(indices_);
+    spool_.copy_to(file);
+    file.write(tail);
+  }
+
+  // 12 bytes of header, then the JSON and the buffer, each with its length and name before it and
+  // padded to 4 bytes.
+  void write_glb(std::string text, std::int64_t size, const std::string& tail) {
+    text.append((4 - text.size() % 4) % 4, ' ');
+    std::string header;
+    const auto number = [&](std::int64_t value) {
+      append_little_endian(header, static_cast<std::uint32_t>(value));
+    };
+    number(0x46546C67);  // "glTF"
+    number(2);
+    number(12 + 8 + std::int64_t(text.size()) + 8 + size);
+    number(std::int64_t(text.size()));
+    number(0x4E4F534A);  // "JSON"
+    header += text;
+    number(size);
+    number(0x004E4942);  // "BIN"
+    file_.write(header);
+    write_buffer(file_, tail);
+  }
+
+  OutputFile file_;
+  std::optional<OutputFile> buffer_;
+  Spool spool_;  // positions and displacements
+  std::vector<Shape> shapes_;
+  std::string indices_, some_;
+  std::vector<float> times_;
+  std::vector<std::array<float, 3>> base_;
+  std::vector<Bounds> bounds_;  // of every sample's cloths
+};
+
+}  // namespace
+
+std::unique_ptr<Animation> open_gltf(const std::string& path, const View& first,
+                                     std::int64_t samples) {
+  return std::make_unique<Gltf>(path, first, samples);
+}
+
+}  // namespace weft

@@ -1,0 +1,49 @@
+// The last line against explosions: what a simulation's motion may come to, by the energy that was
+// put into it.
+//
+//   ½ Σ m v² <= kBound (elastic energy and motion of the start + what gravity has released)
+//
+// A projected constraint counts as a spring of at most the inertia of its ends over dt², all that a
+// sweep makes of it. Where something else does work (pins and colliders on paths, wind, a hand,
+// contact of the sheet with itself), a frame may also multiply the motion by kBound. A run that
+// keeps its energy stays near a quarter of the bound.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "physics/plan.h"
+
+namespace weft::physics {
+
+class EnergyGuard {
+ public:
+  static constexpr double kBound = 4;
+
+  // Counts what the state holds that a run begins with, or goes on from after it was set.
+  void open(const Scene& scene, Method method,
+            const std::vector<std::unique_ptr<ClothStep>>& cloths, double time, double dt);
+  // Looks at the end of a frame; `driven`: something but gravity did work in it.
+  void look(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths, bool driven);
+  // Whether the motion last looked at is within the bound.
+  bool holds() const { return kinetic_ <= bound(); }
+  // Takes the frame last looked at for good.
+  void accept();
+  // What velocities must be multiplied with to be within the bound.
+  double reduction() const;
+
+ private:
+  double bound() const;
+
+  double mass_ = 0;          // kg, of all that is free
+  double put_in_ = 0;        // J; of the start
+  double driven_floor_ = 0;  // J; motion that is nothing special where something does work
+  double highest_ = 0;       // J; potential of gravity
+  double released_ = 0;      // J; by gravity so far
+  double before_ = 0;        // J; motion of the frame last accepted
+  // J; of the frame last looked at: motion (or more than it), potential, what gravity has released.
+  double kinetic_ = 0, potential_ = 0, fall_ = 0;
+  bool driven_ = false;
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,105 @@
+// Jacobi: the corrections of all constraints from the same positions, added up and relaxed.
+//
+//   x_i <- x_i + w_i Σ ± Δλ e/|e|,  Δλ = (|e| - l + α̃ λ)/((w_a + w_b)/ω + α̃),  λ <- λ - Δλ
+//
+// with ω the relaxation (stages/sweeps.cpp), e = x_b - x_a, α̃ = 1/(k dt²).
+#include "physics/kernels/plain_rows.h"
+#include "physics/kernels/projection.h"
+
+namespace weft::WEFT_KERNELS {
+namespace {
+
+struct JacobiLaw {
+  using Rows = physics::JacobiRows;
+  template <PlainFamily F>
+  WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
+    constexpr bool kNextNear = F == kAntidiagonal, kNextFar = F == kRight || F == kDiagonal;
+    const std::ptrdiff_t far = F == kRight || F == kRight2 ? b.here : F == kDown2 ? b.below2 : b.below;
+    const Wide wa = load(r.w + b.here + (kNextNear ? 1 : 0));
+    const Wide wb = load(r.w + far + (kNextFar ? 1 : F == kRight2 ? 2 : 0));
+    const Wide inertia = (wa + wb) * r.weight + r.constraints[b.constants + F].compliance;
+    // Two pinned ends of a rigid constraint have nothing to move.
+    return select(inertia > 0.0f, (length - r.rest[F]) / (inertia * length), Wide{});
+  }
+  template <PlainFamily F>
+  WEFT_INLINE static Wide3 pull(const Rows&, const Block&, Wide3 edge, Wide quotient) {
+    return edge * quotient;
+  }
+  WEFT_INLINE static void finish(const Rows& r, Wide3 sum, std::ptrdiff_t lane) {
+    const Wide3 change = sum * load(r.w + lane);
+    store3(r.x, lane, load3(r.x, lane) + change);
+    if (r.inverse_dt > 0) store3(r.v, lane, load3(r.v, lane) + change * wide(r.inverse_dt));
+  }
+};
+
+// Between particles of one inverse mass w: Δλ/|e| = κ - κ l/|e|, κ = 1/(2w/ω + α̃).
+struct AlikeLaw : JacobiLaw {
+  template <PlainFamily F>
+  WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
+    return r.constraints[b.constants + F].kl / length;
+  }
+  template <PlainFamily F>
+  WEFT_INLINE static Wide3 pull(const Rows& r, const Block& b, Wide3 edge, Wide quotient) {
+    return edge * (r.constraints[b.constants + F].k - quotient);
+  }
+};
+
+// The corrections of a block of constraints by unit inverse mass.
+template <bool Multipliers>
+WEFT_INLINE Wide3 correction(const ProjectRows& p, const ProjectedRow& near,
+                             const ProjectedRow& far, int j, int a) {
+  const Wide compliance = wide(p.compliance ? p.compliance[j] : 0);
+  const Wide3 e = load3(far.x, a) - load3(near.x, a);
+  const Wide length = sqrt(max(dot(e, e), wide(kCoincident)));
+  const Wide inertia = (load(near.w + a) + load(far.w + a)) * p.weight + compliance;
+  Wide violation = length - p.rest;
+  float* const at = p.lambda + std::ptrdiff_t(j) * p.stride + a;
+  Wide lambda{};
+  if constexpr (Multipliers) {
+    lambda = load(at);
+    violation = violation + compliance * lambda;
+  }
+  WideInt active = lanes_below(p.count - a) & (inertia > 0.0f);
+  if (p.alive) active = active & alive_lanes(p, j, a);
+  const Wide scale = select(active, violation / (inertia * length), Wide{});
+  if constexpr (Multipliers) store(at, lambda - scale * length);
+  return e * scale;
+}
+
+template <bool Multipliers, class DelayType>
+WEFT_INLINE void sum_along(const ProjectRows& p, int j, Row3 sum, DelayType delay) {
+  const ProjectedRow near = projected_row(p, j, 0), far = projected_row(p, j, p.far);
+  for (int a = 0; a < padded(p.count + p.far); a += kLanes) {
+    const Wide3 c = correction<Multipliers>(p, near, far, j, a);
+    store3(sum, a, load3(sum, a) + (c - delay.next(c)));
+  }
+}
+
+template <bool Multipliers>
+void sum_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
+  if (p.dj == 0) {
+    if (p.far == 1) return sum_along<Multipliers>(p, j, sum, Delay3<1>{});
+    if (p.far == 2) return sum_along<Multipliers>(p, j, sum, Delay3<2>{});
+    return sum_along<Multipliers>(p, j, sum, LongDelay3(p.far));
+  }
+  const ProjectedRow near = projected_row(p, j, p.near), far = projected_row(p, j + p.dj, p.far);
+  for (int a = 0; a < padded(p.count); a += kLanes) {
+    const Wide3 c = correction<Multipliers>(p, near, far, j, a);
+    store3(sum, a + p.near, load3(sum, a + p.near) + c);
+    store3(sum_far, a + p.far, load3(sum_far, a + p.far) - c);
+  }
+}
+
+}  // namespace
+
+void jacobi_rows(const physics::JacobiRows& r) {
+  if (r.alike) return plain_rows<AlikeLaw>(r);
+  plain_rows<JacobiLaw>(r);
+}
+
+void jacobi_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
+  if (p.lambda) return sum_family<true>(p, j, sum, sum_far);
+  sum_family<false>(p, j, sum, sum_far);
+}
+
+}  // namespace weft::WEFT_KERNELS

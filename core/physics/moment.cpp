@@ -1,0 +1,138 @@
+// What changes while a simulation runs, taken out and put back (Moment).
+#include <algorithm>
+#include <cmath>
+
+#include "physics/energy.h"
+#include "physics/measure.h"
+#include "physics/state.h"
+
+namespace weft {
+
+using namespace physics;
+
+std::size_t Moment::bytes() const {
+  std::size_t bytes = sizeof *this;
+  for (const ClothMoment& c : cloths)
+    bytes += sizeof c + (c.positions.size() + c.velocities.size()) * sizeof(float) +
+             c.held.size() * sizeof c.held[0] + c.torn.size() * sizeof(Torn);
+  for (const std::vector<Key>& keys : paths) bytes += keys.size() * sizeof(Key);
+  return bytes;
+}
+
+Moment Simulation::State::moment() const {
+  Moment m;
+  m.time = double(frame) * scene.time.frame;
+  for (std::size_t n = 0; n < cloths.size(); ++n) {
+    const Lattice& l = cloths[n]->lattice();
+    Moment::ClothMoment c{l.columns, l.rows, {}, {}, {}, {}};
+    c.positions.reserve(3 * std::size_t(l.columns) * l.rows);
+    c.velocities.reserve(c.positions.capacity());
+    for (const Vec3& v : velocities_now(*this, n))
+      for (const double component : v) c.velocities.push_back(float(component));
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i) {
+        for (int k = 0; k < 3; ++k) c.positions.push_back(l.x.at(k, j, i));
+        if (masses(n)[std::size_t(j) * l.stride + i] == 0) c.held.push_back({i, j});
+      }
+    if (const Topology* topology = cloths[n]->topology())
+      for (const Topology::Torn& t : topology->torn_list()) c.torn.push_back({t.di, t.dj, t.j, t.a});
+    m.cloths.push_back(std::move(c));
+  }
+  for (const Collider& c : scene.colliders) m.paths.push_back(c.keys);
+  return m;
+}
+
+void Simulation::State::restore(const Moment& m) {
+  bool fits = m.cloths.size() == cloths.size() && m.paths.size() == scene.colliders.size();
+  for (std::size_t n = 0; fits && n < cloths.size(); ++n) {
+    const Lattice& l = cloths[n]->lattice();
+    const std::size_t values = 3 * std::size_t(l.columns) * l.rows;
+    fits = m.cloths[n].columns == l.columns && m.cloths[n].rows == l.rows &&
+           m.cloths[n].positions.size() == values && m.cloths[n].velocities.size() == values;
+  }
+  if (!fits || !(m.time >= 0)) throw std::invalid_argument("the moment is of another scene");
+  std::vector<double> positions, velocities;
+  for (std::size_t n = 0; n < cloths.size(); ++n) {
+    const Moment::ClothMoment& c = m.cloths[n];
+    ClothStep& step = *cloths[n];
+    Lattice& l = step.lattice();
+    wake(int(n));
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i)
+        l.w(j)[i] = float(1 / particle_mass(step.cloth(), i, j));
+    for (const auto& [i, j] : c.held) l.w(j)[i] = 0;
+    for (int j = 0; j < l.rows; ++j) l.weigh_row(j);
+    if (rest) rest->keep_masses(int(n));
+    if (!c.torn.empty() && !step.topology()) {
+      let_go(int(n));
+      step.allow_tearing();
+    }
+    if (step.topology()) {
+      std::vector<Topology::Torn> torn;
+      for (const Moment::Torn& t : c.torn) torn.push_back({t.di, t.dj, t.j, t.a});
+      step.topology()->set_torn(torn);
+    }
+    if (is_explicit(method))
+      spectra[n] = estimate_spectrum(step.cloth(), step.families(), l,
+                                     method == Method::spring_friction);
+    positions.insert(positions.end(), c.positions.begin(), c.positions.end());
+    velocities.insert(velocities.end(), c.velocities.begin(), c.velocities.end());
+  }
+  for (std::size_t n = 0; n < m.paths.size(); ++n) {
+    scene.colliders[n].keys = m.paths[n];
+    for (auto& step : cloths)
+      for (const auto& stage : step->stages()) stage->follow(scene.colliders[n]);
+  }
+  frame = std::llround(m.time / scene.time.frame);
+  finer_ = 1;
+  status = Status{};
+  plan_changed();
+  set(positions, velocities);
+}
+
+namespace {
+
+// Pins of the new scene that the old one had not are held, pins it has no more are let go; what a
+// hand held or let go stays so.
+void change_pins(const Cloth& before, const Cloth& after, Moment::ClothMoment& cloth) {
+  const auto pinned = [](const Cloth& c, std::array<int, 2> at) {
+    return std::any_of(c.pins.begin(), c.pins.end(),
+                       [&](const Pin& p) { return p.i == at[0] && p.j == at[1]; });
+  };
+  std::erase_if(cloth.held, [&](const std::array<int, 2>& at) {
+    return pinned(before, at) && !pinned(after, at);
+  });
+  for (const Pin& p : after.pins) {
+    const std::array<int, 2> at{p.i, p.j};
+    if (!pinned(before, at) &&
+        std::find(cloth.held.begin(), cloth.held.end(), at) == cloth.held.end())
+      cloth.held.push_back(at);
+  }
+}
+
+}  // namespace
+
+void Simulation::set_scene(Scene scene) {
+  Simulation next(std::move(scene), state_->options);
+  const Scene &before = state_->scene, &after = next.scene();
+  bool same = before.cloths.size() == after.cloths.size();
+  for (std::size_t n = 0; same && n < after.cloths.size(); ++n)
+    same = before.cloths[n].grid.nx == after.cloths[n].grid.nx &&
+           before.cloths[n].grid.ny == after.cloths[n].grid.ny;
+  if (same) {
+    Moment m = state_->moment();
+    for (std::size_t n = 0; n < after.cloths.size(); ++n)
+      if (before.cloths[n].pins != after.cloths[n].pins)
+        change_pins(before.cloths[n], after.cloths[n], m.cloths[n]);
+    m.paths.clear();
+    for (const Collider& c : after.colliders) m.paths.push_back(c.keys);
+    next.restore(m);
+    next.state_->changes += state_->changes;
+  }
+  *this = std::move(next);
+}
+
+Moment Simulation::moment() const { return state_->moment(); }
+void Simulation::restore(const Moment& moment) { state_->restore(moment); }
+
+}  // namespace weft

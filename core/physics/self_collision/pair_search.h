@@ -1,0 +1,77 @@
+// Who is within a range of whom: points sorted into cells (cell_grid.h) and searched in shares of the
+// sorted order, so that the result is the same for any threads. Points have a place on a sheet; those
+// that are neighbours there are no pairs.
+#pragma once
+
+#include <vector>
+
+#include "physics/self_collision/cell_grid.h"
+
+namespace weft::physics {
+
+// One particle: which of the sheets, row and column.
+struct Site {
+  std::uint16_t cloth, row, column;
+};
+
+// A flat sheet: two at (i, j) and (i + a, j + b) are neighbours there, and no pair, when
+// a² uu + 2 a b uv + b² vv < range².
+struct RestMetric {
+  int columns, rows;
+  float uu, uv, vv, range_squared;  // m²
+};
+
+class PairSearch {
+ public:
+  static constexpr std::size_t kChunks = 64;
+
+  // `metrics`: of every sheet.
+  PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics, const KernelTable& kernels);
+
+  // Where to put the points, and what they are.
+  Row3 points() { return {x_.data(), y_.data(), z_.data()}; }
+  std::vector<Site>& sites() { return sites_; }
+
+  // Sorts the first `count` points, all in the box, for searches within `range` [m].
+  void sort(std::size_t count, const Spread& box, float range, Threads& threads);
+  // Finds the pairs within a range [m]; those nearer than `soon` [m] come first.
+  void find(float range, float soon, Threads& threads);
+
+  // Sorted points are cut into kChunks: chunk k has those from begin(k) to begin(k + 1), and its hits
+  // are those of one point after another.
+  std::size_t count() const { return count_; }
+  std::size_t begin(std::size_t k) const { return k * count_ / kChunks; }
+  const std::vector<std::int32_t>& hits(std::size_t k) const { return chunks_[k].hits; }
+  std::size_t found(std::size_t k) const { return chunks_[k].found; }
+  const std::int32_t* counts() const { return counts_.data(); }  // of every sorted point
+  std::int32_t number(std::size_t sorted) const { return grid_.numbers()[sorted]; }
+  // Whether one thread is faster.
+  bool few() const { return count_ < 4096; }
+  std::size_t bytes() const;
+
+ private:
+  struct Chunk {  // what one share of the sorted points finds, and its room
+    std::vector<std::int32_t> hits, number, farther;
+    std::vector<float> room;  // five arrays as long as `number`
+    std::size_t found = 0;
+  };
+  void find_chunk(std::size_t k, float range, float soon);
+
+  // Where a particle lies on its flat sheet: u = column + shear row, w = height row, in spacings of
+  // its columns; and below which distance squared two of them are no pair.
+  struct FlatSheet {
+    float begin, shear, height, apart_squared;
+  };
+
+  const KernelTable& kernels_;
+  std::size_t count_ = 0;
+  std::vector<FlatSheet> flat_;
+  std::vector<Site> sites_;
+  AlignedArray<float> x_, y_, z_;
+  CellGrid grid_;
+  AlignedArray<float> u_, w_, apart_squared_;  // as sorted
+  std::vector<std::int32_t> counts_;
+  std::vector<Chunk> chunks_;
+};
+
+}  // namespace weft::physics

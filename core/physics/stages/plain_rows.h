@@ -1,0 +1,52 @@
+// What the stages share that take the six families of a plain cloth in one pass over the rows
+// (kernels/plain_rows.h): the rows and the sums carried from row to row.
+#pragma once
+
+#include "physics/stages/stages.h"
+
+namespace weft::physics {
+
+// families_of lists the six of a plain cloth in one order, which these stages take for granted.
+inline bool is_plain(const ClothParts& parts) {
+  return parts.cloth.level == 0 && parts.families.size() == kPlainFamilies && !parts.families[0].links;
+}
+
+class PlainRowsStage : public RowStage {
+ public:
+  PlainRowsStage(const std::string& stage_name, const std::string& stage_detail,
+                 const ClothParts& parts)
+      : RowStage(stage_name, stage_detail, 2, parts.constraints(), "constraints"), parts_(parts) {}
+
+  void reserve_slots(int slots) override {
+    carry_ = Rows(kCarries * slots, parts_.lattice.stride);
+  }
+  std::size_t bytes() const override { return carry_.bytes(); }
+  void start(const Substep& s) override {
+    for (int k = 0; k < kCarries; ++k) zero(carry_.row(kCarries * s.slot + k), parts_.lattice.stride);
+  }
+
+ protected:
+  static constexpr int kCarries = 3;
+
+  // Everything but the law's own. The first row of a substep finds nothing carried.
+  void fill(PlainRows& r, int begin, int end, const Substep& s) {
+    Lattice& l = parts_.lattice;
+    r.begin = begin;
+    r.end = end;
+    r.rows = l.rows;
+    r.columns = l.columns;
+    r.stride = l.stride;
+    r.x = l.x.row(0);
+    r.v = l.v.row(0);
+    r.w = l.w(0);
+    if (begin == 0) start(s);
+    for (int k = 0; k < kCarries; ++k) r.carry[k] = carry_.row(kCarries * s.slot + k);
+  }
+
+  ClothParts parts_;
+
+ private:
+  Rows carry_;
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,204 @@
+// How many substeps a frame takes: from the stability limit, following the sheet's stretch, and more
+// where a frame left the limit or gained energy from nowhere.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "physics/stability.h"
+#include "physics/state.h"
+
+namespace weft {
+
+using namespace physics;
+
+namespace {
+
+constexpr double kLimitShare = 0.9;      // of the stability limit that an automatic substep takes
+constexpr int kMostSubsteps = 100000;    // per frame, flat; stretch may ask for 1.4 times as many
+constexpr double kLeastSubstep = 1e-6;   // s; below, single precision loses speeds of cm/s
+constexpr int kFinest = 16;              // times the substeps that the limit asks for, to save a frame
+constexpr double kGrabbed = 0.6;         // of stretched_limit's t, room for what a hand may do in a frame
+
+// Without shear springs (or with nothing else) a sheet folds onto a line that stretches nothing, where
+// all its springs pull the same way: up to twice the flat sheet's ω², and no stretch adds to that.
+constexpr double kFolded = 2;
+bool folds_freely(const ClothStep& step) {
+  const auto has = [&](Kind kind) {
+    return std::any_of(step.families().begin(), step.families().end(),
+                       [&](const Family& f) { return f.kind == kind; });
+  };
+  return !has(Kind::structural) || !has(Kind::shear);
+}
+
+}  // namespace
+
+// Explicit springs: the substep from the stability limit, or the user's if it is inside; beyond it,
+// the compliant method in their place, which is stable at any substep.
+void Simulation::State::choose_method_and_substeps() {
+  std::vector<std::string> notes;
+  note_starts(notes);
+  if (rest)
+    notes.push_back("what stays slower than " + number(scene.solver.sleep) +
+                    " m/s for half a second sleeps");
+  else if (scene.solver.sleep > 0)
+    notes.push_back("nothing sleeps: gusts move the cloth");
+  int count = scene.time.substeps;
+  double limit = 0;
+  if (is_explicit(method)) {
+    limit = std::numeric_limits<double>::infinity();
+    double safe = limit;  // for automatic substeps
+    for (const auto& c : cloths) {
+      spectra.push_back(estimate_spectrum(c->cloth(), c->families(), c->lattice(),
+                                          method == Method::spring_friction));
+      limit = std::min(limit, spectra.back().largest_substep());
+      Spectrum folded = spectra.back();
+      if (folds_freely(*c)) folded.omega_squared *= kFolded;
+      safe = std::min(safe, folded.largest_substep());
+    }
+    const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
+    const bool resolved = needed <= kMostSubsteps && kLimitShare * safe >= kLeastSubstep;
+    if (count == kAutoSubsteps && resolved) {
+      count = std::max(1, int(needed));
+      notes.push_back("substeps from the stability limit of " + number(limit) + " s");
+    } else if (!resolved || scene.time.frame / count > limit) {
+      notes.push_back("springs need substeps below " + number(limit) + " s, " +
+                      number(needed) + " a frame at " + number(kLimitShare) +
+                      " of the limit; the compliant method runs in their place");
+      method = Method::compliant;
+      build_cloths();
+    }
+  }
+  if (count == kAutoSubsteps) count = std::max(1, int(std::lround(scene.time.frame * kProjectionRate)));
+  Scene as_run = scene;
+  as_run.solver.method = method;
+  plan = describe(as_run, cloths, count);
+  plan.dt_limit = std::isfinite(limit) ? limit : 0;
+  limit_ = limit;
+  plan.fallback = method != scene.solver.method;
+  plan.notes = std::move(notes);
+  substeps = count;
+  dt = scene.time.frame / count;
+  if (is_explicit(method)) shift_velocities(-dt / 2);
+  guard_.open(scene, method, cloths, 0, dt);
+}
+
+void Simulation::State::take_substeps(int count) {
+  substeps = count;
+  dt = scene.time.frame / substeps;
+  plan.substeps = substeps;
+  plan.dt = dt;
+  for (PlannedStage& s : plan.stages) s.calls_per_frame = substeps;
+}
+
+void Simulation::State::set_substeps(int count) {
+  const double before = dt;
+  take_substeps(count);
+  shift_velocities((before - dt) / 2);
+  if (scene.time.substeps != kAutoSubsteps && count != scene.time.substeps)
+    fall_back("springs need " + std::to_string(count) + " substeps a frame from frame " +
+              std::to_string(frame + 1) + " on, as far as the sheet is stretched");
+}
+
+// Whether springs left the frame stretched beyond what its substep allows, or with more energy than
+// there is: then everything is back at the frame's start, to be run again with more substeps.
+bool Simulation::State::too_coarse() {
+  if (!is_explicit(method) || (rest && rest->all_asleep())) return false;
+  const bool lost = !finite();
+  int count = 2 * substeps;
+  if (!lost) {
+    limit_ = stretched_limit();
+    guard_.look(scene, cloths, driven());
+    if (dt > limit_) count = substeps_within(limit_);
+    else if (guard_.holds()) return false;
+  }
+  if (lost || dt <= limit_) {
+    if (finer_ == kFinest || dt < 2 * kLeastSubstep) return false;
+    finer_ *= 2;
+    fall_back("frame " + std::to_string(frame + 1) +
+              " gained energy from nowhere; it and all after it run with more substeps");
+  }
+  restore();
+  set_substeps(count);
+  for (auto& step : cloths)
+    for (const auto& stage : step->stages()) stage->restart();
+  if (self_collision) self_collision->restart();
+  since_collision_ = 0;
+  until_collision_ = 1;
+  return true;
+}
+
+// Takes the energy off a frame that it cannot have.
+void Simulation::State::calm() {
+  if (rest && rest->all_asleep()) return;
+  if (!is_explicit(method)) guard_.look(scene, cloths, driven());
+  if (!guard_.holds()) {
+    for (auto& step : cloths) step->lattice().v.scale(float(guard_.reduction()));
+    fall_back("frame " + std::to_string(frame + 1) +
+              " gained energy from nowhere; velocities were reduced to what is left without it");
+  }
+  guard_.accept();
+}
+
+bool Simulation::State::driven() const {
+  const auto moves = [](const auto& thing) { return !thing.keys.empty(); };
+  return grab_ || self_collision || rest || scene.wind.drag > 0 || scene.wind.lift > 0 ||
+         std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
+         std::any_of(scene.cloths.begin(), scene.cloths.end(), [&](const Cloth& c) {
+           return std::any_of(c.pins.begin(), c.pins.end(), moves);
+         });
+}
+
+void Simulation::State::fall_back(const std::string& note) {
+  if (!plan.fallback) plan.notes.push_back(note);
+  plan.fallback = true;
+}
+
+// Stretched springs resist sideways too, which raises the largest frequency:
+// ω² <= ω²_flat + t (ω²_all - ω²_flat), t = max (1 - l/|e|). Every fourth row is looked at.
+double Simulation::State::stretched_limit() const {
+  double limit = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const ClothStep& step = *cloths[c];
+    const Lattice& l = step.lattice();
+    float most = 0;
+    for (const Family& f : step.families()) {
+      if (f.kind != Kind::structural) continue;
+      for (int j = 0; j + f.dj < l.rows; j += 4)
+        for (int n = 0; n < f.per_row(l.columns); ++n) {
+          if (!f.alive(j, n)) continue;
+          float squared = 0;
+          for (int k = 0; k < 3; ++k) {
+            const float e = l.x.at(k, j + f.dj, n + f.far()) - l.x.at(k, j, n + f.near());
+            squared += e * e;
+          }
+          most = std::max(most, squared / float(f.rest * f.rest));
+        }
+    }
+    double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
+    if (grab_) t = std::max(t, kGrabbed);
+    // Springs in all directions: never more than twice the flat sheet's ω² for the families here.
+    Spectrum stretched = spectra[c];
+    stretched.omega_squared *= folds_freely(step) ? kFolded : 1 + t;
+    limit = std::min(limit, stretched.largest_substep());
+  }
+  return limit;
+}
+
+// Substeps a frame that stay inside a limit: 0.9 of it where they are automatic, else as many as asked
+// for or, where those are too few, a multiple.
+int Simulation::State::substeps_within(double limit) const {
+  const int asked = scene.time.substeps;
+  const int needed = std::max(1, int(std::ceil(scene.time.frame / (kLimitShare * limit))));
+  if (asked == kAutoSubsteps) return finer_ * needed;
+  if (scene.time.frame / asked <= limit) return finer_ * asked;
+  return finer_ * asked * ((needed + asked - 1) / asked);
+}
+
+void Simulation::State::follow_stretch(double limit) {
+  const int count = substeps_within(limit);
+  // A few percent of slack either way keeps the substep from changing every frame.
+  if (count <= substeps && count >= substeps - substeps / 12) return;
+  set_substeps(count);
+}
+
+}  // namespace weft

@@ -1,0 +1,158 @@
+// Going back to a moment, going on with another scene, and hands that move colliders and pins.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "weft/shape.h"
+#include "weft/simulation.h"
+
+namespace weft {
+namespace {
+
+Scene curtain() {
+  Cloth cloth;
+  cloth.grid = {.nx = 12, .ny = 10, .origin = {}, .u = {1, 0, 0}, .v = {0, -1, 0}, .jitter = 1e-3};
+  cloth.pins = {{.i = 0, .j = 0, .keys = {}}, {.i = 11, .j = 0, .keys = {}}};
+  cloth.drag = 1;
+  Scene scene;
+  scene.cloths = {cloth};
+  scene.colliders = {{.shape = Sphere{{0.5, -0.6, 0.5}, 0.2}, .friction = {}, .offset = 0.01, .keys = {}}};
+  return scene;
+}
+
+void run(Simulation& simulation, int frames) {
+  for (int n = 0; n < frames; ++n) simulation.advance_frame();
+  ASSERT_TRUE(simulation.status().ok) << simulation.status().text;
+}
+
+long held(const Simulation& simulation) {
+  const View view = simulation.view();
+  const ClothView& cloth = view.cloths[0];
+  long count = 0;
+  for (int j = 0; j < cloth.rows; ++j)
+    for (int i = 0; i < cloth.columns; ++i)
+      count += cloth.inverse_mass[std::size_t(j * cloth.stride + i)] == 0;
+  return count;
+}
+
+TEST(Moment, BringsBackPositionsTimePinsAndTears) {
+  Simulation simulation(curtain());
+  run(simulation, 5);
+  simulation.pin(0, 5, 9);
+  simulation.cut({0.3, -0.5, -0.5}, {0.3, -0.5, 0.5}, 0.06);
+  run(simulation, 5);
+  const Moment moment = simulation.moment();
+  const auto hash = simulation.hash();
+  const auto torn = simulation.report().torn;
+  ASSERT_GT(torn, 0);
+  simulation.unpin(0, 5, 9);
+  simulation.cut({0.7, -0.5, -0.5}, {0.7, -0.5, 0.5}, 0.06);
+  run(simulation, 20);
+  ASSERT_NE(simulation.hash(), hash);
+  simulation.restore(moment);
+  EXPECT_EQ(simulation.hash(), hash);
+  EXPECT_EQ(simulation.frame(), 10);
+  EXPECT_EQ(simulation.report().torn, torn);
+  EXPECT_EQ(held(simulation), 3);
+}
+
+TEST(Moment, TheSameWayFollowsTwice) {
+  Simulation a(curtain()), b(curtain());
+  run(a, 8);
+  const Moment moment = a.moment();
+  a.restore(moment);
+  b.restore(moment);
+  run(a, 12);
+  run(b, 12);
+  EXPECT_EQ(a.hash(), b.hash());
+}
+
+TEST(Moment, OfAnotherGridIsRefused) {
+  Scene other = curtain();
+  other.cloths[0].grid.nx = 13;
+  other.cloths[0].pins.clear();
+  Simulation a(curtain()), b(other);
+  EXPECT_THROW(b.restore(a.moment()), std::invalid_argument);
+}
+
+TEST(SetScene, GoesOnWithOtherValues) {
+  Simulation simulation(curtain());
+  run(simulation, 10);
+  const std::vector<double> before = simulation.positions();
+  Scene stiff = curtain();
+  stiff.cloths[0].stiffness.structural = 20000;
+  stiff.cloths[0].pins.pop_back();
+  simulation.set_scene(stiff);
+  EXPECT_EQ(simulation.positions(), before);
+  EXPECT_EQ(simulation.frame(), 10);
+  EXPECT_EQ(simulation.scene().cloths[0].stiffness.structural, 20000);
+  EXPECT_EQ(held(simulation), 1);
+  run(simulation, 30);
+}
+
+TEST(SetScene, StartsAnewWithAnotherGridAndRefusesFaults) {
+  Simulation simulation(curtain());
+  run(simulation, 3);
+  Scene faulty = curtain();
+  faulty.cloths[0].density = -1;
+  const auto hash = simulation.hash();
+  EXPECT_THROW(simulation.set_scene(faulty), SceneError);
+  EXPECT_EQ(simulation.hash(), hash);
+  Scene finer = curtain();
+  finer.cloths[0].grid.ny = 20;
+  simulation.set_scene(finer);
+  EXPECT_EQ(simulation.frame(), 0);
+}
+
+TEST(Hand, ACollidersMovePushesTheCloth) {
+  for (const Method method : {Method::spring, Method::compliant}) {
+    Scene scene = curtain();
+    scene.solver.method = method;
+    Simulation simulation(scene);
+    run(simulation, 30);
+    for (int n = 1; n <= 60; ++n) {
+      simulation.move_collider(0, {0.5, -0.6, 0.5 - 0.01 * n});
+      run(simulation, 1);
+    }
+    const Collider& sphere = simulation.scene().colliders[0];
+    EXPECT_NEAR(displacement(sphere, simulation.time())[2], -0.6, 1e-9);
+    EXPECT_LT(simulation.report().penetration.collider_max, 1e-4);
+    const std::vector<double> x = simulation.positions();
+    double farthest = 0;
+    for (std::size_t k = 2; k < x.size(); k += 3) farthest = std::min(farthest, x[k]);
+    EXPECT_LT(farthest, -0.25);
+  }
+  Simulation simulation(curtain());
+  EXPECT_THROW(simulation.move_collider(1, {}), std::out_of_range);
+}
+
+TEST(Hand, WhatIsHeldIsCarriedAndRests) {
+  for (const Method method : {Method::spring, Method::positional, Method::compliant}) {
+    Scene scene = curtain();
+    scene.solver.method = method;
+    Simulation simulation(scene);
+    run(simulation, 2);
+    const std::vector<double> start = simulation.positions();
+    simulation.carry(0, {0, 0, 0.6});
+    run(simulation, 60);
+    simulation.carry(0, {});
+    run(simulation, 10);
+    const std::vector<double> x = simulation.positions();
+    EXPECT_NEAR(x[2] - start[2], 0.6, 1e-6);
+    EXPECT_NEAR(x[3 * 11 + 2] - start[3 * 11 + 2], 0.6, 1e-6);
+    EXPECT_EQ(held(simulation), 2);
+  }
+}
+
+TEST(Report, WithoutContactsTheRestIsTheSame) {
+  Simulation simulation(curtain());
+  run(simulation, 10);
+  const Report whole = simulation.report(), part = simulation.report(false);
+  EXPECT_EQ(part.energy.total, whole.energy.total);
+  EXPECT_EQ(part.strain.max, whole.strain.max);
+  EXPECT_EQ(part.hash, whole.hash);
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,317 @@
+// The window as a person uses it: real mouse and key events on a screen of the test's own, checked by
+// the state that the window tells and by pictures of the screen.
+#include <set>
+
+#include "screen.h"
+
+namespace weft {
+namespace {
+
+using Json = nlohmann::json;
+
+TEST_F(Window, PlaysPausesStepsAndResets) {
+  Screen screen(folder);
+  screen.open("pinned2");
+  screen.wait("some frames", [](const Json& now) { return now["frame"] > 5; });
+  screen.key("p");
+  const Json paused = screen.wait_for("paused", true);
+  screen.key("n");
+  screen.wait_for("frame", paused["frame"].get<int>() + 1);
+  screen.key("r");
+  screen.wait_for("frame", 0);
+  screen.key("space");
+  screen.wait("frames again", [](const Json& now) { return now["frame"] > 3; });
+  screen.key("h");
+  screen.wait_for("help", true);
+  screen.key("Escape");
+  screen.wait_for("help", false);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+TEST_F(Window, EveryLookShowsAtItsKey) {
+  Screen screen(folder);
+  screen.open("sphere --paused");
+  screen.step_to(3);
+  std::set<std::string> looks;
+  std::string before = screen.picture();
+  for (int k = 0; k < 14; ++k) {
+    const Json now = screen.now();
+    screen.key("l");
+    const std::string look = screen.wait("another look", [&](const Json& later) {
+      return later["look"] != now["look"];
+    })["look"];
+    looks.insert(look);
+    before = screen.wait_picture(look, [&](const std::string& picture) {
+      return difference(picture, before) > 0.05;
+    });
+  }
+  EXPECT_EQ(looks.size(), 14u);
+  EXPECT_TRUE(screen.now()["faults"].empty()) << screen.now()["faults"];
+  EXPECT_EQ(screen.quit(), 0);
+}
+
+TEST_F(Window, LooksHaveControlsOfTheirOwn) {
+  Screen screen(folder);
+  screen.open("sphere --paused");
+  screen.click("Look");
+  screen.click("look pbr");
+  screen.wait_for("look", "pbr");
+  screen.wait("its controls", [](const Json& now) { return now["controls"].contains("metallic"); });
+  // Each changes the picture; what is drawn at rest is in full quality, and so always the same.
+  const auto settled = [&](const std::string& than) {
+    screen.type("mousemove 100 790");  // off the control, so that no help covers the picture
+    screen.wait_picture("another picture", [&](const std::string& now) {
+      return difference(now, than) > 0.01;
+    });
+    screen.wait_for("coarse", false);
+    return screen.picture();
+  };
+  const std::string standard = settled("");
+  std::string before = standard;
+  for (const char* control : {"floor", "shadow", "roughness", "metallic"}) {
+    screen.click(control);
+    before = settled(before);
+  }
+  screen.click("Standard look");
+  before = settled(before);
+  EXPECT_LT(difference(before, standard), 0.01);
+
+  screen.click("look wireframe");
+  screen.wait("its controls", [](const Json& now) {
+    return now["controls"].contains("structural") && !now["controls"].contains("metallic");
+  });
+  before = settled(before);
+  screen.click("structural");
+  before = settled(before);
+  screen.click("Measures");
+  screen.wait("the other tab", [](const Json& now) { return !now["controls"].contains("floor"); });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+TEST_F(Window, HandsPullPinAndCutTheCloth) {
+  Screen screen(folder);
+  screen.open("pinned2 --record session");
+  screen.wait("the sheet to hang", [](const Json& now) { return now["frame"] > 150; });
+  const std::string before = screen.picture();
+  const Json start = screen.now();
+  screen.drag({{850, 420}, {900, 400}, {1000, 350}}, "frames with a hand",
+              [&](const Json& now) { return now["frame"] > start["frame"].get<int>() + 100; });
+  screen.key("2");
+  screen.wait_for("tool", "pin");
+  screen.click(900, 430);
+  screen.wait_for("held", 3);
+  screen.key("3");
+  screen.wait_for("tool", "cut");
+  screen.drag({{800, 300}, {830, 310}, {860, 320}, {890, 330}, {920, 340}, {950, 350}},
+              "a cut", [](const Json& now) { return now["torn"] == true; });
+  const Json cut = screen.now();
+  EXPECT_LT(cut["triangles"], 2 * 49 * 49);
+  EXPECT_GT(difference(screen.picture(), before), 0.5);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+  const std::string session = folder.read("session");
+  for (const char* input : {"\"grab\"", "\"release\"", "\"pin\"", "\"cut\""})
+    EXPECT_NE(session.find(input), std::string::npos) << input;
+  EXPECT_EQ(weft("run pinned2 --replay session"), 0) << folder.read("weft.out");
+}
+
+TEST_F(Window, WatchingChangesNoBit) {
+  Screen screen(folder);
+  screen.open("selfCollision --paused --threads 1");
+  screen.step_to(6);
+  const std::string hash = screen.now()["hash"];
+  EXPECT_EQ(screen.quit(), 0);
+  ASSERT_EQ(weft("run selfCollision --frames 6 --report report.json"), 0);
+  EXPECT_EQ(Json::parse(folder.read("report.json"))["hash"], hash);
+}
+
+TEST_F(Window, ChangesAreCheckedUndoneAndSaved) {
+  Screen screen(folder);
+  screen.open("pinned4 --paused");
+  const double start = screen.now()["stiffness"];
+  screen.click("denim");
+  const Json denim = screen.wait("denim", [&](const Json& now) { return now["stiffness"] != start; });
+  EXPECT_EQ(denim["edited"], true);
+  screen.key("ctrl+z");
+  screen.wait_for("stiffness", start);
+  screen.key("ctrl+y");
+  screen.wait_for("stiffness", denim["stiffness"]);
+  screen.key("ctrl+s");
+  screen.wait_for("edited", false);
+  EXPECT_EQ(weft("check pinned4-edited.json"), 0) << folder.read("weft.out");
+  EXPECT_EQ(Json::parse(folder.read("pinned4-edited.json"))["cloths"][0]["stiffness"]["structural"],
+            denim["stiffness"]);
+
+  // A value beyond its range is brought back into it.
+  screen.click("filter");
+  screen.type("type iterations");
+  screen.wait("one control left", [](const Json& now) {
+    return now["controls"].contains("/solver/iterations") &&
+           !now["controls"].contains("/cloths/0/density");
+  });
+  const Json at = screen.now()["controls"]["/solver/iterations"];
+  screen.key("Return");  // leaves the filter
+  screen.wait_for("typing", false);
+  screen.type("mousemove 60 " + std::to_string(at[1].get<int>()) +
+              " sleep 1 keydown ctrl sleep 1 mousedown 1 sleep 1 mouseup 1 sleep 1 keyup ctrl");
+  screen.wait_for("typing", true);
+  screen.type("key ctrl+a sleep 1 type 999999");
+  screen.key("Return");
+  screen.wait_for("typing", false);
+  EXPECT_EQ(screen.now()["edited"], true);
+  screen.key("ctrl+s");
+  screen.wait_for("edited", false);
+  EXPECT_EQ(Json::parse(folder.read("pinned4-edited.json"))["solver"]["iterations"], 1000);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+TEST_F(Window, PathsAreEditedKeyByKey) {
+  Screen screen(folder);
+  folder.write("path.json", R"({"weft": 1, "cloths": [{"grid": {"points": [9, 9]}, "pins": [[0, 0]]}],
+    "colliders": [{"sphere": {"center": [0, -2, 0], "radius": 0.2},
+                   "keys": [[0, 0, -2, 0], [1, 1, -2, 0], [2, 0, -3, 0]]}]})");
+  screen.open("path.json --paused");
+  const auto filter = [&](const std::string& word, const std::string& control) {
+    screen.click("filter");
+    screen.type("key ctrl+a type " + word);
+    screen.wait(control, [&](const Json& now) { return now["controls"].contains(control); });
+    screen.key("Return");  // leaves the filter
+    screen.wait_for("typing", false);
+    screen.click(control);
+  };
+  filter("keys", "/colliders/0/keys");
+  screen.click("/colliders/0/keys remove 1");
+  screen.wait("two keys", [](const Json& now) {
+    return !now["controls"].contains("/colliders/0/keys remove 2");
+  });
+  screen.click("/colliders/0/keys add");
+  screen.wait("a third key again", [](const Json& now) {
+    return now["controls"].contains("/colliders/0/keys remove 2");
+  });
+  filter("pins", "/cloths/0/pins");
+  screen.click("/cloths/0/pins/0");
+  screen.click("/cloths/0/pins/0 add");
+  screen.wait("a key", [](const Json& now) {
+    return now["controls"].contains("/cloths/0/pins/0 remove 0");
+  });
+  screen.key("ctrl+s");
+  screen.wait_for("edited", false);
+  EXPECT_EQ(weft("check path.json"), 0) << folder.read("weft.out");
+  const Json saved = Json::parse(folder.read("path.json"));
+  EXPECT_EQ(saved["colliders"][0]["keys"],
+            Json::parse("[[0, 0, -2, 0], [2, 0, -3, 0], [2.5, 0, -3, 0]]"));
+  EXPECT_EQ(saved["cloths"][0]["pins"][0]["keys"].size(), 1u);
+
+  // Undone key by key, to the pin without a path.
+  screen.key("ctrl+z");
+  screen.wait("no key", [](const Json& now) {
+    return !now["controls"].contains("/cloths/0/pins/0 remove 0");
+  });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+TEST_F(Window, ScenesAreOpenedOneAfterTheOther) {
+  Screen screen(folder);
+  screen.open("box_drape --threads 1");
+  std::set<std::string> opened{screen.now()["scene"]};
+  for (int k = 0; k < 6; ++k) {
+    screen.key("Next");
+    opened.insert(screen.wait("the next scene", [&](const Json& now) {
+      return !opened.contains(now["scene"]) && now["frame"] > 0;
+    })["scene"]);
+  }
+  EXPECT_EQ(opened.size(), 7u);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+TEST_F(Window, FilesAreFollowedAndBrokenOnesTold) {
+  Screen screen(folder);
+  const std::string good =
+      R"({"weft": 1, "cloths": [{"grid": {"points": [9, 9]}, "pins": [[0, 0], [8, 0]],
+          "stiffness": {"structural": 700}}]})";
+  folder.write("mine.json", good);
+  screen.open("mine.json");
+  screen.wait_for("stiffness", 700);
+  std::string changed = good;
+  changed.replace(changed.find("700"), 3, "800");
+  folder.write("mine.json", changed);
+  screen.wait_for("stiffness", 800);
+  folder.write("mine.json", "{\"weft\": 1, \"cloths\": [{\"dragg\": 1}]}");
+  const Json broken = screen.wait("a fault", [](const Json& now) { return !now["faults"].empty(); });
+  EXPECT_NE(broken["faults"].dump().find("drag"), std::string::npos);
+  screen.wait("frames go on", [&](const Json& now) { return now["frame"] > broken["frame"]; });
+  folder.write("mine.json", good);
+  screen.wait("mended", [](const Json& now) { return now["faults"].empty() && now["stiffness"] == 700; });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+TEST_F(Window, BrokenShadersAndPicturesAreTold) {
+  Screen screen(folder);
+  std::filesystem::copy(WEFT_SOURCE_DIR "/shaders", folder / "shaders");
+  screen.open("pinned2 --texture missing.png", "WEFT_SHADERS='" + (folder / "shaders") + "'");
+  const Json missing = screen.wait("a fault", [](const Json& now) { return !now["faults"].empty(); });
+  EXPECT_NE(missing["faults"].dump().find("missing.png"), std::string::npos);
+  const std::string good = folder.read("shaders/colour.frag");
+  folder.write("shaders/colour.frag", "void main() { nonsense }");
+  screen.wait("the shader's fault", [](const Json& now) {
+    return now["faults"].dump().find("colour.frag") != std::string::npos;
+  });
+  const Json before = screen.now();
+  screen.wait("frames go on", [&](const Json& now) { return now["frame"] > before["frame"]; });
+  folder.write("shaders/colour.frag", good);
+  screen.wait("mended", [](const Json& now) {
+    return now["faults"].dump().find("colour.frag") == std::string::npos;
+  });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+TEST_F(Window, BodiesMoveByKeysAndAsBallsAndTheWayBackIsKept) {
+  Screen screen(folder);
+  screen.open("seed1_friction --paused");
+  screen.step_to(2);
+  screen.key("space");
+  const Json before = screen.wait_for("paused", false);
+  screen.type("keydown Right sleep 2 keyup Right");
+  screen.wait("the sphere to move and stay", [&](const Json& now) {
+    return now["edited"] == true && now["bodies"][0] != before["bodies"][0];
+  });
+  const auto bodies = screen.now()["bodies"].size();
+  screen.key("5");
+  screen.wait_for("tool", "ball");
+  screen.click(760, 300);
+  screen.wait("a ball", [&](const Json& now) { return now["bodies"].size() == bodies + 1; });
+  const Json running = screen.now();
+  screen.wait("more frames", [&](const Json& now) { return now["frame"] > running["frame"].get<int>() + 5; });
+  screen.key("p");
+  const Json paused = screen.wait_for("paused", true);
+  screen.key("b");
+  const Json back = screen.wait_for("back", 1);
+  // Frames are kept as often as that costs little.
+  EXPECT_LT(back["frame"], paused["frame"]);
+  EXPECT_GT(back["frame"], paused["frame"].get<int>() - 20);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+TEST_F(Window, WithoutDisplayOrOpenGlItSaysSo) {
+  Screen screen(folder);
+  const auto view = [&](const std::string& before) {
+    return run(before + " '" WEFT_VIEWER_PROGRAM "' hello 2>err");
+  };
+  EXPECT_EQ(view("DISPLAY="), 6);
+  EXPECT_NE(folder.read("err").find("display"), std::string::npos);
+  EXPECT_EQ(view("DISPLAY=" + screen.display() + " MESA_GL_VERSION_OVERRIDE=2.1"), 6);
+  EXPECT_NE(folder.read("err").find("OpenGL 3.3"), std::string::npos);
+}
+
+TEST_F(Window, ALostWindowLosesNoChanges) {
+  Screen screen(folder);
+  screen.open("pinned2 --paused");
+  screen.click("silk");
+  screen.wait_for("edited", true);
+  screen.wait("the kept changes", [&](const Json&) { return folder.has("weft/pinned2.json"); });
+  screen.end_server();
+  EXPECT_LT(screen.finish(), 128);  // no signal
+  EXPECT_EQ(weft("check weft/pinned2.json"), 0);
+}
+
+}  // namespace
+}  // namespace weft

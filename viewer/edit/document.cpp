@@ -1,0 +1,159 @@
+// Checked changes, history, files.
+#include "edit/document.h"
+
+#include <cstdlib>
+
+#include "scene/document.h"
+#include "scene/schema.h"
+#include "weft/output.h"
+
+namespace weft::viewer {
+
+namespace fs = std::filesystem;
+using text::Json;
+
+namespace {
+
+constexpr std::size_t kMostStates = 200;
+
+fs::file_time_type time_of(const std::string& path) {
+  std::error_code error;
+  const fs::file_time_type time = fs::last_write_time(path, error);
+  return error ? fs::file_time_type::min() : time;
+}
+
+std::string line_of(const Fault& fault) {
+  return fault.place + ": " + fault.what + (fault.allowed.empty() ? "" : " (" + fault.allowed + ")");
+}
+
+}  // namespace
+
+std::string fault_lines(const std::string& file, const std::vector<Fault>& faults) {
+  std::string lines;
+  for (const Fault& fault : faults)
+    lines += (lines.empty() ? "" : "\n") + file + ":" + line_of(fault);
+  return lines;
+}
+
+std::vector<Fault> Document::open(const std::string& path_or_name,
+                                  const std::vector<Override>& overrides) {
+  SceneFile file = read_scene(path_or_name, overrides);
+  if (!file.faults.empty()) {
+    if (!path_.empty() && file.path == path_) time_ = time_of(path_);  // told once
+    return file.faults;
+  }
+  path_ = file.path;
+  shipped_ = false;
+  for (const ShippedScene& shipped : shipped_scenes()) shipped_ = shipped_ || shipped.path == path_;
+  scene_ = std::move(file.scene);
+  name_ = scene_.name.empty() ? fs::path(path_).stem().string() : scene_.name;
+  json_ = text::document_of(scene_);
+  time_ = time_of(path_);
+  revision_ = saved_revision_ = ++revisions_;
+  history_.clear();
+  history_.push_back({json_, "", revision_});
+  position_ = 0;
+  return {};
+}
+
+std::string Document::set(const std::vector<Change>& changes, bool joined) {
+  Json next = json_;
+  try {
+    for (const Change& change : changes) next[Json::json_pointer(change.pointer)] = change.value;
+  } catch (const nlohmann::json::exception& error) {
+    return error.what();
+  }
+  if (next == json_) return "";
+  text::Check check;
+  text::check(text::scene_schema_json(), next, check);
+  if (!check.faults.empty()) return line_of(check.faults.front());
+  Scene scene = text::scene_of(next);
+  if (const auto faults = validate(scene); !faults.empty()) return line_of(faults.front());
+
+  const std::string& place = changes.front().pointer;
+  history_.resize(position_ + 1);
+  const bool join = joined && position_ > 0 && history_.back().place == place;
+  if (join) history_.pop_back();
+  history_.push_back({next, place, ++revisions_});
+  if (history_.size() > kMostStates) history_.erase(history_.begin());
+  position_ = history_.size() - 1;
+  json_ = std::move(next);
+  scene_ = std::move(scene);
+  revision_ = revisions_;
+  return "";
+}
+
+void Document::take(std::size_t position) {
+  position_ = position;
+  json_ = history_[position].json;
+  revision_ = history_[position].revision;
+  scene_ = text::scene_of(json_);
+}
+
+void Document::undo() {
+  if (can_undo()) take(position_ - 1);
+}
+
+void Document::redo() {
+  if (can_redo()) take(position_ + 1);
+}
+
+std::string Document::next_undo() const { return can_undo() ? history_[position_].place : ""; }
+
+void Document::save(const std::string& path) {
+  OutputFile file(path);
+  file.write(write_scene_text(scene_));
+  file.commit();
+  path_ = path;
+  shipped_ = false;
+  time_ = time_of(path);
+  saved_revision_ = revision_;
+}
+
+std::string Document::save_path() const {
+  return shipped_ || path_.empty() ? name_ + "-edited.json" : path_;
+}
+
+// $XDG_STATE_HOME/weft/NAME.json
+std::string Document::keep_path() const {
+  const char* state = std::getenv("XDG_STATE_HOME");
+  const char* home = std::getenv("HOME");
+  if (state == nullptr && home == nullptr) return "";
+  const fs::path folder = state != nullptr ? fs::path(state) : fs::path(home) / ".local/state";
+  return (folder / "weft" / (name_ + ".json")).string();
+}
+
+std::string Document::keep() const {
+  const fs::path path = keep_path();
+  std::error_code error;
+  if (path.empty()) return "";
+  if (!edited()) {
+    fs::remove(path, error);
+    return "";
+  }
+  fs::create_directories(path.parent_path(), error);
+  try {
+    OutputFile file(path.string());
+    file.write(write_scene_text(scene_));
+    file.commit();
+  } catch (const WriteError& failure) {
+    return "Unsaved changes cannot be kept: " + failure.path + ": " + failure.what();
+  }
+  return "";
+}
+
+std::string Document::kept() const {
+  std::error_code error;
+  const std::string path = keep_path();
+  return fs::exists(path, error) ? path : "";
+}
+
+bool Document::changed_on_disk() {
+  if (path_.empty()) return false;
+  const fs::file_time_type now = time_of(path_);
+  if (now == time_ || now == fs::file_time_type::min()) return false;
+  time_ = now;
+  return true;
+}
+
+}  // namespace weft::viewer

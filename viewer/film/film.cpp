@@ -1,0 +1,100 @@
+// Raw pictures into ffmpeg's standard input.
+#include "film/film.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+
+#include "failure.h"
+
+namespace weft::viewer {
+
+namespace {
+
+constexpr const char* kFailed = ": the film could not be written (ffmpeg tells the terminal why)";
+
+bool has_ffmpeg() {
+  return std::system("command -v ffmpeg >/dev/null 2>&1") == 0;
+}
+
+// For the shell.
+std::string for_shell(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
+
+std::string free_name(const std::string& base, const std::string& extension) {
+  std::error_code error;
+  std::string path = base + extension;
+  for (int n = 2; std::filesystem::exists(path, error); ++n)
+    path = base + "-" + std::to_string(n) + extension;
+  return path;
+}
+
+Film::Film(const std::string& base, int width, int height, double start)
+    : width_(width), height_(height), start_(start), last_(start) {
+  if (!has_ffmpeg()) {
+    static constexpr std::string_view kFirst = "_00000.png";
+    path_ = free_name(base, std::string(kFirst));
+    base_ = path_.substr(0, path_.size() - kFirst.size());
+    return;
+  }
+  path_ = free_name(base, ".mp4");
+  temporary_ = path_ + "." + std::to_string(::getpid()) + ".tmp";
+  // ffmpeg would find out too late, and tell the terminal only.
+  std::FILE* const file = std::fopen(temporary_.c_str(), "wb");
+  if (file == nullptr)
+    throw Failure(kCannotWrite, path_ + ": cannot write: " + std::strerror(errno));
+  std::fclose(file);
+  std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that ends early is told by write()
+  const std::string command =
+      "ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " + std::to_string(width) + "x" +
+      std::to_string(height) + " -r " + std::to_string(static_cast<int>(kRate)) +
+      " -i - -c:v libx264 -preset veryfast -crf 20 -pix_fmt yuv420p -f mp4 " +
+      for_shell(temporary_);
+  pipe_.reset(::popen(command.c_str(), "w"));
+}
+
+Film::~Film() {
+  pipe_.reset();
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+int Film::due(double time) {
+  if (time < last_) start_ = time - static_cast<double>(count_) / kRate;
+  last_ = time;
+  const double wanted = std::floor((time - start_) * kRate) + 1;
+  return static_cast<int>(std::clamp(wanted - static_cast<double>(count_), 0.0, 30.0));
+}
+
+void Film::add(const Picture& picture, int times) {
+  for (int n = 0; n < times; ++n, ++count_) {
+    if (!temporary_.empty()) {
+      if (!pipe_ ||
+          std::fwrite(picture.rgb.data(), 1, picture.rgb.size(), pipe_.get()) != picture.rgb.size())
+        throw Failure(kCannotWrite, path_ + kFailed);
+      continue;
+    }
+    char number[16];
+    std::snprintf(number, sizeof number, "_%05ld.png", count_);
+    write_png(base_ + number, picture);
+  }
+}
+
+void Film::finish() {
+  if (temporary_.empty()) return;
+  const bool good = ::pclose(pipe_.release()) == 0;
+  if (!good || std::rename(temporary_.c_str(), path_.c_str()) != 0)
+    throw Failure(kCannotWrite, path_ + kFailed);
+}
+
+}  // namespace weft::viewer

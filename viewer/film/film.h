@@ -1,0 +1,50 @@
+// A film of the view, at 30 pictures for a second of the simulation: through ffmpeg to MP4, or as
+// numbered PNG files where there is no ffmpeg. An MP4 takes its name when it is whole.
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "picture/images.h"
+
+namespace weft::viewer {
+
+class Film {
+ public:
+  static constexpr double kRate = 30;  // pictures per second
+
+  // Width and height are even. `base`: the file without extension. Throws Failure when the film
+  // cannot be written there.
+  Film(const std::string& base, int width, int height, double start);
+  ~Film();  // a film that is not finished leaves no MP4
+  Film(const Film&) = delete;
+  Film& operator=(const Film&) = delete;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  // How many pictures are due at a time of the simulation [s]. When it has gone back, the film goes
+  // on from there.
+  int due(double time);
+  // Adds the picture so many times. Throws Failure when it cannot be written.
+  void add(const Picture& picture, int times);
+  // Throws Failure when the film has not become whole.
+  void finish();
+  // Where finish() leaves it.
+  const std::string& path() const { return path_; }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* pipe) const { ::pclose(pipe); }
+  };
+  std::string base_, path_, temporary_;
+  int width_, height_;
+  double start_, last_;  // s, of the first picture and of the newest
+  long count_ = 0;
+  std::unique_ptr<std::FILE, Close> pipe_;
+};
+
+// The first of base.ext, base-2.ext, … that is not there yet.
+std::string free_name(const std::string& base, const std::string& extension);
+
+}  // namespace weft::viewer

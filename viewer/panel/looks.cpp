@@ -1,0 +1,121 @@
+// The looks and their settings.
+#include <initializer_list>
+
+#include "panel/panel.h"
+#include "panel/theme.h"
+
+namespace weft::viewer {
+
+namespace {
+
+void color(const char* label, Vec3f& linear) {
+  const auto encode = [](float c) { return std::pow(c, 1 / 2.2f); };
+  float shown[3] = {encode(linear.x), encode(linear.y), encode(linear.z)};
+  const bool changed = ImGui::ColorEdit3(label, shown, ImGuiColorEditFlags_NoInputs);
+  mark(label);
+  if (!changed) return;
+  const auto decode = [](float c) { return std::pow(c, 2.2f); };
+  linear = {decode(shown[0]), decode(shown[1]), decode(shown[2])};
+}
+
+bool slider(const char* label, float& value, float low, float high, const char* format = "%.3f",
+            ImGuiSliderFlags flags = 0) {
+  const bool changed = ImGui::SliderFloat(label, &value, low, high, format,
+                                          flags | ImGuiSliderFlags_AlwaysClamp);
+  mark(label);
+  return changed;
+}
+
+void slider(const char* label, int& value, int low, int high, const char* format = "%d") {
+  ImGui::SliderInt(label, &value, low, high, format, ImGuiSliderFlags_AlwaysClamp);
+  mark(label);
+}
+
+// Switches side by side.
+struct Switch {
+  const char* label;
+  bool& on;
+};
+void switches(std::initializer_list<Switch> all) {
+  for (const Switch& one : all) {
+    if (&one != all.begin()) ImGui::SameLine();
+    ImGui::Checkbox(one.label, &one.on);
+    mark(one.label);
+  }
+}
+
+void draw_list(Workspace& workspace) {
+  const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
+  int column = 0;
+  for (const Look& look : kLooks) {
+    if (column++ % 2 == 1) ImGui::SameLine();
+    const bool on = workspace.look == &look;
+    if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(kAccent.x, kAccent.y, kAccent.z, 0.8f));
+    if (ImGui::Button(std::string(look.name).c_str(), {width, 0})) workspace.look = &look;
+    if (on) ImGui::PopStyleColor();
+    mark("look " + std::string(look.name));
+    tooltip(std::string(look.about).c_str());
+  }
+}
+
+void draw_material(Workspace& workspace) {
+  LookSettings& s = workspace.settings;
+  const std::string_view look = workspace.look->name;
+  const auto is = [&](std::string_view name) { return look == name; };
+  color("front", s.color);
+  ImGui::SameLine();
+  color("back", s.back_color);
+  if (is("colour") || is("ggx_force") || is("pbr")) slider("roughness", s.roughness, 0.05f, 1);
+  if (is("pbr")) slider("metallic", s.metallic, 0, 1);
+  if (is("blinn_phong") || is("phong_force")) {
+    switches({{"ambient", s.ambient}, {"diffuse", s.diffuse}, {"specular", s.specular}});
+    slider("shininess", s.shininess, 2, 200, "%.0f", ImGuiSliderFlags_Logarithmic);
+  }
+  if (is("texture")) {
+    slider("repeats", s.texture_repeats, 1, 20, "%.0f");
+    const std::string& file = workspace.pictures.texture;
+    if (!file.empty()) ImGui::TextWrapped("%s", file.c_str());
+  }
+  if (is("bump") || is("displacement")) {
+    slider("normal scale", s.normal_scale, 0, 10);
+    slider("repeats", s.height_repeats, 1, 20, "%.0f");
+  }
+  if (is("displacement")) slider("height [m]", s.height_scale, 0, 0.1f);
+  if (is("phong_force") || is("ggx_force"))
+    slider("force scale", s.force_scale, 0.01f, 100, "%.2f", ImGuiSliderFlags_Logarithmic);
+  if (is("strain")) {
+    float percent = 100 * s.strain_range;
+    if (slider("full scale", percent, 0.1f, 100, "%.3g %%", ImGuiSliderFlags_Logarithmic))
+      s.strain_range = percent / 100;
+  }
+  if (is("wireframe"))
+    switches({{"structural", s.structural}, {"shear", s.shear}, {"bend", s.bend}});
+}
+
+}  // namespace
+
+void draw_looks(Workspace& workspace) {
+  draw_list(workspace);
+  LookSettings& s = workspace.settings;
+  ImGui::PushItemWidth(ImGui::GetFontSize() * 11);
+  heading("Material");
+  draw_material(workspace);
+  heading("Picture");
+  switches({{"shadow", s.shadows}, {"floor", s.ground}});
+  slider("roundness of bodies", s.tessellation, 16, 128);
+  slider("smoothness", s.refinement, 0, 6, s.refinement == 0 ? "auto" : "%d");
+  tooltip("Vertices drawn for one side of a square of the grid");
+  ImGui::PopItemWidth();
+  if (ImGui::Button("Standard look")) {
+    s = LookSettings{};
+    workspace.pictures = {};
+  }
+  mark("Standard look");
+  tooltip("All settings of the looks as they were, and the program's own pictures");
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextColored(kQuiet, "Shaders are read from their folder while this runs: change one and "
+                             "look. Drop a picture to use it as texture.");
+  ImGui::PopTextWrapPos();
+}
+
+}  // namespace weft::viewer

@@ -1,0 +1,83 @@
+// The side with its tabs, and where everything goes.
+#include "panel/panel.h"
+
+#include "panel/theme.h"
+
+namespace weft::viewer {
+
+namespace {
+
+float side_width() {
+  return ImGui::GetFontSize() * 24;
+}
+
+}  // namespace
+
+// In a small window the picture has it all.
+bool Panel::has_side() const {
+  return visible && ImGui::GetIO().DisplaySize.x >= 1.9f * side_width();
+}
+
+Area Panel::picture_area() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float left = has_side() ? side_width() : 0;
+  return {left, 0, std::max(size.x - left, 16.0f), std::max(size.y, 16.0f)};
+}
+
+bool begin_overlay(const char* name, float x, float y, float pivot_x, float pivot_y) {
+  ImGui::SetNextWindowPos({x, y}, ImGuiCond_Always, {pivot_x, pivot_y});
+  ImGui::SetNextWindowBgAlpha(0.86f);
+  return ImGui::Begin(name, nullptr,
+                      ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                          ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
+                          ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+}
+
+void Panel::draw_side(Workspace& workspace, Wishes& wishes) {
+  const Area area = picture_area();
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize({area.x, area.height});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+  ImGui::Begin("side", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+  draw_scenes(workspace, path_);
+  draw_files(workspace, wishes, filming);
+  ImGui::Dummy({0, 2});
+  if (ImGui::BeginTabBar("tabs")) {
+    const auto tab = [&](const char* name, auto&& content) {
+      const bool open = ImGui::BeginTabItem(name);
+      mark(name);
+      if (!open) return;
+      ImGui::BeginChild(name, {0, 0}, false, ImGuiWindowFlags_NoNav);
+      content();
+      ImGui::EndChild();
+      ImGui::EndTabItem();
+    };
+    tab("Scene", [&] {
+      draw_fabrics(workspace);
+      parameters_.draw(workspace);
+      draw_machine(workspace);
+    });
+    tab("Look", [&] { draw_looks(workspace); });
+    tab("Measures", [&] { draw_measures(workspace, history); });
+    ImGui::EndTabBar();
+  }
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
+
+void Panel::draw(Workspace& workspace, Hands& hands, Wishes& wishes) {
+  if (has_side()) draw_side(workspace, wishes);
+  const Area area = picture_area();
+  if (visible) {
+    draw_tools(hands, area, keys_);
+    draw_transport(workspace, area, keys_);
+    if (area.width > 40 * ImGui::GetFontSize()) draw_corner(workspace, history, area);
+  }
+  draw_legend(workspace, area);
+  draw_messages(workspace.messages, area);
+  if (help) draw_help(help, keys_);
+}
+
+}  // namespace weft::viewer

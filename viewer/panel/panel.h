@@ -1,0 +1,59 @@
+// All controls around and over the picture. Each part is a file of its own.
+#pragma once
+
+#include "hands/hands.h"
+#include "panel/history.h"
+#include "panel/parameters.h"
+#include "window/keys.h"
+#include "window/workspace.h"
+
+namespace weft::viewer {
+
+// What a person asks for that the window itself must do.
+struct Wishes {
+  bool screenshot = false, film = false, quit = false;
+};
+
+class Panel {
+ public:
+  explicit Panel(const Keys& keys) : keys_(keys) {}
+
+  // The room that is left for the picture, in the panel's units.
+  Area picture_area() const;
+  void draw(Workspace& workspace, Hands& hands, Wishes& wishes);
+
+  bool visible = true;
+  bool help = false;
+  bool filming = false;
+  History history;
+
+ private:
+  bool has_side() const;
+  void draw_side(Workspace& workspace, Wishes& wishes);
+
+  const Keys& keys_;
+  Parameters parameters_;
+  std::string path_;  // as it is typed
+};
+
+// The parts.
+void draw_scenes(Workspace& workspace, std::string& path);
+void draw_files(Workspace& workspace, Wishes& wishes, bool filming);
+void draw_fabrics(Workspace& workspace);
+void draw_looks(Workspace& workspace);
+void draw_machine(Workspace& workspace);  // threads, instruction set
+// Keys [t, x, y, z] of a path; a first one is put at `now` [s] and `place`. True when they have changed.
+bool draw_path(const std::string& name, const std::string& pointer, text::Json& keys, double now,
+               const Vec3& place);
+void draw_measures(const Workspace& workspace, const History& history);
+void draw_transport(Workspace& workspace, const Area& area, const Keys& keys);
+void draw_tools(Hands& hands, const Area& area, const Keys& keys);
+void draw_corner(const Workspace& workspace, const History& history, const Area& area);
+void draw_legend(const Workspace& workspace, const Area& area);
+void draw_messages(Messages& messages, const Area& area);
+void draw_help(bool& open, const Keys& keys);
+
+// Begins a small window over the picture; end with ImGui::End().
+bool begin_overlay(const char* name, float x, float y, float pivot_x, float pivot_y);
+
+}  // namespace weft::viewer

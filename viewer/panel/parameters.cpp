@@ -1,0 +1,261 @@
+// Controls by the type that the schema names.
+#include "panel/parameters.h"
+
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+
+#include "panel/panel.h"
+#include "panel/theme.h"
+#include "scene/schema.h"
+
+namespace weft::viewer {
+
+namespace {
+
+std::string words_of(std::string key) {
+  std::replace(key.begin(), key.end(), '_', ' ');
+  return key;
+}
+
+std::string label_of(const std::string& key, const text::Json& schema) {
+  const text::Json* unit = text::member(schema, "x-unit");
+  return words_of(key) + (unit ? " [" + unit->get<std::string>() + "]" : "");
+}
+
+// What the tooltip tells: the help, the range, the place.
+std::string help_of(const std::string& pointer, const text::Json& schema) {
+  std::string help;
+  if (const text::Json* about = text::member(schema, "description")) help = about->get<std::string>();
+  const text::Json& bounds = schema.contains("items") ? schema["items"] : schema;
+  if (bounds.contains("minimum")) help += "\n" + text::range_words(bounds);
+  return help + "\n" + pointer;
+}
+
+double bound(const text::Json& schema, const char* key, double standard) {
+  const text::Json* value = text::member(schema, key);
+  return value ? value->get<double>() : standard;
+}
+
+bool is_type(const text::Json& schema, std::string_view type) {
+  const text::Json* name = text::member(schema, "type");
+  return name && *name == type;
+}
+
+// A drag changes a value by about its own size over the width of the control.
+float speed_of(double value, double low, double high) {
+  const double size = std::max(std::abs(value), std::min(1e-3, (high - low) * 1e-3));
+  return static_cast<float>(std::min(size, high - low) * 0.006);
+}
+
+}  // namespace
+
+void Parameters::change(const std::string& pointer, const Json& value) {
+  workspace_->edit({{pointer, value}}, moved_ == pointer);
+  moved_ = ImGui::IsAnyItemActive() ? pointer : "";
+}
+
+bool Parameters::passes(const std::string& key, const Json& schema) const {
+  if (filter_.empty()) return true;
+  const auto found = [&](const std::string& text) {
+    return std::search(text.begin(), text.end(), filter_.begin(), filter_.end(), [](char a, char b) {
+             return std::tolower(static_cast<unsigned char>(a)) ==
+                    std::tolower(static_cast<unsigned char>(b));
+           }) != text.end();
+  };
+  if (found(words_of(key))) return true;
+  const Json* properties = text::member(schema, "properties");
+  if (!properties) return false;
+  return std::any_of(properties->items().begin(), properties->items().end(),
+                     [&](const auto& item) { return passes(item.key(), item.value()); });
+}
+
+void Parameters::number(const std::string& pointer, const std::string& label, const Json& schema,
+                        const Json& value) {
+  const double low = bound(schema, "minimum", -1e9), high = bound(schema, "maximum", 1e9);
+  if (is_type(schema, "integer")) {
+    int shown = value.get<int>();
+    const int least = static_cast<int>(low), most = static_cast<int>(high);
+    if (ImGui::DragInt(label.c_str(), &shown, std::max(0.1f, 0.01f * static_cast<float>(shown)), least,
+                       most, "%d", ImGuiSliderFlags_AlwaysClamp))
+      change(pointer, shown);
+    return;
+  }
+  double shown = value.get<double>();
+  if (ImGui::DragScalar(label.c_str(), ImGuiDataType_Double, &shown, speed_of(shown, low, high), &low,
+                        &high, "%.5g", ImGuiSliderFlags_AlwaysClamp))
+    change(pointer, shown);
+}
+
+void Parameters::numbers(const std::string& pointer, const std::string& label, const Json& schema,
+                         const Json& value) {
+  const Json& item = schema["items"];
+  const double low = bound(item, "minimum", -1e9), high = bound(item, "maximum", 1e9);
+  const int count = static_cast<int>(value.size());
+  if (is_type(item, "integer")) {
+    auto shown = value.get<std::vector<int>>();
+    const int least = static_cast<int>(low), most = static_cast<int>(high);
+    if (ImGui::DragScalarN(label.c_str(), ImGuiDataType_S32, shown.data(), count, 0.2f, &least, &most,
+                           "%d", ImGuiSliderFlags_AlwaysClamp))
+      change(pointer, shown);
+    return;
+  }
+  auto shown = value.get<std::vector<double>>();
+  double size = 0.05;
+  for (const double component : shown) size = std::max(size, std::abs(component));
+  if (ImGui::DragScalarN(label.c_str(), ImGuiDataType_Double, shown.data(), count,
+                         speed_of(size, low, high), &low, &high, "%.4g",
+                         ImGuiSliderFlags_AlwaysClamp))
+    change(pointer, shown);
+}
+
+void Parameters::choice(const std::string& pointer, const std::string& label, const Json& schema,
+                        const Json& value) {
+  const auto& now = value.get_ref<const std::string&>();
+  if (!ImGui::BeginCombo(label.c_str(), words_of(now).c_str())) return;
+  for (const Json& name : schema["enum"]) {
+    const auto& word = name.get_ref<const std::string&>();
+    if (ImGui::Selectable(words_of(word).c_str(), word == now)) change(pointer, word);
+  }
+  ImGui::EndCombo();
+}
+
+void Parameters::collider_path(const std::string& pointer, const Json& value) {
+  const auto& bodies = workspace_->snapshot().bodies;
+  const std::size_t number = std::stoul(pointer.substr(std::string("/colliders/").size()));
+  if (number >= bodies.size()) return;  // not simulated yet
+  Json keys = value;
+  if (draw_path("path", pointer, keys, workspace_->snapshot().time, place_of(bodies[number])))
+    change(pointer, keys);
+}
+
+// A pin without a path is its [i, j] alone.
+void Parameters::pins(const std::string& pointer, const Json& value) {
+  const std::size_t number = std::stoul(pointer.substr(std::string("/cloths/").size()));
+  const auto& cloths = workspace_->snapshot().cloths;
+  const std::string label = "pins: " + std::to_string(value.size()) + "###" + pointer;
+  const bool open = ImGui::TreeNodeEx(label.c_str(), ImGuiTreeNodeFlags_NoTreePushOnOpen);
+  mark(pointer);
+  if (!open || number >= cloths.size()) return;
+  const ClothCopy& cloth = cloths[number];
+  ImGui::Indent(6);
+  for (std::size_t p = 0; p < std::min<std::size_t>(value.size(), 100); ++p) {
+    const Json& at = value[p].is_object() ? value[p]["at"] : value[p];
+    const int i = at[0], j = at[1];
+    if (i >= cloth.columns || j >= cloth.rows) continue;
+    Json keys = value[p].is_object() ? value[p]["keys"] : Json::array();
+    const std::string place = text::join(pointer, std::to_string(p));
+    const std::string name = "pin " + std::to_string(i) + ", " + std::to_string(j);
+    if (draw_path(name, place, keys, workspace_->snapshot().time, to_double(cloth.position(i, j))))
+      change(place, keys.empty() ? at : Json{{"at", at}, {"keys", keys}});
+  }
+  ImGui::Unindent(6);
+}
+
+void Parameters::member(const std::string& pointer, const std::string& key, const Json& schema,
+                        const Json& value) {
+  const std::string label = label_of(key, schema) + "##" + pointer;
+  const Json* options = text::member(schema, "oneOf");
+  if (value.is_object()) {
+    const Json* chosen = options && !schema.contains("type") ? text::alternative(schema, value) : &schema;
+    group(pointer, words_of(key), *chosen, value, false);
+    return;
+  }
+  if (key == "pins" && !value.empty()) return pins(pointer, value);
+  if (key == "keys") return collider_path(pointer, value);
+  if (options && key == "substeps") {  // a number, or auto
+    bool automatic = value.is_string();
+    if (ImGui::Checkbox("auto", &automatic)) change(pointer, automatic ? Json("auto") : Json(20));
+    ImGui::SameLine();
+    ImGui::BeginDisabled(automatic);
+    ImGui::SetNextItemWidth(ImGui::CalcItemWidth() - ImGui::GetFontSize() * 4.6f);
+    const int used = workspace_->vitals().substeps;
+    number(pointer, label, (*options)[0], automatic ? Json(used) : value);
+    ImGui::EndDisabled();
+  } else if (options && value.is_number()) {
+    number(pointer, label, (*options)[0], value);
+  } else if (value.is_boolean()) {
+    bool on = value.get<bool>();
+    if (ImGui::Checkbox(label.c_str(), &on)) change(pointer, on);
+  } else if (schema.contains("enum")) {
+    choice(pointer, label, schema, value);
+  } else if (value.is_string()) {
+    std::string text = value.get<std::string>();
+    if (ImGui::InputText(label.c_str(), &text)) change(pointer, text);
+  } else if (value.is_number()) {
+    number(pointer, label, schema, value);
+  } else if (value.is_array() && !value.empty() && value.size() <= 3 && value[0].is_number()) {
+    numbers(pointer, label, schema, value);
+  } else if (value.is_array() && !value.empty()) {
+    ImGui::Text("%s: %zu", words_of(key).c_str(), value.size());
+  } else {
+    return;
+  }
+  mark(pointer);
+  tooltip(help_of(pointer, schema).c_str());
+}
+
+void Parameters::members(const std::string& pointer, const Json& schema, const Json& value) {
+  for (auto it = value.begin(); it != value.end(); ++it) {
+    const Json* known = text::descend(schema, &value, it.key());
+    if (!known || known->contains("const") || !passes(it.key(), *known)) continue;
+    member(text::join(pointer, it.key()), it.key(), *known, *it);
+  }
+}
+
+void Parameters::group(const std::string& pointer, const std::string& title, const Json& schema,
+                       const Json& value, bool open) {
+  if (!filter_.empty()) ImGui::SetNextItemOpen(true);
+  const std::string label = title + "##" + pointer;
+  const bool top = std::count(pointer.begin(), pointer.end(), '/') <= 2;
+  const ImGuiTreeNodeFlags flags = open ? ImGuiTreeNodeFlags_DefaultOpen : 0;
+  const bool shown = top && (pointer.find('/', 1) == std::string::npos || title.find(' ') != std::string::npos)
+                         ? ImGui::CollapsingHeader(label.c_str(), flags)
+                         : ImGui::TreeNodeEx(label.c_str(), flags | ImGuiTreeNodeFlags_NoTreePushOnOpen);
+  if (const Json* about = text::member(schema, "description"))
+    tooltip(about->get_ref<const std::string&>().c_str());
+  if (!shown) return;
+  ImGui::Indent(6);
+  members(pointer, schema, value);
+  ImGui::Unindent(6);
+}
+
+void Parameters::draw(Workspace& workspace) {
+  workspace_ = &workspace;
+  if (!moved_.empty() && !ImGui::IsAnyItemActive()) moved_.clear();
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputTextWithHint("##filter", "find a parameter", &filter_);
+  mark("filter");
+  ImGui::PushItemWidth(ImGui::GetFontSize() * 9.5f);
+  // The document may change under the controls: they look at a copy.
+  const Json json = workspace.document().json();
+  const Json& schema = text::scene_schema_json();
+  const auto top = [&](const char* key, bool open) {
+    const Json& known = schema["properties"][key];
+    if (passes(key, known)) group(std::string("/") + key, words_of(key), known, json[key], open);
+  };
+  top("solver", true);
+  const Json& cloth = schema["properties"]["cloths"]["items"];
+  const bool one = json["cloths"].size() == 1;
+  for (std::size_t n = 0; n < std::min<std::size_t>(json["cloths"].size(), 20) && passes("cloth", cloth); ++n)
+    group("/cloths/" + std::to_string(n), one ? "cloth " : "cloth " + std::to_string(n), cloth,
+          json["cloths"][n], n == 0);
+  if (passes("gravity", schema["properties"]["gravity"]))
+    member("/gravity", "gravity", schema["properties"]["gravity"], json["gravity"]);
+  top("wind", false);
+  top("time", false);
+  const Json& collider = schema["properties"]["colliders"]["items"];
+  constexpr const char* kShapes[] = {"sphere", "plane", "capsule", "box"};
+  for (std::size_t n = 0; n < std::min<std::size_t>(json["colliders"].size(), 50); ++n) {
+    std::string title = "collider " + std::to_string(n);
+    for (const char* shape : kShapes)
+      if (json["colliders"][n].contains(shape)) title = std::string(shape) + " " + std::to_string(n);
+    if (passes("collider", collider))
+      group("/colliders/" + std::to_string(n), title, collider, json["colliders"][n], false);
+  }
+  ImGui::PopItemWidth();
+  workspace_ = nullptr;
+}
+
+}  // namespace weft::viewer

@@ -1,0 +1,39 @@
+// A control for every value of the scene, made from the schema: its name, unit, range and help are
+// those that validation and the documentation speak from.
+#pragma once
+
+#include <string>
+
+#include "window/workspace.h"
+
+namespace weft::viewer {
+
+class Parameters {
+ public:
+  void draw(Workspace& workspace);
+
+ private:
+  using Json = text::Json;
+
+  void group(const std::string& pointer, const std::string& title, const Json& schema,
+             const Json& value, bool open);
+  void members(const std::string& pointer, const Json& schema, const Json& value);
+  void member(const std::string& pointer, const std::string& key, const Json& schema,
+              const Json& value);
+  void number(const std::string& pointer, const std::string& label, const Json& schema,
+              const Json& value);
+  void numbers(const std::string& pointer, const std::string& label, const Json& schema,
+               const Json& value);
+  void choice(const std::string& pointer, const std::string& label, const Json& schema,
+              const Json& value);
+  void pins(const std::string& pointer, const Json& value);
+  void collider_path(const std::string& pointer, const Json& value);
+  void change(const std::string& pointer, const Json& value);
+  bool passes(const std::string& key, const Json& schema) const;
+
+  Workspace* workspace_ = nullptr;  // while drawing
+  std::string filter_;
+  std::string moved_;  // the place whose control is held
+};
+
+}  // namespace weft::viewer

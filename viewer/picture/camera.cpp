@@ -1,0 +1,59 @@
+// Orbiting camera; y is always up in the picture.
+#include "picture/camera.h"
+
+#include <numbers>
+
+namespace weft::viewer {
+
+void Camera::turn_to(float azimuth, float elevation) {
+  azimuth_ = std::remainder(azimuth, 2 * std::numbers::pi_v<float>);
+  elevation_ = std::clamp(elevation, -1.5f, 1.5f);
+}
+
+// The nearest distance from which all corners of the box are inside the view.
+void Camera::frame(const Bounds& bounds, float aspect) {
+  if (bounds.empty()) return;
+  target_ = bounds.center();
+  const Vec3f f = forward(), r = right(), u = up();
+  const float tan_y = std::tan(kFov / 2), tan_x = tan_y * aspect;
+  float needed = 0.05f;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3f p = Vec3f{(corner & 1) != 0 ? bounds.high.x : bounds.low.x,
+                          (corner & 2) != 0 ? bounds.high.y : bounds.low.y,
+                          (corner & 4) != 0 ? bounds.high.z : bounds.low.z} -
+                    target_;
+    const float across = std::max(std::abs(dot(p, r)) / tan_x, std::abs(dot(p, u)) / tan_y);
+    needed = std::max(needed, across - dot(p, f));
+  }
+  distance_ = needed * 1.1f;
+}
+
+void Camera::orbit(float azimuth, float elevation) {
+  turn_to(azimuth_ - azimuth, elevation_ + elevation);
+}
+
+void Camera::pan(float x, float y) {
+  const float height = 2 * distance_ * std::tan(kFov / 2);
+  target_ = target_ - right() * (x * height) + up() * (y * height);
+}
+
+void Camera::zoom(float notches) {
+  distance_ = std::clamp(distance_ * std::pow(0.88f, notches), 1e-3f, 1e5f);
+}
+
+Vec3f Camera::eye() const {
+  return target_ + distance_ * Vec3f{std::sin(azimuth_) * std::cos(elevation_),
+                                     std::sin(elevation_),
+                                     std::cos(azimuth_) * std::cos(elevation_)};
+}
+
+Mat4 Camera::projection(float aspect) const {
+  return perspective(kFov, aspect, distance_ * 0.02f, distance_ * 60);
+}
+
+Vec3f Camera::ray(float x, float y, float aspect) const {
+  const float t = std::tan(kFov / 2);
+  return normalized(forward() + right() * (x * t * aspect) + up() * (y * t));
+}
+
+}  // namespace weft::viewer

@@ -1,0 +1,31 @@
+// Pictures and textures: what the program weaves and paints itself, the user's files in their
+// place, and PNG files written.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "picture/gl.h"
+#include "picture/linear.h"
+
+namespace weft::viewer {
+
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  // rows from the top
+};
+
+// Throws Failure when it cannot be written.
+void write_png(const std::string& path, const Picture& picture);
+
+// A file, or "" for the program's own. What is wrong with a file is in `error`, and the program's
+// own is given.
+Texture load_texture(const std::string& path, std::string& error);     // woven check; sRGB
+Texture load_height_map(const std::string& path, std::string& error);  // its threads; red = height
+
+// The sky as a cube map with all levels. `path`: a folder of posx, negx, posy, negy, posz, negz
+// (.png or .jpg).
+Texture load_sky(const std::string& path, Vec3f light, std::string& error);
+
+}  // namespace weft::viewer

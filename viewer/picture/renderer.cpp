@@ -1,0 +1,284 @@
+// The passes of a picture, in order: draw() reads like the list.
+#include "picture/renderer.h"
+
+#include <cmath>
+
+#include "picture/cpu_time.h"
+
+namespace weft::viewer {
+
+namespace {
+
+const Vec3f kLight = normalized({-0.42f, 0.80f, 0.50f});
+constexpr Vec3f kLightColor{1.05f, 0.98f, 0.88f};
+constexpr Vec3f kBodyColor{0.28f, 0.30f, 0.33f};
+
+// As common.glsl's block Frame.
+struct FrameBlock {
+  Mat4 view_projection, shadow_matrix;
+  float eye[4], light[4], light_color[4], right[4], up[4], forward[4];
+};
+
+// Between particles that rest on a round body the cloth runs straight, s²/8r below its surface, and
+// deeper where it is stretched: the body is drawn smaller by s²/2r, where its offset does not make up
+// for it.
+void shrink(Collider& body, double s) {
+  const auto less = [&](double r) {
+    return std::max(0.95 * r, r - std::max(0.0, s * s / (2 * r) - body.offset));
+  };
+  if (Sphere* sphere = std::get_if<Sphere>(&body.shape)) sphere->radius = less(sphere->radius);
+  if (Capsule* capsule = std::get_if<Capsule>(&body.shape)) capsule->radius = less(capsule->radius);
+}
+
+void set(float (&to)[4], Vec3f v, float w) {
+  to[0] = v.x, to[1] = v.y, to[2] = v.z, to[3] = w;
+}
+
+}  // namespace
+
+Renderer::Renderer(const PictureFiles& files)
+    : folder_(find_shaders()),
+      shadow_map_(2048),
+      frame_(make_buffer()),
+      nothing_(make_vertex_array()) {
+  set_pictures(files);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+}
+
+void Renderer::set_pictures(const PictureFiles& files) {
+  files_ = files;
+  picture_problems_.clear();
+  std::string error;
+  const auto keep = [&] {
+    if (!error.empty()) picture_problems_.push_back(error);
+    error.clear();
+  };
+  texture_ = load_texture(files.texture, error);
+  keep();
+  height_map_ = load_height_map(files.height_map, error);
+  keep();
+  sky_ = load_sky(files.sky, kLight, error);
+  keep();
+}
+
+const Shader& Renderer::shader(std::string_view name) {
+  auto found = shaders_.find(name);
+  if (found == shaders_.end())
+    found = shaders_.emplace(std::string(name), Shader(folder_, std::string(name))).first;
+  return found->second;
+}
+
+bool Renderer::reload_changed() {
+  bool changed = false;
+  for (auto& [name, shader] : shaders_) changed = shader.reload_if_changed() || changed;
+  return changed;
+}
+
+std::vector<std::string> Renderer::problems() const {
+  std::vector<std::string> all = picture_problems_;
+  for (const auto& [name, shader] : shaders_)
+    if (!shader.error().empty()) all.push_back(shader.error());
+  return all;
+}
+
+void Renderer::draw(const Snapshot& snapshot, const Setting& setting, const Look& look,
+                    const LookSettings& settings, const Camera& camera,
+                    const RenderTarget& target) {
+  const float aspect = static_cast<float>(target.width()) / static_cast<float>(target.height());
+  update_meshes(snapshot, setting, look, settings);
+  update_bodies(snapshot, setting, settings);
+  draw_shadow_map(snapshot, setting, settings);
+  upload_frame(setting, settings, camera, aspect);
+  const std::pair<GLenum, GLuint> textures[] = {{GL_TEXTURE_CUBE_MAP, sky_.id()},
+                                                {GL_TEXTURE_2D, shadow_map_.texture()},
+                                                {GL_TEXTURE_2D, texture_.id()},
+                                                {GL_TEXTURE_2D, height_map_.id()}};
+  for (GLuint unit = 0; unit < std::size(textures); ++unit) {
+    glActiveTexture(GL_TEXTURE0 + unit);
+    glBindTexture(textures[unit].first, textures[unit].second);
+  }
+  glActiveTexture(GL_TEXTURE0);
+
+  target.begin();
+  glDisable(GL_DEPTH_TEST);
+  shader("background").use();
+  glBindVertexArray(nothing_.id());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glEnable(GL_DEPTH_TEST);
+  if (settings.ground && setting.has_ground) draw_ground(setting);
+  draw_bodies(look, settings, camera);
+  draw_cloths(look, settings, target, setting);
+  target.resolve();
+}
+
+void Renderer::update_meshes(const Snapshot& snapshot, const Setting& setting, const Look& look,
+                             const LookSettings& settings) {
+  const bool shown = shown_scene_ == snapshot.scene_serial && shown_frame_ == snapshot.frame &&
+                     shown_change_ == snapshot.change && shown_look_ == &look &&
+                     shown_refinement_ == settings.refinement && shown_detail_ == settings.detail;
+  if (shown) return;
+  const double start = cpu_ms();
+  cloths_.resize(snapshot.cloths.size());
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    const ClothCopy& cloth = snapshot.cloths[c];
+    const Sampling sampling = settings.refinement > 0 ? Sampling{settings.refinement, 1}
+                                                      : sampling_of(cloth, settings.detail);
+    cloths_[c].update(cloth, snapshot.scene_serial, snapshot.scene->cloths[c], look, sampling);
+  }
+  const Cloth& first = snapshot.scene->cloths.front();
+  const float weight =
+      static_cast<float>(particle_mass(first, 0, 0)) * length(to_float(snapshot.scene->gravity));
+  particle_weight_ = std::max(weight, 1e-6f);
+  if (shown_scene_ != snapshot.scene_serial) {
+    floor_.clear();
+    if (setting.has_ground) {
+      floor_center_ = setting.room.center();
+      floor_center_.y = setting.ground - 1e-3f * setting.size;
+      floor_.push_back(make_floor(floor_center_, 6 * setting.size));
+    }
+  }
+  shown_scene_ = snapshot.scene_serial;
+  shown_frame_ = snapshot.frame;
+  shown_change_ = snapshot.change;
+  shown_look_ = &look;
+  shown_refinement_ = settings.refinement;
+  shown_detail_ = settings.detail;
+  upload_ms_ = cpu_ms() - start;
+}
+
+void Renderer::update_bodies(const Snapshot& snapshot, const Setting& setting,
+                             const LookSettings& settings) {
+  std::vector<Collider> now;
+  for (const Collider& body : snapshot.bodies) {
+    const Plane* plane = std::get_if<Plane>(&body.shape);
+    if (!plane || !is_level(*plane)) now.push_back(body);
+  }
+  double widest = 0;  // m, diagonal of a square of the grid
+  for (const Cloth& cloth : snapshot.scene->cloths)
+    widest = std::max(widest, std::hypot(spacing_u(cloth.grid), spacing_v(cloth.grid)));
+  for (Collider& body : now) shrink(body, widest);
+  if (now == body_colliders_ && body_tessellation_ == settings.tessellation) return;
+  bodies_.clear();
+  for (const Collider& collider : now)
+    bodies_.push_back(make_body(collider.shape, setting.size, settings.tessellation));
+  body_colliders_ = std::move(now);
+  body_tessellation_ = settings.tessellation;
+}
+
+void Renderer::draw_shadow_map(const Snapshot& snapshot, const Setting& setting,
+                               const LookSettings& settings) {
+  if (!settings.shadows) return;
+  const Bounds bounds = visible_bounds(snapshot);
+  const float r = 1.02f * bounds.radius();
+  const Vec3f eye = bounds.center() + kLight * (1.5f * r);
+  const Mat4 light = orthographic(r, r, 3 * r + 4 * setting.size) *
+                     look_at(eye, bounds.center(), any_normal(kLight));
+  const Mat4 to_texture{{0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0, 0.5f, 0.5f, 0.5f, 1}};
+  shadow_matrix_ = to_texture * light;
+  shadow_map_.begin();
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(1.5f, 4);
+  const Shader& depth = shader("shadow");
+  depth.use();
+  depth.set("u_light_view_projection", light);
+  for (const ClothMesh& cloth : cloths_) cloth.draw_surface();
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (!std::holds_alternative<Plane>(body_colliders_[b].shape)) bodies_[b].draw();
+  glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void Renderer::upload_frame(const Setting& setting, const LookSettings& settings,
+                            const Camera& camera, float aspect) {
+  FrameBlock block;
+  block.view_projection = camera.projection(aspect) * camera.view();
+  block.shadow_matrix = shadow_matrix_;
+  const float t = std::tan(camera.fov() / 2);
+  set(block.eye, camera.eye(), setting.size);
+  set(block.light, kLight, 0.0025f * setting.size);
+  set(block.light_color, kLightColor,
+      settings.shadows ? static_cast<float>(settings.shadow_softness) : 0.0f);
+  set(block.right, camera.right() * (t * aspect), 0);
+  set(block.up, camera.up() * t, 0);
+  set(block.forward, camera.forward(), 0);
+  glBindBuffer(GL_UNIFORM_BUFFER, frame_.id());
+  glBufferData(GL_UNIFORM_BUFFER, sizeof block, &block, GL_STREAM_DRAW);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, frame_.id());
+}
+
+void Renderer::set_material(const Shader& shader, const LookSettings& settings, bool cloth) {
+  shader.use();
+  shader.set("u_color", cloth ? settings.color : kBodyColor);
+  shader.set("u_back_color", cloth ? settings.back_color : kBodyColor);
+  shader.set("u_roughness", settings.roughness);
+  shader.set("u_metallic", settings.metallic);
+  shader.set("u_translucency", cloth ? 0.22f : 0.0f);
+  shader.set("u_parts", Vec3f{settings.ambient ? 1.0f : 0.0f, settings.diffuse ? 1.0f : 0.0f,
+                              settings.specular ? 1.0f : 0.0f});
+  shader.set("u_shininess", settings.shininess);
+  shader.set("u_normal_scale", settings.normal_scale);
+  shader.set("u_raise", 0.0f);
+  const bool heights = shader.name() == "bump" || shader.name() == "displacement";
+  const float repeats = heights ? settings.height_repeats : settings.texture_repeats;
+  shader.set("u_texture_scale", repeats, repeats);
+  shader.set("u_force_scale", 0.25f * settings.force_scale / particle_weight_);
+  shader.set("u_strain_range", settings.strain_range);
+}
+
+void Renderer::draw_ground(const Setting& setting) {
+  if (floor_.empty()) return;
+  const Shader& ground = shader("ground");
+  ground.use();
+  ground.set("u_ground", floor_center_, 4 * setting.size);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  floor_.front().draw();
+  glDisable(GL_BLEND);
+}
+
+void Renderer::draw_bodies(const Look& look, const LookSettings& settings, const Camera& camera) {
+  const Shader& material = shader(look.on_colliders ? look.name : "colour");
+  set_material(material, settings, false);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    // A wall between the eye and the cloth would hide what it pushes.
+    const Plane* plane = std::get_if<Plane>(&body_colliders_[b].shape);
+    if (!plane || in_front_of(*plane, camera.eye())) bodies_[b].draw();
+  }
+}
+
+void Renderer::draw_faces(const ClothMesh& cloth, const Shader& material, float height) {
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_BACK);
+  material.set("u_raise", height);
+  cloth.draw_surface();
+  glCullFace(GL_FRONT);
+  material.set("u_raise", -height);
+  cloth.draw_surface();
+  glDisable(GL_CULL_FACE);
+}
+
+void Renderer::draw_cloths(const Look& look, const LookSettings& settings,
+                           const RenderTarget& target, const Setting& setting) {
+  const Shader& material = shader(look.name);
+  set_material(material, settings, true);
+  const float spacing = setting.size / 150;
+  material.set("u_point_size", spacing);
+  material.set("u_pixels", static_cast<float>(target.height()) * 1.6f);
+  const std::pair<bool, Vec3f> kinds[] = {{settings.structural, kStructuralColor},
+                                          {settings.shear, kShearColor},
+                                          {settings.bend, kBendColor}};
+  for (const ClothMesh& cloth : cloths_) {
+    if (look.draw == Look::Draw::surface && !look.raised) cloth.draw_surface();
+    if (look.draw == Look::Draw::surface && look.raised)
+      draw_faces(cloth, material, settings.height_scale);
+    if (look.draw == Look::Draw::points) cloth.draw_points();
+    for (int kind = 0; kind < 3 && look.draw == Look::Draw::lines; ++kind) {
+      if (!kinds[kind].first) continue;
+      material.set("u_color", kinds[kind].second);
+      cloth.draw_lines(static_cast<ClothMesh::Kind>(kind));
+    }
+  }
+}
+
+}  // namespace weft::viewer

@@ -1,0 +1,84 @@
+// Draws a snapshot: shadow map, background, floor, colliders, cloth.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "picture/camera.h"
+#include "picture/look.h"
+#include "picture/meshes.h"
+#include "picture/render_target.h"
+#include "picture/setting.h"
+#include "picture/shader.h"
+
+namespace weft::viewer {
+
+// The user's files in the place of the program's own pictures; "" = the program's own.
+struct PictureFiles {
+  std::string texture, height_map, sky;
+  friend bool operator==(const PictureFiles&, const PictureFiles&) = default;
+};
+
+class Renderer {
+ public:
+  explicit Renderer(const PictureFiles& files);
+
+  // Into the target, resolved. A new snapshot is uploaded, one drawn before is not.
+  void draw(const Snapshot& snapshot, const Setting& setting, const Look& look,
+            const LookSettings& settings, const Camera& camera, const RenderTarget& target);
+
+  void set_pictures(const PictureFiles& files);
+  // Compiles shaders whose files have changed; true when there is a new one.
+  bool reload_changed();
+  // What is wrong with shaders and pictures; the last good ones are in use.
+  std::vector<std::string> problems() const;
+
+  double upload_ms() const { return upload_ms_; }  // the processor's own work for the last upload
+
+ private:
+  const Shader& shader(std::string_view name);
+  void update_meshes(const Snapshot& snapshot, const Setting& setting, const Look& look,
+                     const LookSettings& settings);
+  void update_bodies(const Snapshot& snapshot, const Setting& setting,
+                     const LookSettings& settings);
+  void draw_shadow_map(const Snapshot& snapshot, const Setting& setting,
+                       const LookSettings& settings);
+  void upload_frame(const Setting& setting, const LookSettings& settings, const Camera& camera,
+                    float aspect);
+  void set_material(const Shader& shader, const LookSettings& settings, bool cloth);
+  void draw_ground(const Setting& setting);
+  void draw_bodies(const Look& look, const LookSettings& settings, const Camera& camera);
+  // The two faces of a cloth, each raised to its side.
+  static void draw_faces(const ClothMesh& cloth, const Shader& material, float height);
+  void draw_cloths(const Look& look, const LookSettings& settings, const RenderTarget& target,
+                   const Setting& setting);
+
+  std::filesystem::path folder_;
+  std::map<std::string, Shader, std::less<>> shaders_;
+  ShadowMap shadow_map_;
+  PictureFiles files_;
+  Texture texture_, height_map_, sky_;
+  std::vector<std::string> picture_problems_;
+  Buffer frame_;
+  VertexArray nothing_;  // for the background's triangle
+
+  std::vector<ClothMesh> cloths_;
+  std::vector<BodyMesh> bodies_;
+  std::vector<BodyMesh> floor_;  // one or none
+  Vec3f floor_center_{};
+  std::vector<Collider> body_colliders_;  // as the bodies were made from
+  int body_tessellation_ = 0;
+  Mat4 shadow_matrix_;
+  float particle_weight_ = 1;  // N, of the cloth that is drawn
+  double upload_ms_ = 0;
+
+  // What is uploaded.
+  std::uint64_t shown_scene_ = ~std::uint64_t{0};
+  std::int64_t shown_frame_ = -1;
+  std::uint64_t shown_change_ = 0;
+  const Look* shown_look_ = nullptr;
+  int shown_refinement_ = -1, shown_detail_ = 0;
+};
+
+}  // namespace weft::viewer

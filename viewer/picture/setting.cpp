@@ -1,0 +1,68 @@
+// Placing the floor and guessing the room a scene needs.
+#include "picture/setting.h"
+
+namespace weft::viewer {
+
+namespace {
+
+// How far down the cloth can hang, from its pins or draped over the colliders.
+float reach_of(const Cloth& cloth, const ClothCopy& copy, const Bounds& bodies, bool& held) {
+  const float side = std::max(length(to_float(cloth.grid.u)), length(to_float(cloth.grid.v)));
+  float lowest = 1e30f;
+  if (!cloth.pins.empty()) {
+    float highest = -1e30f;
+    for (const Pin& pin : cloth.pins) highest = std::max(highest, copy.position(pin.i, pin.j).y);
+    lowest = highest - 1.08f * side;
+    held = true;
+  } else if (!bodies.empty()) {
+    lowest = bodies.high.y - 0.6f * side;
+    held = true;
+  }
+  return lowest;
+}
+
+}  // namespace
+
+bool is_level(const Plane& plane) {
+  const Vec3f n = normalized(to_float(plane.normal));
+  return n.y > 0.98f;
+}
+
+bool in_front_of(const Plane& plane, Vec3f point) {
+  return dot(to_float(plane.normal), point - to_float(plane.point)) > 0;
+}
+
+Setting setting_of(const Snapshot& start) {
+  Setting setting;
+  const Scene& scene = *start.scene;
+  Bounds bodies;
+  for (const Collider& collider : scene.colliders)
+    for (const double time : {0.0, scene.time.seconds / 2, scene.time.seconds})
+      bodies.add(collider_bounds({collider_at(collider, time)}));
+  setting.room = cloth_bounds(start);
+  setting.room.add(bodies);
+
+  float lowest = setting.room.low.y;
+  bool held = false;
+  for (std::size_t c = 0; c < scene.cloths.size() && c < start.cloths.size(); ++c)
+    lowest = std::min(lowest, reach_of(scene.cloths[c], start.cloths[c], bodies, held));
+  setting.has_ground = held;
+  setting.ground = lowest - 0.02f * setting.room.radius();
+  for (const Collider& collider : scene.colliders)
+    if (const Plane* plane = std::get_if<Plane>(&collider.shape); plane && is_level(*plane)) {
+      setting.has_ground = true;
+      setting.ground = static_cast<float>(plane->point[1]);
+    }
+  if (setting.has_ground)
+    setting.room.add(Vec3f{setting.room.center().x, setting.ground, setting.room.center().z});
+  setting.size = 2 * setting.room.radius();
+  return setting;
+}
+
+Bounds visible_bounds(const Snapshot& snapshot) {
+  Bounds bounds = cloth_bounds(snapshot);
+  bounds.add(collider_bounds(snapshot.bodies));
+  return bounds;
+}
+
+}  // namespace weft::viewer

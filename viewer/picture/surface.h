@@ -1,0 +1,72 @@
+// The cloth as it is drawn: a smooth surface through the particles and its normals, and what some
+// looks show on it. Arrays of components, so that whole rows are computed at once.
+#pragma once
+
+#include <vector>
+
+#include "picture/snapshot.h"
+
+namespace weft::viewer {
+
+// A lattice of columns * rows vertices without padding; each cell of the cloth's grid is cut into
+// refinement * refinement.
+struct ClothSurface {
+  int refinement = 1;
+  int columns = 0, rows = 0;
+  std::vector<float> x, y, z;     // m
+  std::vector<float> nx, ny, nz;  // not of unit length
+  std::vector<float> fx, fy, fz;  // N; empty unless asked for
+  std::vector<float> strain;      // empty unless asked for
+  // Triangles, in a fixed place for each piece of each square; what is torn is a point. Follows
+  // triangulate().
+  std::vector<std::uint32_t> indices;
+  // Triangles beside the tears; their vertices come after those of the lattice.
+  std::vector<std::uint32_t> seam_indices;
+};
+
+// How many vertices there are for a square of the grid, or squares for a vertex: a coarse grid is
+// refined, a very fine one thinned out, to about `detail` vertices along a side.
+struct Sampling {
+  int refinement = 1, step = 1;
+  friend bool operator==(const Sampling&, const Sampling&) = default;
+};
+Sampling sampling_of(const ClothCopy& cloth, int detail);
+
+// Every step-th particle and the last ones; the cloth is whole.
+ClothCopy thinned(const ClothCopy& cloth, int step);
+std::vector<float> thinned(const std::vector<float>& values, const ClothCopy& cloth, int step);
+
+// Sets the size of the surface.
+void size_surface(const ClothCopy& cloth, int refinement, ClothSurface& surface);
+
+// Catmull-Rom patches through the particles; normals by central differences.
+void build_surface(const ClothCopy& cloth, ClothSurface& surface);
+
+// The triangles of a cloth, whole or torn, on a surface whose size is set.
+void triangulate(const ClothCopy& cloth, ClothSurface& surface);
+
+// build_surface() for a torn cloth; the triangles are there already.
+void build_torn_surface(const ClothCopy& cloth, ClothSurface& surface);
+
+// Adds the vertices beside the tears to a surface that is complete otherwise.
+void add_seams(const ClothCopy& cloth, ClothSurface& surface);
+// The vertex of the lattice for a particle, j*stride + i.
+std::size_t vertex_of(const ClothCopy& cloth, const ClothSurface& surface, std::uint32_t particle);
+
+// Adds to the surface of the thinned cloth the force of the springs on each particle [N] by Hooke's
+// law.
+void add_forces(const ClothCopy& cloth, const Cloth& description, int step, ClothSurface& surface);
+
+// Adds the greatest strain |length / rest - 1| of the structural constraints at each particle.
+void add_strains(const ClothCopy& cloth, const Cloth& description, int step, ClothSurface& surface);
+
+// The offsets on the grid of each kind of constraint that the cloth has.
+struct Offset {
+  int di, dj;
+};
+struct Offsets {
+  std::vector<Offset> structural, shear, bend;
+};
+Offsets offsets_of(const Cloth& description);
+
+}  // namespace weft::viewer

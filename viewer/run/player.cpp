@@ -1,0 +1,253 @@
+// What each of a person's wishes does to the simulation.
+#include "run/player.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace weft::viewer {
+
+namespace {
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Player::Player(Scene scene, const Options& options, bool hashes)
+    : options_(options), hashes_(hashes), clock_(scene.time.frame) {
+  options_.profile = true;
+  start(std::move(scene));
+}
+
+// A failure of a person's wish is told and changes nothing else.
+template <class Do>
+void Player::attempt(Do&& action) {
+  const auto tell = [&](const std::string& problem) {
+    vitals_.problem = problem;
+    ++vitals_.problems;
+  };
+  try {
+    action();
+  } catch (const WriteError& error) {
+    tell(error.path + ": " + error.what());
+  } catch (const std::exception& error) {
+    tell(error.what());
+  }
+}
+
+void Player::start(Scene scene) {
+  auto simulation = std::make_unique<Simulation>(scene, options_);
+  scene_ = std::move(scene);
+  simulation_ = std::move(simulation);
+  restart_clock();
+  rewind_.clear();
+  rewind_.keep(simulation_->moment());
+  back_ = 0;
+  ++serial_;
+  shown_scene_ = std::make_shared<const Scene>(scene_);
+  next_measure_ = 0;
+}
+
+void Player::restart_clock() {
+  const bool paused = clock_.paused();
+  const double speed = clock_.speed();
+  clock_ = FixedStepClock(scene_.time.frame);
+  clock_.set_speed(speed);
+  if (paused) clock_.pause();
+}
+
+void Player::open(Scene scene) {
+  attempt([&] {
+    finish_recording();
+    finish_export();
+    start(std::move(scene));
+  });
+}
+
+void Player::change(Scene scene) {
+  attempt([&] {
+    leave_past();
+    if (simulation_->frame() == 0 && !recorder_) {
+      start(std::move(scene));
+      return;
+    }
+    Input input{.kind = Input::Kind::set_scene};
+    input.scene = std::make_shared<const Scene>(scene);
+    give(input);
+    if (simulation_->frame() == 0) finish_export();  // another grid
+    const bool same = scene.cloths.size() == scene_.cloths.size() &&
+                      scene.colliders.size() == scene_.colliders.size();
+    if (!same || simulation_->frame() == 0) rewind_.clear();
+    scene_ = std::move(scene);
+    if (clock_.step() != scene_.time.frame) restart_clock();
+    if (rewind_.size() == 0) rewind_.keep(simulation_->moment());
+    shown_scene_ = std::make_shared<const Scene>(scene_);
+    ++serial_;
+    next_measure_ = 0;
+  });
+}
+
+void Player::set_options(int threads, Simd simd) {
+  attempt([&] {
+    Options options = options_;
+    options.threads = threads;
+    options.simd = simd;
+    auto next = std::make_unique<Simulation>(simulation_->scene(), options);
+    next->restore(simulation_->moment());
+    // What stages carry does not survive: a recording would not replay to the same bits.
+    finish_recording();
+    simulation_ = std::move(next);
+    options_ = options;
+    ++serial_;
+  });
+}
+
+void Player::pause(bool paused) {
+  if (paused) clock_.pause();
+  if (!paused) {
+    leave_past();
+    clock_.resume();
+  }
+}
+
+void Player::step() {
+  leave_past();
+  clock_.single_step();
+}
+
+void Player::hand(const Input& input) {
+  attempt([&] {
+    leave_past();
+    give(input);
+    ++change_;
+  });
+}
+
+// An input that cannot be applied is not recorded either.
+void Player::give(const Input& input) {
+  const std::int64_t frame = simulation_->frame();
+  apply(input, *simulation_);
+  if (recorder_) recorder_->input(frame, input);
+}
+
+void Player::go_back(int back) {
+  attempt([&] {
+    clock_.pause();
+    back_ = std::clamp(back, 0, rewind_.size() - 1);
+    finish_recording();
+    simulation_->restore(rewind_.at(back_));
+    ++change_;
+  });
+}
+
+void Player::leave_past() {
+  rewind_.cut(back_);
+  back_ = 0;
+}
+
+void Player::record(const std::string& path) {
+  attempt([&] {
+    finish_recording();
+    start(scene_);
+    recorder_ = std::make_unique<Recorder>(path, *simulation_);
+    vitals_.recording = true;
+  });
+}
+
+void Player::finish_recording() {
+  if (!recorder_) return;
+  attempt([&] {
+    const std::unique_ptr<Recorder> done = std::move(recorder_);
+    vitals_.recording = false;
+    done->finish();
+    vitals_.recorded = done->path();
+  });
+}
+
+void Player::export_to(const std::string& path) {
+  attempt([&] {
+    export_ = open_animation(path, simulation_->view());
+    export_->append(simulation_->view());
+    vitals_.exporting = true;
+  });
+}
+
+void Player::finish_export() {
+  if (!export_) return;
+  attempt([&] {
+    const std::unique_ptr<Animation> done = std::move(export_);
+    vitals_.exporting = false;
+    done->finish();
+    vitals_.recorded = done->written();
+  });
+}
+
+int Player::due(double now) {
+  if (now - pace_.since > 0.5) {
+    const auto frames = static_cast<double>(vitals_.frames - pace_.frames);
+    vitals_.pace = frames * scene_.time.frame / (now - pace_.since);
+    pace_ = {now, vitals_.frames};
+  }
+  return clock_.advance(now);
+}
+
+void Player::advance() {
+  attempt([&] {
+    if (!simulation_->status().ok) {
+      clock_.pause();
+      return;
+    }
+    const double start = seconds_now();
+    simulation_->advance_frame();
+    vitals_.frame_ms = 1e3 * (seconds_now() - start);
+    ++vitals_.frames;
+    if (!simulation_->status().ok) return;
+    if (recorder_) recorder_->frame(*simulation_);
+    if (export_) export_->append(simulation_->view());
+    keep_state();
+  });
+}
+
+// Every frame's, unless that takes too long.
+void Player::keep_state() {
+  constexpr double kFree = 2e-3;  // s
+  if (--until_keep_ > 0) return;
+  const double start = seconds_now();
+  rewind_.keep(simulation_->moment());
+  until_keep_ = 1 + static_cast<int>((seconds_now() - start) / kFree);
+}
+
+// At most a tenth of the time goes into measuring.
+void Player::measure_sometimes() {
+  const double now = seconds_now();
+  if (now < next_measure_) return;
+  vitals_.report = simulation_->report(false);
+  vitals_.plan = std::make_shared<const Plan>(simulation_->plan());
+  ++vitals_.measured;
+  const double took = seconds_now() - now;
+  next_measure_ = now + std::max(0.1, 10 * took);
+}
+
+void Player::show(Shown& shown) {
+  measure_sometimes();
+  Snapshot& snapshot = shown.snapshot;
+  snapshot.scene = shown_scene_;
+  snapshot.scene_serial = serial_;
+  snapshot.change = change_;
+  snapshot.frame = simulation_->frame();
+  copy_view(simulation_->view(), simulation_->scene(), snapshot);
+  vitals_.status = simulation_->status();
+  vitals_.substeps = simulation_->substeps();
+  vitals_.threads = simulation_->threads();
+  vitals_.dt = simulation_->dt();
+  vitals_.paused = clock_.paused();
+  vitals_.speed = clock_.speed();
+  vitals_.kept = rewind_.size();
+  vitals_.back = back_;
+  vitals_.kept_s = rewind_.seconds();
+  vitals_.hash = hashes_ ? simulation_->hash() : 0;
+  shown.vitals = vitals_;
+}
+
+}  // namespace weft::viewer

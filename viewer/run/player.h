@@ -1,0 +1,84 @@
+// The simulation as a person plays it: its clock, the ring of past states, the recording. Lives on
+// the simulation's thread alone (session.h).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "run/rewind.h"
+#include "run/vitals.h"
+#include "weft/clock.h"
+#include "weft/recording.h"
+
+namespace weft::viewer {
+
+class Player {
+ public:
+  // The scene is valid.
+  Player(Scene scene, const Options& options, bool hashes);
+
+  // A scene from its start.
+  void open(Scene scene);
+  // The scene with other values; what moves goes on where that makes sense.
+  void change(Scene scene);
+  void reset() { open(scene_); }
+  // Threads and instruction set: the same bits, another speed.
+  void set_options(int threads, Simd simd);
+
+  void pause(bool paused);
+  void step();
+  void set_speed(double speed) { clock_.set_speed(speed); }
+  void hand(const Input& input);
+
+  // Shows the state `back` before the newest kept, paused; going on forgets what came after.
+  void go_back(int back);
+
+  // Records from the start of the scene, which begins anew.
+  void record(const std::string& path);
+  void finish_recording();
+
+  // Exports the animation from now on, in a format of weft/output.h, until finish_export().
+  void export_to(const std::string& path);
+  void finish_export();
+
+  // Frames due at `now` [s], and one of them.
+  int due(double now);
+  void advance();
+  bool idle() const { return clock_.paused(); }
+
+  // Copies what is to be shown.
+  void show(Shown& shown);
+
+ private:
+  template <class Do>
+  void attempt(Do&& action);
+  void give(const Input& input);
+  void start(Scene scene);
+  void restart_clock();
+  void leave_past();
+  void measure_sometimes();
+  void keep_state();
+
+  Scene scene_;  // as opened or changed last
+  Options options_;
+  bool hashes_;
+  std::unique_ptr<Simulation> simulation_;
+  FixedStepClock clock_;
+  Rewind rewind_;
+  int back_ = 0;
+  int until_keep_ = 1;  // frames
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<Animation> export_;
+
+  std::shared_ptr<const Scene> shown_scene_;
+  std::uint64_t serial_ = 0, change_ = 0;
+  Vitals vitals_;
+  double next_measure_ = 0;  // s
+  struct {
+    double since = 0;  // s
+    std::int64_t frames = 0;
+  } pace_;
+};
+
+}  // namespace weft::viewer

@@ -1,0 +1,88 @@
+// The simulation's thread.
+#include "run/session.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+
+namespace weft::viewer {
+
+using std::chrono::steady_clock;
+
+namespace {
+
+constexpr int kYielding = 5;  // nice value
+
+}  // namespace
+
+Session::Session(Scene scene, const Options& options, bool paused, bool hashes)
+    : player_(std::move(scene), options, hashes) {
+  player_.pause(paused);
+  publish();
+  shown_.take();
+  thread_ = std::thread([this] { run(); });
+}
+
+Session::~Session() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void Session::post(Command command) {
+  {
+    const std::lock_guard lock(mutex_);
+    commands_.push_back(std::move(command));
+  }
+  wake_.notify_one();
+}
+
+bool Session::obey() {
+  std::vector<Command> commands;
+  {
+    const std::lock_guard lock(mutex_);
+    commands.swap(commands_);
+  }
+  for (const Command& command : commands) command(player_);
+  return !commands.empty();
+}
+
+void Session::publish() {
+  player_.show(shown_.back());
+  shown_.publish();
+}
+
+void Session::run() {
+  // Where processors are short the window comes first; the threads of the simulation inherit this.
+  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kYielding);
+  const auto origin = steady_clock::now();
+  for (;;) {
+    {
+      std::unique_lock lock(mutex_);
+      const auto ready = [&] { return stopping_ || !commands_.empty(); };
+      if (player_.idle())
+        wake_.wait(lock, ready);
+      else
+        wake_.wait_for(lock, std::chrono::milliseconds(1), ready);
+      if (stopping_) break;
+    }
+    bool news = obey();
+    const double now = std::chrono::duration<double>(steady_clock::now() - origin).count();
+    // A command in between is obeyed at once, however slow the frames are.
+    for (int due = player_.due(now); due > 0; --due) {
+      player_.advance();
+      publish();
+      news = obey();
+      if (news) break;
+    }
+    if (news) publish();
+  }
+  player_.finish_recording();
+  player_.finish_export();
+}
+
+}  // namespace weft::viewer

@@ -1,0 +1,264 @@
+// The loop: events, keys, hands, picture, panel.
+#include "window/app.h"
+
+#include <glad/gl.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "failure.h"
+#include "panel/theme.h"
+#include "picture/cpu_time.h"
+
+namespace weft::viewer {
+
+namespace {
+
+constexpr double kTurn = 1.0 / 60;  // s, the shortest turn
+
+double seconds_now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Pointer pointer_now() {
+  const ImGuiIO& io = ImGui::GetIO();
+  Pointer p;
+  p.x = io.MousePos.x, p.y = io.MousePos.y;
+  p.dx = io.MouseDelta.x, p.dy = io.MouseDelta.y;
+  p.wheel = io.MouseWheel;
+  p.left = io.MouseDown[0], p.right = io.MouseDown[1], p.middle = io.MouseDown[2];
+  p.pressed = ImGui::IsMouseClicked(0), p.released = ImGui::IsMouseReleased(0);
+  p.inside = !io.WantCaptureMouse && ImGui::IsMousePosValid();
+  p.ctrl = io.KeyCtrl, p.shift = io.KeyShift, p.alt = io.KeyAlt;
+  return p;
+}
+
+}  // namespace
+
+App::App(const Arguments& arguments)
+    : window_(arguments.width, arguments.height, "Weft"),
+      workspace_(arguments),
+      view_(arguments.pictures),
+      panel_(keys_),
+      log_(arguments.log),
+      measure_(arguments.measure) {
+  set_theme(window_.scale());
+  if (log_.on()) ImGui::GetIO().UserData = &landmarks_;
+  read_keys(arguments.keys);
+}
+
+void App::read_keys(const std::string& path) {
+  std::error_code error;
+  const std::string file = path.empty() ? keys_file() : path;
+  if (!path.empty() && !std::filesystem::exists(path, error))
+    workspace_.messages.warn(path + ": there is no such file of keys", 0);
+  for (const std::string& wrong : keys_.read(file)) workspace_.messages.warn(wrong, 0);
+}
+
+void App::run() {
+  const double begun = seconds_now();
+  while (!window_.closing()) {
+    const double start = seconds_now();
+    turn_ = {};
+    turn();
+    const double took = seconds_now() - start;
+    view_.took(1e3 * took);
+    window_.poll(std::max(0.0, kTurn - took));
+    turn_.all_ms = 1e3 * (seconds_now() - start);
+    panel_.history.add(workspace_.vitals(), workspace_.snapshot().scene_serial, turn_);
+    if (measure_ > 0 && measured(begun)) window_.close();
+  }
+  if (film_) end_film();
+}
+
+// The first second, in which shaders are compiled, does not count.
+bool App::measured(double begun) {
+  const double since = seconds_now() - begun;
+  if (since > 1) turns_.push_back(turn_);
+  if (since < 1 + measure_) return false;
+  std::fputs(words(turns_).c_str(), stdout);
+  return true;
+}
+
+void App::turn() {
+  const double now = seconds_now();
+  workspace_.refresh(now);
+  take_dropped();
+  view_.reload(workspace_);
+  if (!window_.visible()) return;
+  const double panel_start = cpu_ms();
+  landmarks_.clear();
+  window_.begin_panel();
+  for (const KeyPress& press : window_.take_keys()) {
+    const Action action = keys_.action_of(press);
+    const bool typing = ImGui::GetIO().WantTextInput;
+    if (action != Action::count && !typing && (!press.again || action == Action::step ||
+                                               action == Action::back || action == Action::forward))
+      obey(action);
+  }
+  push_bodies(std::min(now - last_turn_, 0.1));
+  last_turn_ = now;
+  const Area area = panel_.picture_area();
+  workspace_.set_aspect(area.aspect());
+  hands_.update(workspace_, area, pointer_now());
+  hands_.draw(workspace_, area, *ImGui::GetBackgroundDrawList());
+  Wishes wishes;
+  panel_.filming = film_.has_value();
+  panel_.draw(workspace_, hands_, wishes);
+  const double picture_start = cpu_ms();
+  draw_picture();
+  const double picture_end = cpu_ms();
+  window_.end_panel();
+  turn_.panel_ms = cpu_ms() - picture_end + picture_start - panel_start;
+  turn_.picture = view_.drawn();
+  if (view_.drawn()) turn_.surface_ms = view_.own_ms();
+  window_.swap();
+  grant(wishes);
+  film();
+  log_.write(workspace_, view_, hands_, panel_.help, landmarks_);
+}
+
+std::pair<int, int> App::picture_size() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float fine = size.x > 0 ? static_cast<float>(window_.width()) / size.x : 1;
+  const int x = static_cast<int>(panel_.picture_area().x * fine);
+  return {std::max(16, window_.width() - x), std::max(16, window_.height())};
+}
+
+void App::draw_picture() {
+  const auto [width, height] = picture_size();
+  view_.draw(workspace_, window_.width() - width, 0, width, height);
+}
+
+void App::obey(Action action) {
+  if (action == Action::quit) leave();
+  if (action == Action::help) panel_.help = !panel_.help;
+  if (action == Action::panel) panel_.visible = !panel_.visible;
+  if (action == Action::screenshot) take_screenshot();
+  if (action == Action::film) start_or_end_film();
+  if (action >= Action::hand && action <= Action::ball)
+    hands_.tool = static_cast<Tool>(static_cast<int>(action) - static_cast<int>(Action::hand));
+  obey_scene(action);
+  obey_view(action);
+}
+
+// The list or the help that is open, else the program.
+void App::leave() {
+  constexpr ImGuiPopupFlags any = ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel;
+  if (ImGui::IsPopupOpen("", any))
+    ImGui::ClosePopupsOverWindow(nullptr, false);
+  else if (panel_.help)
+    panel_.help = false;
+  else
+    window_.close();
+}
+
+void App::obey_scene(Action action) {
+  const Vitals& v = workspace_.vitals();
+  if (action == Action::pause) workspace_.play(v.paused);
+  if (action == Action::step) workspace_.step();
+  if (action == Action::reset) workspace_.reset();
+  if (action == Action::undo) workspace_.undo();
+  if (action == Action::redo) workspace_.redo();
+  if (action == Action::save) workspace_.save(workspace_.document().save_path());
+  if (action == Action::faster) workspace_.set_speed(std::min(8.0, v.speed * 2));
+  if (action == Action::slower) workspace_.set_speed(std::max(1.0 / 64, v.speed / 2));
+  if (action == Action::back) workspace_.go_back(v.back + 1);
+  if (action == Action::forward) workspace_.go_back(std::max(0, v.back - 1));
+}
+
+void App::obey_view(Action action) {
+  if (action == Action::frame) workspace_.frame_cloth();
+  if (action == Action::next_look) workspace_.next_look(1);
+  if (action == Action::previous_look) workspace_.next_look(-1);
+  if (action == Action::next_scene) workspace_.open_neighbour(1);
+  if (action == Action::previous_scene) workspace_.open_neighbour(-1);
+}
+
+void App::push_bodies(double seconds) {
+  if (ImGui::GetIO().WantTextInput) return;
+  const auto along = [&](Action less, Action more) {
+    return (keys_.held(more, window_) ? 1.0f : 0.0f) - (keys_.held(less, window_) ? 1.0f : 0.0f);
+  };
+  hands_.pusher.push(workspace_,
+                     {along(Action::move_left, Action::move_right),
+                      along(Action::move_down, Action::move_up),
+                      along(Action::move_far, Action::move_near)},
+                     seconds);
+}
+
+// A picture becomes the texture, anything else is a scene.
+void App::take_dropped() {
+  for (const std::string& path : window_.take_dropped()) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
+      workspace_.pictures.texture = path;
+      workspace_.look = find_look("texture");
+    } else {
+      workspace_.open(path);
+    }
+  }
+}
+
+void App::grant(const Wishes& wishes) {
+  if (wishes.screenshot) take_screenshot();
+  if (wishes.film) start_or_end_film();
+}
+
+void App::take_screenshot() {
+  const std::string path = free_name(workspace_.document().name(), ".png");
+  const auto [width, height] = picture_size();
+  try {
+    write_png(path, view_.picture(workspace_, width, height));
+    workspace_.messages.tell("Picture saved to " + path, workspace_.now());
+  } catch (const Failure& failure) {
+    workspace_.messages.warn("No picture: " + std::string(failure.what()), workspace_.now());
+  }
+}
+
+void App::start_or_end_film() {
+  if (film_) {
+    end_film();
+    return;
+  }
+  const auto [width, height] = picture_size();
+  try {
+    film_.emplace(workspace_.document().name(), width & ~1, height & ~1,
+                  workspace_.snapshot().time);
+    workspace_.messages.tell("The film goes to " + film_->path() + " until you end it",
+                             workspace_.now());
+  } catch (const Failure& failure) {
+    workspace_.messages.warn("No film: " + std::string(failure.what()), workspace_.now());
+  }
+}
+
+void App::end_film() {
+  try {
+    film_->finish();
+    workspace_.messages.tell("Film saved to " + film_->path(), workspace_.now());
+  } catch (const Failure& failure) {
+    workspace_.messages.warn("No film: " + std::string(failure.what()), workspace_.now());
+  }
+  film_.reset();
+}
+
+void App::film() {
+  if (!film_) return;
+  const int due = film_->due(workspace_.snapshot().time);
+  if (due == 0) return;
+  try {
+    film_->add(view_.picture(workspace_, film_->width(), film_->height()), due);
+  } catch (const Failure& failure) {
+    workspace_.messages.warn("The film ends: " + std::string(failure.what()), workspace_.now());
+    film_.reset();
+  }
+}
+
+}  // namespace weft::viewer

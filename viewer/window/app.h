@@ -1,0 +1,60 @@
+// The program with its window: one turn of the loop after another.
+#pragma once
+
+#include <optional>
+
+#include "command_line.h"
+#include "film/film.h"
+#include "hands/hands.h"
+#include "panel/panel.h"
+#include "window/figures.h"
+#include "window/keys.h"
+#include "window/log.h"
+#include "window/view.h"
+#include "window/window.h"
+#include "window/workspace.h"
+
+namespace weft::viewer {
+
+class App {
+ public:
+  // Throws Failure.
+  explicit App(const Arguments& arguments);
+
+  // Until the window closes.
+  void run();
+
+ private:
+  void read_keys(const std::string& path);
+  void obey(Action action);
+  void leave();
+  void obey_scene(Action action);
+  void obey_view(Action action);
+  void push_bodies(double seconds);
+  void take_dropped();
+  bool measured(double begun);
+  void turn();
+  void draw_picture();
+  void grant(const Wishes& wishes);
+  void take_screenshot();
+  void start_or_end_film();
+  void end_film();
+  void film();
+  std::pair<int, int> picture_size() const;  // pixels
+
+  Window window_;
+  Keys keys_;
+  Workspace workspace_;
+  View view_;
+  Hands hands_;
+  Panel panel_;
+  Log log_;
+  Landmarks landmarks_;
+  std::optional<Film> film_;
+  double measure_;  // s, 0: not at all
+  std::vector<Turn> turns_;
+  Turn turn_;  // the present one
+  double last_turn_ = 0;  // s
+};
+
+}  // namespace weft::viewer

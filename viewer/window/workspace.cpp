@@ -1,0 +1,214 @@
+// Between the person and the simulation.
+#include "window/workspace.h"
+
+#include <thread>
+
+#include "failure.h"
+#include "film/film.h"
+#include "headless.h"
+
+namespace weft::viewer {
+
+namespace {
+
+// One core is left to the window.
+int threads_of(const Arguments& arguments) {
+  if (arguments.threads > 0) return arguments.threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
+}
+
+}  // namespace
+
+Workspace::Workspace(const Arguments& arguments)
+    : look(find_look(arguments.look)),
+      settings(arguments.settings),
+      pictures(arguments.pictures),
+      threads_(threads_of(arguments)) {
+  const std::string name = scene_name(arguments);
+  const std::vector<Fault> faults = document_.open(name, arguments.overrides);
+  if (!faults.empty()) throw Failure(kBadScene, fault_lines(name, faults));
+  Options options;
+  options.threads = threads_;
+  options.seed = arguments.seed;
+  session_.emplace(document_.scene(), options, arguments.paused, !arguments.log.empty());
+  simulated_ = kept_ = document_.revision();
+  tell_kept();
+  aim(arguments, camera);
+  show_start();
+  camera.zoom(static_cast<float>(std::log(arguments.zoom) / -std::log(0.88)));
+  if (!arguments.record.empty())
+    session_->post([path = arguments.record](Player& player) { player.record(path); });
+}
+
+void Workspace::show_start() {
+  serial_ = snapshot().scene_serial;
+  setting_ = setting_of(snapshot());
+  frame_cloth();
+}
+
+void Workspace::frame_cloth() {
+  Bounds bounds = visible_bounds(snapshot());
+  if (snapshot().frame == 0) bounds.add(setting_.room);
+  camera.frame(bounds, aspect_);
+}
+
+void Workspace::open(const std::string& path_or_name) {
+  const std::vector<Fault> faults = document_.open(path_or_name);
+  messages.fault("scene", fault_lines(path_or_name, faults));
+  if (!faults.empty()) return;
+  simulated_ = document_.revision();
+  opening_ = true;
+  session_->post([scene = document_.scene()](Player& player) { player.open(scene); });
+  kept_ = simulated_;
+  messages.tell("Opened " + document_.name(), now_);
+  tell_kept();
+}
+
+void Workspace::open_neighbour(int step) {
+  if (scenes_.empty()) return;
+  const auto count = static_cast<int>(scenes_.size());
+  int at = step > 0 ? -1 : count;
+  for (int k = 0; k < count; ++k)
+    if (scenes_[std::size_t(k)].path == document_.path()) at = k;
+  open(scenes_[std::size_t((at + step + count) % count)].path);
+}
+
+void Workspace::reset() {
+  session_->post([scene = document_.scene()](Player& player) { player.open(scene); });
+  simulated_ = document_.revision();
+}
+
+void Workspace::save(const std::string& path) {
+  try {
+    document_.save(path);
+    messages.tell("Saved " + path, now_);
+  } catch (const WriteError& error) {
+    messages.warn("Not saved: " + error.path + ": " + error.what(), now_);
+  }
+}
+
+bool Workspace::edit(const std::vector<Document::Change>& changes, bool joined) {
+  const std::string wrong = document_.set(changes, joined);
+  if (!wrong.empty()) messages.warn("Not changed: " + wrong, now_);
+  return wrong.empty();
+}
+
+void Workspace::undo() {
+  if (!document_.can_undo()) return;
+  messages.tell("Undone: " + document_.next_undo(), now_);
+  document_.undo();
+}
+
+void Workspace::redo() {
+  if (!document_.can_redo()) return;
+  document_.redo();
+  messages.tell("Done again: " + document_.next_undo(), now_);
+}
+
+void Workspace::set_options(int threads, Simd simd) {
+  threads_ = threads;
+  simd_ = simd;
+  session_->post([=](Player& player) { player.set_options(threads, simd); });
+}
+
+void Workspace::play(bool on) {
+  session_->post([on](Player& player) { player.pause(!on); });
+}
+
+void Workspace::set_speed(double speed) {
+  session_->post([speed](Player& player) { player.set_speed(speed); });
+}
+
+void Workspace::step() {
+  session_->post([](Player& player) { player.step(); });
+}
+
+void Workspace::go_back(int back) {
+  session_->post([back](Player& player) { player.go_back(back); });
+}
+
+void Workspace::give(const Input& input) {
+  session_->post([input](Player& player) { player.hand(input); });
+}
+
+void Workspace::start_or_end_export() {
+  if (vitals().exporting) {
+    session_->post([](Player& player) { player.finish_export(); });
+    return;
+  }
+  const std::string path = free_name(document_.name(), ".pc2");
+  messages.tell("The animation goes to " + path + " until you end it", now_);
+  session_->post([path](Player& player) { player.export_to(path); });
+}
+
+void Workspace::next_look(int step) {
+  const auto count = static_cast<std::ptrdiff_t>(kLooks.size());
+  const std::ptrdiff_t at = look - kLooks.data();
+  look = &kLooks[std::size_t((at + step + count) % count)];
+  messages.tell("Look: " + std::string(look->name), now_);
+}
+
+// One change at a time is on its way, so that a slow scene is not flooded: always the newest.
+void Workspace::post_change() {
+  if (telling_ || document_.revision() == simulated_) return;
+  telling_ = true;
+  simulated_ = document_.revision();
+  session_->post([scene = document_.scene()](Player& player) { player.change(scene); });
+}
+
+void Workspace::watch_file() {
+  if (now_ < next_watch_) return;
+  next_watch_ = now_ + 0.5;
+  if (!document_.changed_on_disk()) return;
+  if (document_.edited()) {
+    messages.warn(document_.path() + " has changed on disk; your changes here are kept", now_);
+    return;
+  }
+  open(document_.path());
+}
+
+// What is edited and not saved is written down every other second: nothing is lost with the window.
+void Workspace::keep_edits() {
+  if (now_ < next_keep_ || document_.revision() == kept_) return;
+  next_keep_ = now_ + 2;
+  kept_ = document_.revision();
+  messages.fault("kept", document_.keep());
+}
+
+void Workspace::tell_kept() {
+  const std::string path = document_.kept();
+  if (!path.empty()) messages.tell("Changes that were not saved are kept in " + path, now_);
+}
+
+void Workspace::refresh(double now) {
+  now_ = now;
+  messages.forget(now);
+  const bool fresh = session_->refresh();
+  if (fresh && snapshot().scene_serial != serial_) {
+    telling_ = false;
+    if (opening_) {
+      opening_ = false;
+      show_start();
+    } else {
+      serial_ = snapshot().scene_serial;
+      const Setting now_set = setting_of(snapshot());
+      if (snapshot().frame == 0) setting_ = now_set;
+    }
+  }
+  const Vitals& v = vitals();
+  if (v.problems != problems_) {
+    problems_ = v.problems;
+    telling_ = false;
+    messages.warn(v.problem, now_);
+  }
+  if (v.recorded != recorded_) {
+    recorded_ = v.recorded;
+    messages.tell("Written: " + recorded_, now_);
+  }
+  messages.fault("status", v.status.ok ? "" : "The simulation stopped itself: " + v.status.text);
+  post_change();
+  watch_file();
+  keep_edits();
+}
+
+}  // namespace weft::viewer

@@ -1,0 +1,87 @@
+// What the window works on: the scene as edited, the simulation that plays it, and how it is shown.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "command_line.h"
+#include "edit/document.h"
+#include "picture/renderer.h"
+#include "run/session.h"
+#include "window/messages.h"
+
+namespace weft::viewer {
+
+class Workspace {
+ public:
+  // Opens the scene of the arguments. Throws Failure.
+  explicit Workspace(const Arguments& arguments);
+
+  // Another scene; a broken one is told, and the present one stays.
+  void open(const std::string& path_or_name);
+  void open_neighbour(int step);  // in the list of shipped scenes
+  void reset();
+  void save(const std::string& path);
+
+  // Changes values of the scene, checked; the simulation goes on with them. False when refused.
+  bool edit(const std::vector<Document::Change>& changes, bool joined = false);
+  void undo();
+  void redo();
+  void set_options(int threads, Simd simd);
+
+  void play(bool on);
+  void set_speed(double speed);
+  void step();
+  void go_back(int back);  // states before the newest kept
+  void give(const Input& input);
+
+  void start_or_end_export();
+
+  void next_look(int step);
+  void frame_cloth();
+
+  // Once a frame: takes the newest state, posts what waits, looks after the scene's file.
+  void refresh(double now);
+
+  const Document& document() const { return document_; }
+  const Snapshot& snapshot() const { return session_->shown().snapshot; }
+  const Vitals& vitals() const { return session_->shown().vitals; }
+  const Setting& setting() const { return setting_; }
+  const std::vector<ShippedScene>& scenes() const { return scenes_; }
+  double now() const { return now_; }
+  int threads() const { return threads_; }
+  Simd simd() const { return simd_; }
+  float aspect() const { return aspect_; }
+  void set_aspect(float aspect) { aspect_ = aspect; }
+
+  Camera camera;
+  const Look* look;
+  LookSettings settings;
+  PictureFiles pictures;
+  Messages messages;
+
+ private:
+  void show_start();
+  void post_change();
+  void watch_file();
+  void keep_edits();
+  void tell_kept();
+
+  Document document_;
+  std::vector<ShippedScene> scenes_ = shipped_scenes();
+  std::optional<Session> session_;
+  Setting setting_;
+  double now_ = 0, next_watch_ = 0, next_keep_ = 0;
+  float aspect_ = 1.5f;
+  int threads_ = 0;
+  Simd simd_ = Simd::best;
+  bool opening_ = true;              // the next new scene is shown from its start
+  std::uint64_t serial_ = 0;         // of the scene that is shown
+  std::uint64_t simulated_ = 0;      // revision that the simulation has, or was told of
+  bool telling_ = false;             // a change is on its way
+  std::int64_t problems_ = 0;
+  std::string recorded_;
+  std::uint64_t kept_ = 0;  // revision of the edits that are kept
+};
+
+}  // namespace weft::viewer
