@@ -220,8 +220,9 @@ class Cloth {
       b.x = b.x - (b.w * step) * n;
     });
   }
-  // ω of a Jacobi sweep: a little under 4/3 over the largest eigenvalue, relative to the diagonal, of a
-  // sheet that resists in all directions (angles in steps of pi/32, the eigenvalue up to a 256th).
+  // ω of a Jacobi sweep: a little under what keeps (1 - ω λ)^sweeps above -1/3 for the largest eigenvalue,
+  // relative to the diagonal, of a sheet that resists in all directions (angles in steps of pi/32, both
+  // numbers to a 256th).
   double relaxation() const {
     double largest = 1;
     for (int m = 0; m <= 32; ++m)
@@ -230,7 +231,9 @@ class Cloth {
         for (const Group& g : groups) sum += 1 - std::cos((m * g.di + n * g.dj) * std::acos(-1.0) / 32);
         largest = std::max(largest, sum);
       }
-    return 0.95 * 4 / 3 * 256 / std::ceil(256 * largest - 1e-6);
+    const int sweeps = scene_.solver.iterations;
+    const double limit = sweeps % 2 == 0 ? 2 : 1 + std::pow(3, -1.0 / sweeps);
+    return 0.95 * std::floor(256 * limit + 1e-6) / std::ceil(256 * largest - 1e-6);
   }
   void jacobi() {
     if (relaxation_ == 0) relaxation_ = relaxation();

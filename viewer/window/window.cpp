@@ -24,6 +24,10 @@ std::string reason() {
   return text ? std::string(": ") + text : "";
 }
 
+bool is_modifier(int key) {
+  return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER;
+}
+
 Window* window_of(GLFWwindow* window) {
   return static_cast<Window*>(glfwGetWindowUserPointer(window));
 }
@@ -116,23 +120,28 @@ std::vector<std::string> Window::take_dropped() {
 }
 
 // The panel sees the state of keys and buttons once a turn. A key that goes down and up between two
-// turns would never be down for it, and a key after a click would come before the click counts: a
-// second stroke of a key, and all that follows a button, waits for the next turn.
+// turns would never be down for it, a shortcut would lose its Ctrl, and a key after a click would
+// come before the click counts: after a key that goes down, beside Shift, Ctrl and the like, and
+// after a button, the next strokes wait for the next turn.
 void Window::tell_strokes() {
   std::set<int> told;
   std::size_t k = 0;
-  for (bool button = false; k < strokes_.size() && !button; ++k) {
+  for (bool last = false; k < strokes_.size(); ++k) {
     const Stroke& s = strokes_[k];
-    button = s.kind == Stroke::kButton;
     if (s.kind == Stroke::kCharacter) {
       ImGui_ImplGlfw_CharCallback(window_, static_cast<unsigned>(s.code));
-    } else if (button) {
+      continue;
+    }
+    if (last) break;
+    if (s.kind == Stroke::kButton) {
       if (s.code < kButtons) buttons_[static_cast<std::size_t>(s.code)] = s.action == GLFW_PRESS;
       ImGui::GetIO().MousePos = {static_cast<float>(s.x), static_cast<float>(s.y)};
+      last = true;
     } else {
       if (!told.insert(s.code).second && s.action != GLFW_REPEAT) break;
       ImGui_ImplGlfw_KeyCallback(window_, s.code, s.scan, s.action, s.mods);
       if (s.action != GLFW_RELEASE) keys_.push_back({s.code, s.mods, s.action == GLFW_REPEAT});
+      last = s.action == GLFW_PRESS && !is_modifier(s.code);
     }
   }
   strokes_.erase(strokes_.begin(), strokes_.begin() + static_cast<std::ptrdiff_t>(k));

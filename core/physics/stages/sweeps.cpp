@@ -1,9 +1,9 @@
 // Stages "gauss_seidel" and "jacobi": one sweep of projections over all constraint families.
 //
-// Gauss–Seidel goes by row offset dj, along the rows first, then colour by colour, family by family:
-// constraints a of one row alternate by a/|di|, those between rows by j/dj, so that the constraints
-// of a family and colour are disjoint and may be solved side by side. The order depends on nothing
-// but the scene.
+// Gauss–Seidel goes by row offset dj, along the rows first, then colour by colour, family by
+// family: constraints a of one row alternate by a/|di|, those between rows by j/dj, so that the
+// constraints of a family and colour are disjoint and may be solved side by side. The order depends
+// on nothing but the scene.
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -124,9 +124,8 @@ class GaussSeidel final : public RowStage {
  public:
   GaussSeidel(const ClothParts& parts, const std::string& name, int dj, int colour,
               std::unique_ptr<ProjectedFamilies> families)
-      : RowStage(name,
-                 families->names() + (dj > 0 ? ", colour " + std::to_string(colour + 1) : ""), dj,
-                 families->constraints() / (dj > 0 ? kColours : 1), "constraints"),
+      : RowStage(name, families->names() + (dj > 0 ? ", colour " + std::to_string(colour + 1) : ""),
+                 dj, families->constraints() / (dj > 0 ? kColours : 1), "constraints"),
         project_(parts.kernels.project),
         families_(std::move(families)),
         colour_(colour) {}
@@ -171,23 +170,25 @@ class Corrections final : public RowStage {
   Rows& corrections_;
 };
 
-// Relaxation ω of the summed corrections. A mode of the constraint system, relative to its diagonal, with
-// the eigenvalue λ follows z² - p (2 z - 1) = 0, p = 1 - ω λ, where velocities are made of positions:
-// |z| <= 1 for ω λ <= 4/3. The largest λ is that of a stretched sheet, which resists in all directions: the
-// greatest Σ 1 - cos(a di + b dj) over the families, rounded up so that no library's last bit matters. It
-// applies to the part of the system that couples constraints, w_a + w_b: compliance needs none, so that a
-// single sweep of small substeps is a spring of the full stiffness.
-float relaxation(const std::vector<Family>& families) {
+// Relaxation ω of the summed corrections. n sweeps leave the share p = (1 - ω λ)^n of a mode of the
+// constraint system with the eigenvalue λ, relative to its diagonal. Where velocities are made of
+// positions the mode follows z² - p (2 z - 1) = 0, so that |z| <= 1 for -1/3 <= p <= 1. The largest
+// λ is that of a stretched sheet, which resists in all directions: the greatest Σ 1 - cos(a di + b
+// dj) over the families. It applies to the part of the system that couples constraints, w_a + w_b:
+// compliance needs none, so that a single sweep of small substeps is a spring of the full
+// stiffness. Rounded, so that no library's last bit matters.
+float relaxation(const std::vector<Family>& families, int sweeps) {
   constexpr int kAngles = 32, kParts = 256;
-  constexpr double kLimit = 0.95 * 4 / 3;
   double largest = 1;
   for (int m = 0; m <= kAngles; ++m)
     for (int n = -kAngles; n <= kAngles; ++n) {
       double sum = 0;
-      for (const Family& f : families) sum += 1 - std::cos((m * f.di + n * f.dj) * std::numbers::pi / kAngles);
+      for (const Family& f : families)
+        sum += 1 - std::cos((m * f.di + n * f.dj) * std::numbers::pi / kAngles);
       largest = std::max(largest, sum);
     }
-  return float(kLimit * kParts / std::ceil(kParts * largest - 1e-6));
+  const double limit = sweeps % 2 == 0 ? 2 : 1 + std::pow(3, -1.0 / sweeps);
+  return float(0.95 * std::floor(kParts * limit + 1e-6) / std::ceil(kParts * largest - 1e-6));
 }
 
 float velocity_share(const ClothParts& parts, const SweepOptions& options, double dt) {
@@ -200,7 +201,7 @@ class PlainJacobi final : public PlainRowsStage {
   PlainJacobi(const ClothParts& parts, const SweepOptions& options)
       : PlainRowsStage("jacobi", "all families, corrections added up and relaxed", parts),
         options_(options),
-        relaxation_(relaxation(parts.families)),
+        relaxation_(relaxation(parts.families, parts.scene.solver.iterations)),
         constraints_(std::size_t(parts.lattice.rows) * kPlainFamilies) {}
   std::size_t bytes() const override {
     return PlainRowsStage::bytes() + constraints_.size() * sizeof(JacobiConstants);
@@ -236,8 +237,7 @@ class PlainJacobi final : public PlainRowsStage {
   float free_inverse_mass(int j) const { return float(1 / particle_mass(parts_.cloth, 0, j)); }
 
   JacobiConstants constants_of(const Family& family, int j, double dt) const {
-    if (j + family.dj >= parts_.lattice.rows)
-      return {std::numeric_limits<float>::infinity(), 0, 0};
+    if (j + family.dj >= parts_.lattice.rows) return {std::numeric_limits<float>::infinity(), 0, 0};
     const float compliance = options_.compliant ? compliance_of(parts_, family, j, dt) : 0;
     const float k = 1 / (2 * free_inverse_mass(j) * weight_ + compliance);
     return {compliance, k, k * float(family.rest)};
@@ -266,7 +266,7 @@ class Jacobi final : public RowStage {
                  parts.constraints(), "constraints"),
         parts_(parts),
         options_(options),
-        relaxation_(relaxation(parts.families)) {
+        relaxation_(relaxation(parts.families, parts.scene.solver.iterations)) {
     for (int dj = 0; dj <= reach; ++dj) families_.emplace_back(parts, options, dj);
   }
   void reserve_slots(int slots) override {
