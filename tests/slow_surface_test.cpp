@@ -41,9 +41,11 @@ TEST(Surface, CrumpledBetweenWallsNeverCrosses) {
     scene.name = name;
     scene.cloths[0].self_collision.thickness = thickness;
     Simulation simulation(scene);
-    expect({"sheet crumpled between walls, 10000 substeps", scene.name + ", surface: crossings", 0,
-            0, "triangle pairs"},
+    const char* const law = "sheet crumpled between walls, 10000 substeps";
+    expect({law, scene.name + ", surface: crossings", 0, 0, "triangle pairs"},
            double(most_crossings(simulation, 10000)));
+    expect({law, scene.name + ", surface: closer than the thickness at the end", 0, 0, "pairs"},
+           double(simulation.report().penetration.self_pairs));
     EXPECT_LT(simulation.report().energy.kinetic, 0.05);
   }
 }
