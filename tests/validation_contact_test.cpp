@@ -144,7 +144,7 @@ TEST(ValidationContact, FixedSurfaceTakesAwayEnergyAndNormalVelocity) {
       const double here = signed_distance(scene.colliders[0], 0, x);
       if (here > 1e-6) continue;
       ++touching;
-      constexpr double dt = 1e-3;
+      constexpr double dt = 1e-6;
       const Vec3 next = {x[0] + dt * c.vx[0], x[1] + dt * c.vy[0], x[2] + dt * c.vz[0]};
       into = std::max(into, (here - signed_distance(scene.colliders[0], 0, next)) / dt);
     }
