@@ -1,5 +1,5 @@
-// One row of the accuracy page: a law, a case of it, what is true, what came out. Each row is printed
-// as a line that bench/accuracy_table collects into docs/accuracy.md.
+// One row of the accuracy page: a law, a case of it, what is true, what came out. Each row is
+// printed as a line that bench/accuracy_table collects into docs/accuracy.md.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ struct Truth {
 // Prints the row and returns the size of its error.
 inline double show(const Truth& t, double result) {
   const double error = t.truth == 0 ? result : result / t.truth - 1;
-  std::printf("@ %s | %s | %.6g | %.6g | %s | %+.2e | %.2g\n", t.law.c_str(), t.what.c_str(), t.truth,
-              result, t.unit.c_str(), error, t.goal);
+  std::printf("@ %s | %s | %.6g | %.6g | %s | %+.2e | %.2g\n", t.law.c_str(), t.what.c_str(),
+              t.truth, result, t.unit.c_str(), error, t.goal);
   return std::abs(error);
 }
 
@@ -31,6 +31,15 @@ inline double expect(const Truth& t, double result) {
   const double error = show(t, result);
   EXPECT_LE(error, t.goal) << t.law << ", " << t.what;
   return error;
+}
+
+// A finding that is an order: the result is to be above the truth, which is what another case came
+// to or a bound that is not 0, by the goal's share of it at least.
+inline void expect_above(const Truth& t, double result) {
+  const double margin = result / t.truth - 1;
+  std::printf("@ %s | %s | > %.6g | %.6g | %s | %+.2e | %.2g\n", t.law.c_str(), t.what.c_str(),
+              t.truth, result, t.unit.c_str(), margin, t.goal);
+  EXPECT_GE(margin, t.goal) << t.law << ", " << t.what;
 }
 
 }  // namespace weft

@@ -74,7 +74,7 @@ TEST(Modes, OfAHangingChain) {
         shape.push_back(1e-3 *
                         std::cyl_bessel_j(0.0, zeros[mode] * std::sqrt(1 - double(j) / kLinks)));
     shape[0] = shape[1] = 0;
-    const double f = frequency(simulation, shape, 2, 3 + 3 * mode) * std::sqrt(1 / 9.81);
+    const double f = frequency(simulation, shape, 2, 1 + mode) * std::sqrt(1 / 9.81);
     expect({"hanging chain, small oscillations", "mode " + std::to_string(mode + 1) + ", 100 links",
             zeros[mode] / (4 * kPi), 0.01, "f √(L/g)"},
            f);
