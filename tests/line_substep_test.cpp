@@ -161,5 +161,37 @@ TEST(LineRuns, ThePlanNamesTheStages) {
   EXPECT_EQ(names, (std::vector<std::string>{"predict", "tethers", "bending", "line", "velocity"}));
 }
 
+// A straight chain whose ends come nearer: one Newton step a substep finds no way out of the line
+// and overshoots. The frames in which it does are run again with more substeps.
+TEST(LineRuns, PressedChainBucklesWhateverTheSubsteps) {
+  for (const int order : {1, 2})
+    for (const double k : {1e5, 1e7, 1e9})
+      for (const int substeps : {1, 2, 3, 4, 6}) {
+        Scene s;
+        s.solver.method = Method::compliant;
+        s.solver.sweep = Sweep::line;
+        s.solver.order = order;
+        s.time.substeps = substeps;
+        Cloth c;
+        c.grid = {65, 2, {0, 0, 0}, {1.1, 0, 0}, {0, 0, 0.1}, 0};
+        c.particle_mass = 0.001;
+        c.stiffness = {k, 0, 0};
+        c.drag = 4;
+        for (const int j : {0, 1}) {
+          c.pins.push_back({0, j, {}});
+          c.pins.push_back({64, j, {{0, {1.1, 0, 0.1 * j}}, {0.5, {1, 0, 0.1 * j}}}});
+        }
+        s.cloths.push_back(c);
+        Simulation simulation(s);
+        for (int f = 0; f < 300; ++f) simulation.advance_frame();
+        const Report r = simulation.report();
+        const std::string which = "order " + std::to_string(order) + ", " + std::to_string(k) +
+                                  " N/m, " + std::to_string(substeps) + " substeps";
+        EXPECT_TRUE(simulation.status().ok) << which << ": " << simulation.status().text;
+        EXPECT_LT(r.strain.max, 0.005) << which;
+        EXPECT_LT(r.energy.kinetic, 1e-3) << which;
+      }
+}
+
 }  // namespace
 }  // namespace weft

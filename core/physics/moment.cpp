@@ -84,6 +84,7 @@ void Simulation::State::restore(const Moment& m) {
       for (const auto& stage : step->stages()) stage->follow(scene.colliders[n]);
   }
   frame = std::llround(m.time / scene.time.frame);
+  take_substeps(substeps / finer_);
   finer_ = 1;
   status = Status{};
   plan_changed();

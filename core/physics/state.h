@@ -83,7 +83,7 @@ struct Simulation::State {
   std::vector<Vec3> accelerations_;  // of one cloth, kept where automatic substeps change (explicit)
   physics::EnergyGuard guard_;
   double limit_ = 0;  // s; the stability limit at the end of the last frame (explicit)
-  int finer_ = 1;     // times as many substeps as the stability limit asks for (explicit)
+  int finer_ = 1;     // times as many substeps as are due, since a frame failed
 
   void choose_method_and_substeps();
   void note_starts(std::vector<std::string>& notes) const;
@@ -96,6 +96,7 @@ struct Simulation::State {
   void follow_stretch(double limit);
   bool driven() const;
   bool too_coarse();
+  bool overstretched() const;
   void calm();
   void fall_back(const std::string& note);
   void wake(int cloth = -1);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kLimitShare = 0.9;      // of the stability limit that an automatic substep takes
 constexpr int kMostSubsteps = 100000;    // per frame, flat; stretch may ask for 1.4 times as many
 constexpr double kLeastSubstep = 1e-6;   // s; below, single precision loses speeds of cm/s
-constexpr int kFinest = 16;              // times the substeps that the limit asks for, to save a frame
+constexpr int kFinest = 16;              // times the substeps that are due, to save a frame
 constexpr double kGrabbed = 0.6;         // of stretched_limit's t, room for what a hand may do in a frame
 
 // Without shear springs (or with nothing else) a sheet folds onto a line that stretches nothing, where
@@ -28,6 +28,26 @@ bool folds_freely(const ClothStep& step) {
                        [&](const Family& f) { return f.kind == kind; });
   };
   return !has(Kind::structural) || !has(Kind::shear);
+}
+
+// Greatest squared length of a structural constraint, of its rest; every fourth row is looked at.
+float greatest_stretch(const ClothStep& step, const Rows& x) {
+  const Lattice& l = step.lattice();
+  float most = 0;
+  for (const Family& f : step.families()) {
+    if (f.kind != Kind::structural) continue;
+    for (int j = 0; j + f.dj < l.rows; j += 4)
+      for (int n = 0; n < f.per_row(l.columns); ++n) {
+        if (!f.alive(j, n)) continue;
+        float squared = 0;
+        for (int k = 0; k < 3; ++k) {
+          const float e = x.at(k, j + f.dj, n + f.far()) - x.at(k, j, n + f.near());
+          squared += e * e;
+        }
+        most = std::max(most, squared / float(f.rest * f.rest));
+      }
+  }
+  return most;
 }
 
 }  // namespace
@@ -99,29 +119,34 @@ void Simulation::State::set_substeps(int count) {
               std::to_string(frame + 1) + " on, as far as the sheet is stretched");
 }
 
-// Whether springs left the frame stretched beyond what its substep allows, or with more energy than
-// there is: then everything is back at the frame's start, to be run again with more substeps.
+// Whether the frame came out as it cannot be and has a better chance with more substeps: springs
+// stretched beyond what their substep allows, or more energy than there is, or lines torn apart by
+// their own solution. Then everything is back at the frame's start, to be run again.
 bool Simulation::State::too_coarse() {
-  if (!is_explicit(method) || (rest && rest->all_asleep())) return false;
+  const bool springs = is_explicit(method), lines = !springs && scene.solver.sweep == Sweep::line;
+  if (!(springs || lines) || (rest && rest->all_asleep())) return false;
   const bool lost = !finite();
-  int count = 2 * substeps;
+  bool beyond_limit = false;
   if (!lost) {
-    limit_ = stretched_limit();
+    if (springs) limit_ = stretched_limit();
     guard_.look(scene, cloths, driven());
-    if (dt > limit_) count = substeps_within(limit_);
-    else if (guard_.holds()) return false;
+    beyond_limit = springs && dt > limit_;
+    if (!beyond_limit && guard_.holds() && !(lines && overstretched())) return false;
   }
-  if (lost || dt <= limit_) {
+  const int count = beyond_limit ? substeps_within(limit_) : 2 * substeps;
+  if (!beyond_limit) {
     if (finer_ == kFinest || dt < 2 * kLeastSubstep) return false;
     finer_ *= 2;
     fall_back("frame " + std::to_string(frame + 1) +
-              " gained energy from nowhere; it and all after it run with more substeps");
+              (lines ? " tore lines apart that are to be rigid" : " gained energy from nowhere") +
+              "; it and all after it run with more substeps");
   }
   restore();
-  set_substeps(count);
+  springs ? set_substeps(count) : take_substeps(count);
   for (auto& step : cloths)
     for (const auto& stage : step->stages()) stage->restart();
   if (self_collision) self_collision->restart();
+  if (surface) surface->restart();
   since_collision_ = 0;
   until_collision_ = 1;
   return true;
@@ -154,26 +179,12 @@ void Simulation::State::fall_back(const std::string& note) {
 }
 
 // Stretched springs resist sideways too, which raises the largest frequency:
-// ω² <= ω²_flat + t (ω²_all - ω²_flat), t = max (1 - l/|e|). Every fourth row is looked at.
+// ω² <= ω²_flat + t (ω²_all - ω²_flat), t = max (1 - l/|e|).
 double Simulation::State::stretched_limit() const {
   double limit = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const ClothStep& step = *cloths[c];
-    const Lattice& l = step.lattice();
-    float most = 0;
-    for (const Family& f : step.families()) {
-      if (f.kind != Kind::structural) continue;
-      for (int j = 0; j + f.dj < l.rows; j += 4)
-        for (int n = 0; n < f.per_row(l.columns); ++n) {
-          if (!f.alive(j, n)) continue;
-          float squared = 0;
-          for (int k = 0; k < 3; ++k) {
-            const float e = l.x.at(k, j + f.dj, n + f.far()) - l.x.at(k, j, n + f.near());
-            squared += e * e;
-          }
-          most = std::max(most, squared / float(f.rest * f.rest));
-        }
-    }
+    const float most = greatest_stretch(step, step.lattice().x);
     double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
     if (grab_) t = std::max(t, kGrabbed);
     // Springs in all directions: never more than twice the flat sheet's ω² for the families here.
@@ -182,6 +193,26 @@ double Simulation::State::stretched_limit() const {
     limit = std::min(limit, stretched.largest_substep());
   }
   return limit;
+}
+
+// Whether a sheet that is rigid for its substep became a quarter longer somewhere in this frame. A line is solved by one Newton step a substep, which overshoots where much happens in one, as when a
+// straight line is pressed together from its ends.
+bool Simulation::State::overstretched() const {
+  constexpr float kMost = 1.25f * 1.25f;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (asleep(c)) continue;
+    const ClothStep& step = *cloths[c];
+    const Lattice& l = step.lattice();
+    const float most = greatest_stretch(step, l.x);
+    if (!(most > kMost) || most <= greatest_stretch(step, backups_[c].x)) continue;
+    float lightest = 0;  // inverse mass
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i) lightest = std::max(lightest, l.w(j, i));
+    if (method == Method::positional ||
+        step.cloth().stiffness.structural * dt * dt * double(lightest) >= 1)
+      return true;
+  }
+  return false;
 }
 
 // Substeps a frame that stay inside a limit: 0.9 of it where they are automatic, else as many as asked
