@@ -196,6 +196,26 @@ TEST_F(WindowFiles, FilmsAreNumberedPicturesWithoutFfmpeg) {
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 
+// The scene plays on, and waits for pictures that take longer than a 30th of a second.
+TEST_F(WindowFiles, FilmsOfAScenePlayingShowNoMomentTwice) {
+  Screen screen(folder);
+  screen.open("pinned2 --look pbr", "PATH=/nowhere");
+  screen.key("F11");
+  screen.wait("twenty pictures", [&](const Json&) { return count(".png") > 20; });
+  screen.key("F11");
+  screen.wait("the film saved", [](const Json& now) { return tells(now, "Film saved"); });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+  const std::size_t pictures = count(".png");
+  std::string before;
+  for (std::size_t n = 0; n < pictures; ++n) {
+    char name[32];
+    std::snprintf(name, sizeof name, "pinned2_%05d.png", static_cast<int>(n));
+    const std::string now = folder.read(name);
+    EXPECT_NE(now, before) << name;
+    before = now;
+  }
+}
+
 TEST_F(WindowFiles, AFilmThatFfmpegGivesUpLeavesNothing) {
   std::filesystem::create_directory(folder / "bin");
   folder.write("bin/ffmpeg", "#!/bin/sh\nexit 1\n");

@@ -80,8 +80,23 @@ double elastic(const Scene& scene, Method method, const ClothStep& step,
   return sum;
 }
 
-// Speed that paths and wind have themselves, and a hand may have [m/s].
-double driving_speed(const Scene& scene) {
+}  // namespace
+
+Holding holding_of(const Scene& scene, Method method, const ClothStep& step, const Rows& x,
+                   const Rows& v, double dt) {
+  const Lattice& l = step.lattice();
+  Holding h;
+  h.inner = elastic(scene, method, step, gather(l, x), dt);
+  for_each_free(l, [&](int j, int i, double m) {
+    for (int k = 0; k < 3; ++k) {
+      h.inner += 0.5 * m * double(v.at(k, j, i)) * v.at(k, j, i);
+      h.height -= m * scene.gravity[k] * x.at(k, j, i);
+    }
+  });
+  return h;
+}
+
+double fastest_drive(const Scene& scene) {
   const auto fastest = [](const std::vector<Key>& keys) {
     double most = 0;
     for (std::size_t n = 1; n < keys.size(); ++n) {
@@ -94,10 +109,8 @@ double driving_speed(const Scene& scene) {
   for (const Collider& c : scene.colliders) most = std::max(most, fastest(c.keys));
   for (const Cloth& c : scene.cloths)
     for (const Pin& p : c.pins) most = std::max(most, fastest(p.keys));
-  return kDrivenSpeed + most;
+  return most;
 }
-
-}  // namespace
 
 void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, double time,
                        double dt) {
@@ -113,7 +126,7 @@ void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, 
   }
   look(scene, cloths, false);
   highest_ = potential_;
-  const double driven = driving_speed(scene);
+  const double driven = kDrivenSpeed + fastest_drive(scene);
   put_in_ += kinetic_ + 0.5 * mass * kStillness * kStillness;
   driven_floor_ = 0.5 * mass * driven * driven;
   mass_ = mass;
@@ -143,7 +156,6 @@ void EnergyGuard::look(const Scene& scene, const Cloths& cloths, bool driven) {
 void EnergyGuard::accept() {
   highest_ = std::max(highest_, potential_);
   released_ = fall_;
-  before_ = kinetic_;
 }
 
 double EnergyGuard::reduction() const {
@@ -152,7 +164,7 @@ double EnergyGuard::reduction() const {
 
 double EnergyGuard::bound() const {
   const double kept = put_in_ + fall_;
-  return kBound * (driven_ ? std::max(kept, driven_floor_ + before_) : kept);
+  return kBound * (driven_ ? std::max(kept, driven_floor_) : kept);
 }
 
 }  // namespace weft::physics

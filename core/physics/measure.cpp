@@ -18,7 +18,10 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   const ClothStep& step = *s.cloths[index];
   const Lattice& l = step.lattice();
   const AlignedArray<float>& masses = s.masses(index);
-  const std::vector<Vec3> x = gather(l, l.x), v = velocities_now(s, index);
+  const std::vector<Vec3> x = gather(l, l.x);
+  // A strain limit takes back much of what springs alone would add in the half substep to now.
+  const std::vector<Vec3> v =
+      step.cloth().strain_limit > 0 ? gather(l, l.v) : velocities_now(s, index);
   r.energy.elastic +=
       elastic_energy(step.cloth(), step.families(), x) + 
       bending_energy(step.cloth(), x, step.bend_links());

@@ -96,7 +96,7 @@ struct Simulation::State {
   void follow_stretch(double limit);
   bool driven() const;
   bool too_coarse();
-  bool overstretched() const;
+  bool overshot() const;
   void calm();
   void fall_back(const std::string& note);
   void wake(int cloth = -1);

@@ -120,8 +120,8 @@ void Simulation::State::set_substeps(int count) {
 }
 
 // Whether the frame came out as it cannot be and has a better chance with more substeps: springs
-// stretched beyond what their substep allows, or more energy than there is, or lines torn apart by
-// their own solution. Then everything is back at the frame's start, to be run again.
+// stretched beyond what their substep allows, or springs or line sweeps with more energy than there is.
+// Then everything is back at the frame's start, to be run again.
 bool Simulation::State::too_coarse() {
   const bool springs = is_explicit(method), lines = !springs && scene.solver.sweep == Sweep::line;
   if (!(springs || lines) || (rest && rest->all_asleep())) return false;
@@ -131,15 +131,14 @@ bool Simulation::State::too_coarse() {
     if (springs) limit_ = stretched_limit();
     guard_.look(scene, cloths, driven());
     beyond_limit = springs && dt > limit_;
-    if (!beyond_limit && guard_.holds() && !(lines && overstretched())) return false;
+    if (!beyond_limit && guard_.holds() && !(lines && overshot())) return false;
   }
   const int count = beyond_limit ? substeps_within(limit_) : 2 * substeps;
   if (!beyond_limit) {
     if (finer_ == kFinest || dt < 2 * kLeastSubstep) return false;
     finer_ *= 2;
     fall_back("frame " + std::to_string(frame + 1) +
-              (lines ? " tore lines apart that are to be rigid" : " gained energy from nowhere") +
-              "; it and all after it run with more substeps");
+              " gained energy from nowhere; it and all after it run with more substeps");
   }
   restore();
   springs ? set_substeps(count) : take_substeps(count);
@@ -152,12 +151,41 @@ bool Simulation::State::too_coarse() {
   return true;
 }
 
+// Whether line sweeps stretched a sheet by what gravity and paths cannot have put into this frame. A line
+// is solved by one Newton step a substep, which overshoots where much happens in one, as when a straight
+// line is pressed together from its ends.
+bool Simulation::State::overshot() const {
+  constexpr float kStretched = 1.25f * 1.25f;
+  constexpr double kMore = 2;  // times the energy before
+  if (grab_) return false;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (asleep(c)) continue;
+    const ClothStep& step = *cloths[c];
+    const Lattice& l = step.lattice();
+    const float most = greatest_stretch(step, l.x);
+    if (!(most > kStretched) || most <= greatest_stretch(step, backups_[c].x)) continue;
+    const Holding before = holding_of(scene, method, step, backups_[c].x, backups_[c].v, dt);
+    const Holding now = holding_of(scene, method, step, l.x, l.v, dt);
+    double mass = 0;
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i)
+        if (l.w(j, i) > 0) mass += 1 / double(l.w(j, i));
+    const double speed = kMore * fastest_drive(scene);
+    const double put_in = std::max(0.0, before.height - now.height) + 0.5 * mass * speed * speed;
+    if (now.inner > kMore * before.inner + put_in) return true;
+  }
+  return false;
+}
+
 // Takes the energy off a frame that it cannot have.
 void Simulation::State::calm() {
   if (rest && rest->all_asleep()) return;
   if (!is_explicit(method)) guard_.look(scene, cloths, driven());
   if (!guard_.holds()) {
-    for (auto& step : cloths) step->lattice().v.scale(float(guard_.reduction()));
+    for (auto& step : cloths) {
+      step->lattice().v.scale(float(guard_.reduction()));
+      for (const auto& stage : step->stages()) stage->restart();  // what they keep of the motion
+    }
     fall_back("frame " + std::to_string(frame + 1) +
               " gained energy from nowhere; velocities were reduced to what is left without it");
   }
@@ -193,26 +221,6 @@ double Simulation::State::stretched_limit() const {
     limit = std::min(limit, stretched.largest_substep());
   }
   return limit;
-}
-
-// Whether a sheet that is rigid for its substep became a quarter longer somewhere in this frame. A line is solved by one Newton step a substep, which overshoots where much happens in one, as when a
-// straight line is pressed together from its ends.
-bool Simulation::State::overstretched() const {
-  constexpr float kMost = 1.25f * 1.25f;
-  for (std::size_t c = 0; c < cloths.size(); ++c) {
-    if (asleep(c)) continue;
-    const ClothStep& step = *cloths[c];
-    const Lattice& l = step.lattice();
-    const float most = greatest_stretch(step, l.x);
-    if (!(most > kMost) || most <= greatest_stretch(step, backups_[c].x)) continue;
-    float lightest = 0;  // inverse mass
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i) lightest = std::max(lightest, l.w(j, i));
-    if (method == Method::positional ||
-        step.cloth().stiffness.structural * dt * dt * double(lightest) >= 1)
-      return true;
-  }
-  return false;
 }
 
 // Substeps a frame that stay inside a limit: 0.9 of it where they are automatic, else as many as asked

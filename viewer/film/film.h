@@ -26,6 +26,8 @@ class Film {
   // How many pictures are due at a time of the simulation [s]. When it has gone back, the film goes
   // on from there.
   int due(double time);
+  // The time of the simulation at which the next picture is due [s].
+  double next() const { return start_ + static_cast<double>(count_) / kRate; }
   // Adds the picture so many times. Throws Failure when it cannot be written.
   void add(const Picture& picture, int times);
   // Throws Failure when the film has not become whole.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace weft::viewer {
 
@@ -189,7 +190,13 @@ int Player::due(double now) {
     vitals_.pace = frames * scene_.time.frame / (now - pace_.since);
     pace_ = {now, vitals_.frames};
   }
-  return clock_.advance(now);
+  // What is over stays due while nothing may begin, a single step too.
+  constexpr double kRounding = 1e-9;  // s
+  const double left = wait_at_ - simulation_->time() - kRounding;
+  if (left <= 0) return 0;
+  const double frames = std::ceil(left / scene_.time.frame);
+  const int due = clock_.advance(now);
+  return frames < due ? static_cast<int>(frames) : due;
 }
 
 void Player::advance() {

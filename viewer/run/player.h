@@ -2,6 +2,7 @@
 // the simulation's thread alone (session.h).
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -42,6 +43,9 @@ class Player {
   void export_to(const std::string& path);
   void finish_export();
 
+  // No frame begins at or after this time of the simulation [s]: a film waits there for its picture.
+  void wait_at(double time) { wait_at_ = time; }
+
   // Frames due at `now` [s], and one of them.
   int due(double now);
   void advance();
@@ -68,6 +72,7 @@ class Player {
   Rewind rewind_;
   int back_ = 0;
   int until_keep_ = 1;  // frames
+  double wait_at_ = std::numeric_limits<double>::infinity();  // s
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<Animation> export_;
 

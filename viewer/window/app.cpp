@@ -9,6 +9,7 @@
 #include <cctype>
 #include <chrono>
 #include <cstdio>
+#include <limits>
 #include <filesystem>
 
 #include "failure.h"
@@ -250,15 +251,20 @@ void App::end_film() {
 }
 
 void App::film() {
-  if (!film_) return;
-  const int due = film_->due(workspace_.snapshot().time);
-  if (due == 0) return;
-  try {
-    film_->add(view_.picture(workspace_, film_->width(), film_->height()), due);
-  } catch (const Failure& failure) {
-    workspace_.messages.warn("The film ends: " + std::string(failure.what()), workspace_.now());
-    film_.reset();
+  if (film_) {
+    const int due = film_->due(workspace_.snapshot().time);
+    try {
+      if (due > 0) film_->add(view_.picture(workspace_, film_->width(), film_->height()), due);
+    } catch (const Failure& failure) {
+      workspace_.messages.warn("The film ends: " + std::string(failure.what()), workspace_.now());
+      film_.reset();
+    }
   }
+  // Each picture is of a moment of its own, however slowly they are drawn.
+  const double next = film_ ? film_->next() : std::numeric_limits<double>::infinity();
+  if (next == waits_at_) return;
+  waits_at_ = next;
+  workspace_.wait_at(next);
 }
 
 }  // namespace weft::viewer

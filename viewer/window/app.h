@@ -1,6 +1,7 @@
 // The program with its window: one turn of the loop after another.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "command_line.h"
@@ -51,6 +52,7 @@ class App {
   Log log_;
   Landmarks landmarks_;
   std::optional<Film> film_;
+  double waits_at_ = std::numeric_limits<double>::infinity();  // s, the simulation, for the film
   double measure_;  // s, 0: not at all
   std::vector<Turn> turns_;
   Turn turn_;  // the present one

@@ -123,6 +123,10 @@ void Workspace::step() {
   session_->post([](Player& player) { player.step(); });
 }
 
+void Workspace::wait_at(double time) {
+  session_->post([time](Player& player) { player.wait_at(time); });
+}
+
 void Workspace::go_back(int back) {
   session_->post([back](Player& player) { player.go_back(back); });
 }

@@ -44,6 +44,8 @@ class Workspace {
   void refresh(double now);
 
   const Document& document() const { return document_; }
+  // Frames from this time of the simulation on [s] wait.
+  void wait_at(double time);
   const Snapshot& snapshot() const { return session_->shown().snapshot; }
   const Vitals& vitals() const { return session_->shown().vitals; }
   const Setting& setting() const { return setting_; }
