@@ -199,7 +199,7 @@ TEST_F(WindowFiles, FilmsAreNumberedPicturesWithoutFfmpeg) {
 // The scene plays on, and waits for pictures that take longer than a 30th of a second.
 TEST_F(WindowFiles, FilmsOfAScenePlayingShowNoMomentTwice) {
   Screen screen(folder);
-  screen.open("pinned2 --look pbr", "PATH=/nowhere");
+  screen.open("pinned2", "PATH=/nowhere");
   screen.key("F11");
   screen.wait("twenty pictures", [&](const Json&) { return count(".png") > 20; });
   screen.key("F11");

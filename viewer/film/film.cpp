@@ -72,6 +72,8 @@ Film::~Film() {
 int Film::due(double time) {
   if (time < last_) start_ = time - static_cast<double>(count_) / kRate;
   last_ = time;
+  // The scene had run on before it knew of the film.
+  if (count_ == 1) start_ = std::max(start_, time - 1 / kRate);
   constexpr double kRounding = 1e-6;  // pictures
   const double wanted = std::floor((time - start_) * kRate + kRounding) + 1;
   return static_cast<int>(std::clamp(wanted - static_cast<double>(count_), 0.0, 30.0));

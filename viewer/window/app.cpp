@@ -233,6 +233,8 @@ void App::start_or_end_film() {
   try {
     film_.emplace(workspace_.document().name(), width & ~1, height & ~1,
                   workspace_.snapshot().time);
+    waits_at_ = film_->next();
+    workspace_.wait_at(waits_at_);
     workspace_.messages.tell("The film goes to " + film_->path() + " until you end it",
                              workspace_.now());
   } catch (const Failure& failure) {
