@@ -223,18 +223,23 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
           l.v.at(c, j, i) = l.w(j, i) > 0 ? float(velocities[3 * p + c]) : 0;
         }
   }
-  for (auto& step : cloths)
-    for (const auto& stage : step->stages()) stage->restart();
-  if (self_collision) self_collision->restart();
-  if (surface) surface->restart();
-  since_collision_ = 0;
-  until_collision_ = 1;
+  restart_stages();
   if (is_explicit(method)) {
     shift_velocities(-dt / 2, velocities.data());
     follow_stretch(stretched_limit());
   }
   guard_.open(scene, method, cloths, double(frame) * scene.time.frame, dt);
   ++changes;
+}
+
+// Positions or velocities are others than the stages left.
+void Simulation::State::restart_stages() {
+  for (auto& step : cloths)
+    for (const auto& stage : step->stages()) stage->restart();
+  if (self_collision) self_collision->restart();
+  if (surface) surface->restart();
+  since_collision_ = 0;
+  until_collision_ = 1;
 }
 
 // Somebody changed a cloth, or all of them.

@@ -95,10 +95,12 @@ struct Simulation::State {
   int substeps_within(double limit) const;
   void follow_stretch(double limit);
   bool driven() const;
+  bool blown() const { return scene.wind.drag > 0 || scene.wind.lift > 0; }
   bool too_coarse();
   bool overshot() const;
   void calm();
   void fall_back(const std::string& note);
+  void restart_stages();
   void wake(int cloth = -1);
   bool asleep(std::size_t cloth) const { return rest && rest->rows(cloth).empty(); }
   void run_frame();

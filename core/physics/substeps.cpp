@@ -142,22 +142,17 @@ bool Simulation::State::too_coarse() {
   }
   restore();
   springs ? set_substeps(count) : take_substeps(count);
-  for (auto& step : cloths)
-    for (const auto& stage : step->stages()) stage->restart();
-  if (self_collision) self_collision->restart();
-  if (surface) surface->restart();
-  since_collision_ = 0;
-  until_collision_ = 1;
+  restart_stages();
   return true;
 }
 
-// Whether line sweeps stretched a sheet by what gravity and paths cannot have put into this frame. A line
-// is solved by one Newton step a substep, which overshoots where much happens in one, as when a straight
-// line is pressed together from its ends.
+// Whether line sweeps stretched a sheet by what gravity and pins on paths, where they alone do work,
+// cannot have put into this frame. A line is solved by one Newton step a substep, which overshoots where
+// much happens in one, as when a straight line is pressed together from its ends.
 bool Simulation::State::overshot() const {
   constexpr float kStretched = 1.25f * 1.25f;
   constexpr double kMore = 2;  // times the energy before
-  if (grab_) return false;
+  if (grab_ || self_collision || blown() || !scene.colliders.empty()) return false;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
     const ClothStep& step = *cloths[c];
@@ -194,7 +189,7 @@ void Simulation::State::calm() {
 
 bool Simulation::State::driven() const {
   const auto moves = [](const auto& thing) { return !thing.keys.empty(); };
-  return grab_ || self_collision || rest || scene.wind.drag > 0 || scene.wind.lift > 0 ||
+  return grab_ || self_collision || rest || blown() ||
          std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
          std::any_of(scene.cloths.begin(), scene.cloths.end(), [&](const Cloth& c) {
            return std::any_of(c.pins.begin(), c.pins.end(), moves);
