@@ -23,7 +23,9 @@ ClothStep& Simulation::State::step_with(int cloth, int i, int j) {
 // The stages of a cloth have changed: their times start anew, and the plan tells what runs now.
 void Simulation::State::plan_changed() {
   for (std::size_t c = 0; c < cloths.size(); ++c) {
-    if (stage_ns[c].size() == cloths[c]->stages().size()) continue;
+    if (stage_ns[c].size() == cloths[c]->stages().size() &&
+        options.profile == cloths[c]->passes().profiled())
+      continue;
     stage_ns[c] = std::vector<std::atomic<std::int64_t>>(cloths[c]->stages().size());
     if (options.profile) cloths[c]->passes().profile(stage_ns[c]);
   }
@@ -123,12 +125,6 @@ void Simulation::State::move_collider(int collider, const Vec3& target) {
     for (const auto& stage : step->stages()) stage->follow(c);
 }
 
-// Stages that a hand has added end before the stages of the cloth are chosen anew.
-void Simulation::State::let_go(int cloth) {
-  if (grabbed_ == cloth) release();
-  carry(cloth, {});
-}
-
 namespace {
 
 // Least squared distance between segments p + s d and q + t e, 0 <= s, t <= 1 (Ericson 5.1.9).
@@ -170,7 +166,6 @@ int Simulation::State::cut(const Vec3& a, const Vec3& b, double width) {
     if (found.empty()) continue;
     wake();
     if (!step->topology()) {
-      let_go(int(&step - cloths.data()));
       step->allow_tearing();
       plan_changed();
     }

@@ -63,10 +63,7 @@ void Simulation::State::restore(const Moment& m) {
     for (const auto& [i, j] : c.held) l.w(j)[i] = 0;
     for (int j = 0; j < l.rows; ++j) l.weigh_row(j);
     if (rest) rest->keep_masses(int(n));
-    if (!c.torn.empty() && !step.topology()) {
-      let_go(int(n));
-      step.allow_tearing();
-    }
+    if (!c.torn.empty()) step.allow_tearing();
     if (step.topology()) {
       std::vector<Topology::Torn> torn;
       for (const Moment::Torn& t : c.torn) torn.push_back({t.di, t.dj, t.j, t.a});
@@ -86,6 +83,7 @@ void Simulation::State::restore(const Moment& m) {
   frame = std::llround(m.time / scene.time.frame);
   take_substeps(substeps / finer_);
   finer_ = 1;
+  solve_as(asked_);
   status = Status{};
   plan_changed();
   set(positions, velocities);

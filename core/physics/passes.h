@@ -23,6 +23,7 @@ class Passes {
 
   // Adds to ticks[q] the time that stage q took.
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds);
+  bool profiled() const { return !profile_.empty(); }
 
   // Whether one wavefront runs everything.
   bool rows_only() const { return whole_stages_ == 0; }

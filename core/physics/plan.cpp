@@ -31,13 +31,25 @@ ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::ui
   make_passes();
 }
 
-// The same stages with masks; what they carry from substep to substep starts anew.
+// The same stages with masks.
 void ClothStep::allow_tearing() {
   if (topology_) return;
   make_topology();
+  choose_anew();
+}
+
+void ClothStep::choose_anew() {
+  Stages added;
+  for (auto& s : stages_)
+    if (std::find(added_.begin(), added_.end(), s.get()) != added_.end()) added.push_back(std::move(s));
   stages_.clear();
+  added_.clear();
+  multipliers_.reset();
+  corrections_.reset();
+  history_.reset();
   choose_stages();
   make_passes();
+  for (; !added.empty(); added.pop_back()) add_stage(std::move(added.back()));
 }
 
 void ClothStep::make_topology() {
@@ -59,11 +71,13 @@ void ClothStep::make_passes() {
 void ClothStep::add_stage(std::unique_ptr<Stage> stage) {
   std::size_t at = 0;
   while (at < stages_.size() && stages_[at]->name != "springs" && stages_[at]->name != "predict") ++at;
+  added_.push_back(stage.get());
   stages_.insert(stages_.begin() + std::ptrdiff_t(std::min(at + 1, stages_.size())), std::move(stage));
   make_passes();
 }
 
 void ClothStep::remove_stage(const Stage* stage) {
+  std::erase(added_, stage);
   std::erase_if(stages_, [&](const auto& s) { return s.get() == stage; });
   make_passes();
 }

@@ -41,6 +41,9 @@ class ClothStep {
   // Puts a stage right after the one that moves the particles; takes it away again.
   void add_stage(std::unique_ptr<Stage> stage);
   void remove_stage(const Stage* stage);
+  // Chooses the stages anew: the scene's solver has changed. Added stages stay; what the others carry
+  // from substep to substep starts anew.
+  void choose_anew();
   ClothParts parts() const { return parts_; }
   // Null while the cloth cannot tear. allow_tearing() lets a cloth tear from now on.
   Topology* topology() { return topology_.get(); }
@@ -69,6 +72,7 @@ class ClothStep {
   std::unique_ptr<Rows> corrections_;
   std::unique_ptr<History> history_;
   Stages stages_;
+  std::vector<const Stage*> added_;
   std::unique_ptr<Topology> topology_;
   std::unique_ptr<Seams> seams_;
   std::unique_ptr<Passes> passes_;

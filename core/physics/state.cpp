@@ -64,6 +64,7 @@ Simulation::State::State(Scene given, const Options& given_options)
       one_thread(1),
       method(scene.solver.method) {
   const std::string changed = steady_jacobi(scene);
+  asked_ = scene.solver;
   build_cloths();
   choose_method_and_substeps();
   if (!changed.empty()) fall_back(changed);

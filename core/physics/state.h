@@ -42,7 +42,7 @@ struct Simulation::State {
   void restore(const Moment& moment);
   std::size_t backup_bytes() const;
 
-  Scene scene;  // as simulated; only move_collider() changes it
+  Scene scene;  // as simulated; only move_collider() and solve_as() change it
   Options options;
   Simd simd;
   physics::Threads threads;
@@ -84,6 +84,7 @@ struct Simulation::State {
   physics::EnergyGuard guard_;
   double limit_ = 0;  // s; the stability limit at the end of the last frame (explicit)
   int finer_ = 1;     // times as many substeps as are due, since a frame failed
+  Solver asked_;      // the scene's, before any line sweeps failed
 
   void choose_method_and_substeps();
   void note_starts(std::vector<std::string>& notes) const;
@@ -97,6 +98,7 @@ struct Simulation::State {
   bool driven() const;
   bool blown() const { return scene.wind.drag > 0 || scene.wind.lift > 0; }
   bool too_coarse();
+  void solve_as(const Solver& solver);
   bool overshot() const;
   void calm();
   void fall_back(const std::string& note);
@@ -106,7 +108,6 @@ struct Simulation::State {
   void run_frame();
   physics::ClothStep& step_with(int cloth, int i, int j);
   void plan_changed();
-  void let_go(int cloth);
   void run_substeps(int first, int count);
   void save();
   void restore();

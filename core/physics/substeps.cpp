@@ -126,24 +126,41 @@ bool Simulation::State::too_coarse() {
   const bool springs = is_explicit(method), lines = !springs && scene.solver.sweep == Sweep::line;
   if (!(springs || lines) || (rest && rest->all_asleep())) return false;
   const bool lost = !finite();
+  const bool finest = finer_ == kFinest || dt < 2 * kLeastSubstep;
   bool beyond_limit = false;
   if (!lost) {
     if (springs) limit_ = stretched_limit();
     guard_.look(scene, cloths, driven());
     beyond_limit = springs && dt > limit_;
-    if (!beyond_limit && guard_.holds() && !(lines && overshot())) return false;
+    if (!beyond_limit && guard_.holds() && (!lines || finest || !overshot())) return false;
   }
-  const int count = beyond_limit ? substeps_within(limit_) : 2 * substeps;
-  if (!beyond_limit) {
-    if (finer_ == kFinest || dt < 2 * kLeastSubstep) return false;
-    finer_ *= 2;
-    fall_back("frame " + std::to_string(frame + 1) +
-              " gained energy from nowhere; it and all after it run with more substeps");
-  }
+  const std::string which = "frame " + std::to_string(frame + 1);
+  if (springs && finest && !beyond_limit) return false;
+  const int count = beyond_limit ? substeps_within(limit_) : finest ? substeps : 2 * substeps;
   restore();
   springs ? set_substeps(count) : take_substeps(count);
+  if (lines && finest) {
+    Solver steady = scene.solver;
+    steady.sweep = Sweep::gauss_seidel;
+    steady.order = 1;
+    solve_as(steady);
+    plan.fallback = true;
+    plan.notes.push_back(which + " gained energy from nowhere with so many substeps too; from it on "
+                         "gauss_seidel sweeps of the first order run in the place of lines");
+  } else if (!beyond_limit) {
+    finer_ *= 2;
+    fall_back(which + " gained energy from nowhere; it and all after it run with more substeps");
+  }
   restart_stages();
   return true;
+}
+
+// Goes on with another solver of the same method.
+void Simulation::State::solve_as(const Solver& solver) {
+  if (scene.solver == solver) return;
+  scene.solver = solver;
+  for (auto& step : cloths) step->choose_anew();
+  plan_changed();
 }
 
 // Whether line sweeps stretched a sheet by what gravity and pins on paths, where they alone do work,
