@@ -31,7 +31,7 @@ void run_stage(benchmark::State& state, Bench& bench, std::size_t index) {
   auto& stage = *bench.step->stages()[index];
   const int rows = bench.step->lattice().rows;
   const double dt = bench.scene.time.frame / bench.scene.time.substeps;
-  const weft::physics::Substep substep{dt, dt, 0};
+  const weft::physics::Substep substep{dt, dt, dt};
   // Many passes a measurement, so that reading the clock does not count.
   const int passes = 4;
   weft::physics::Threads threads(1);

@@ -94,7 +94,7 @@ struct Case {
 };
 
 Advance advance() {
-  return {0.01f, 0.98f, 0.01f, -0.0981f, 0.003f};
+  return {0.01f, 0.008f, 0.98f, 0.01f, -0.0981f, 0.003f};
 }
 
 AdvanceRow advance_row(Patch& p) {

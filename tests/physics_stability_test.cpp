@@ -138,7 +138,7 @@ double growth(const Case& c, double share) {
   Threads one(1);
   double most = 0;
   for (int n = 0; n < 40; ++n) {
-    step.passes().run(0, dt, 100, one);
+    step.passes().run({0, dt, 100, dt}, one);
     const double now = energy();
     if (!std::isfinite(now)) return std::numeric_limits<double>::infinity();
     most = std::max(most, now);

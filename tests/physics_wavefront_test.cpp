@@ -43,6 +43,7 @@ class MixingStage final : public RowStage {
       std::this_thread::yield();  // lets other threads come in between
     std::uint64_t value = mixed(carried_[slot], std::bit_cast<std::uint64_t>(s.time));
     value = mixed(value, std::bit_cast<std::uint64_t>(s.dt));
+    value = mixed(value, std::bit_cast<std::uint64_t>(s.kick));
     for (int k = j; k <= std::min(j + reach, int(rows_.size()) - 1); ++k) {
       value = mixed(value, rows_[std::size_t(k)]);
       rows_[std::size_t(k)] = mixed(value, std::uint64_t(k));
@@ -89,7 +90,7 @@ std::vector<std::uint64_t> one_after_the_other(const Layout& layout) {
         MixingStage stage(int(q), layout.reaches[q], rows);
         stage.reserve_slots(1);
         for (int j = 0; j < layout.rows; ++j)
-          stage.run(j, {0.125, double(frame) * 10 + (s + 1) * 0.125, 0});
+          stage.run(j, {0.125, double(frame) * 10 + (s + 1) * 0.125, s == 0 ? 0.1 : 0.125, 0});
       }
   return rows;
 }
@@ -104,7 +105,7 @@ std::vector<std::uint64_t> by_wavefront(const Layout& layout, int thread_count) 
   Threads threads(thread_count);
   std::int64_t substeps = 0;
   for (std::size_t frame = 0; frame < layout.substeps.size(); ++frame) {
-    wavefront.run(double(frame) * 10, 0.125, layout.substeps[frame], threads);
+    wavefront.run({double(frame) * 10, 0.125, layout.substeps[frame], 0.1}, threads);
     substeps += layout.substeps[frame];
   }
   for (const MixingStage& stage : stages) {

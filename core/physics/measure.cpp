@@ -192,7 +192,7 @@ std::vector<Vec3> velocities_now(const Simulation::State& s, std::size_t index) 
   accelerations(s.scene, step.cloth(), step.families(), step.lattice(), step.bend_links(),
                 s.method == Method::spring_friction, a);
   for (std::size_t p = 0; p < v.size(); ++p)
-    for (int k = 0; k < 3; ++k) v[p][k] += a[p][k] * s.dt / 2;
+    for (int k = 0; k < 3; ++k) v[p][k] += a[p][k] * s.lag;
   return v;
 }
 

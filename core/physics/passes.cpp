@@ -9,6 +9,10 @@ namespace {
 // Rough cost of a row, for sizing tasks only: nanoseconds per constraint and per particle.
 constexpr double kConstraintNs = 0.5, kParticleNs = 0.5;
 
+// Particles times substeps, and particles, from which several threads are faster than one.
+constexpr double kSharedRun = 150000;
+constexpr int kSharedSubstep = 4096;
+
 double row_nanoseconds(const std::vector<RowStage*>& stages, int rows) {
   double ns = 0;
   for (const RowStage* s : stages)
@@ -40,20 +44,24 @@ Passes::Passes(const Stages& stages, int rows, std::size_t row_bytes) {
   close(stages.size());
 }
 
-void Passes::run(double time, double dt, int count, Threads& threads,
-                 std::span<const RowSpan> awake) {
+// Threads meet at the end of the frame, or in every substep.
+bool Passes::worth_sharing(int particles, int substeps) const {
+  return rows_only() ? double(particles) * substeps >= kSharedRun : particles >= kSharedSubstep;
+}
+
+void Passes::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake) {
   if (rows_only()) {
-    for (Pass& p : passes_) p.wavefront->run(time, dt, count, threads, awake);
+    for (Pass& p : passes_) p.wavefront->run(substeps, threads, awake);
     return;
   }
   for (Pass& p : passes_)
-    if (p.whole && dt != prepared_dt_) p.whole->prepare(dt);
-  prepared_dt_ = dt;
-  for (int s = 0; s < count; ++s) {
-    const Substep substep{dt, time + (s + 1) * dt, 0};
+    if (p.whole && substeps.dt != prepared_dt_) p.whole->prepare(substeps.dt);
+  prepared_dt_ = substeps.dt;
+  for (int s = 0; s < substeps.count; ++s) {
+    const Substep substep = substeps.at(s);
     for (Pass& p : passes_) {
       if (p.wavefront) {
-        p.wavefront->run(time + s * dt, dt, 1, threads, awake);
+        p.wavefront->run({substeps.time + s * substeps.dt, substeps.dt, 1, substep.kick}, threads, awake);
         continue;
       }
       const auto before = std::chrono::steady_clock::now();

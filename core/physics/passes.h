@@ -17,13 +17,15 @@ class Passes {
   // The stages outlive the passes. `row_bytes`: of one row of the lattice.
   Passes(const Stages& stages, int rows, std::size_t row_bytes);
 
-  // Runs `count` substeps of dt from `time` on; rows outside `awake` are passed over (empty: none).
-  void run(double time, double dt, int count, Threads& threads,
-           std::span<const RowSpan> awake = {});
+  // Rows outside `awake` are passed over (empty: none).
+  void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {});
 
   // Adds to ticks[q] the time that stage q took.
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds);
   bool profiled() const { return !profile_.empty(); }
+
+  // Whether so many substeps of so many particles are work enough for several threads.
+  bool worth_sharing(int particles, int substeps) const;
 
   // Whether one wavefront runs everything.
   bool rows_only() const { return whole_stages_ == 0; }

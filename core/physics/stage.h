@@ -16,7 +16,21 @@ class Threads;
 struct Substep {
   double dt = 0;    // s
   double time = 0;  // s, at the end of the substep
+  double kick = 0;  // s; for how long forces act on velocities (explicit springs)
   int slot = 0;     // which of a stage's carried buffers this substep uses
+};
+
+// Substeps of one length, one after the other. Velocities of explicit springs lie behind the positions by
+// half of the substep before; the first kick takes them to half of the first of these ahead.
+struct Substeps {
+  double time = 0;  // s, at the start
+  double dt = 0;    // s
+  int count = 0;
+  double first_kick = 0;  // s; dt where the substep before was as long
+
+  Substep at(int n, int slot = 0) const {
+    return {dt, time + (n + 1) * dt, n == 0 ? first_kick : dt, slot};
+  }
 };
 
 // Rows begin … end-1.

@@ -16,7 +16,6 @@ using namespace physics;
 
 namespace {
 
-constexpr int kSmallCloth = 4096;        // particles up to which one thread is faster
 constexpr float kFarAway = 1e7f;         // m; nothing in a sane scene gets there
 
 Simd resolve(Simd simd) {
@@ -119,24 +118,23 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
                     number(o.deepest) + " m; they are pushed apart");
 }
 
-// v <- v + a·by: velocities of explicit springs lie half a substep behind the positions. `from`
+// v <- v - a lag: velocities of explicit springs are taken to where they lie behind the positions. `now`
 // gives all velocities in double in place of v, so that what velocities() told comes back exactly.
-void Simulation::State::shift_velocities(double by, const double* from) {
+void Simulation::State::stagger(const double* now) {
+  std::vector<Vec3> a;
   for (auto& step : cloths) {
     Lattice& l = step->lattice();
-    std::vector<Vec3>& a = accelerations_;
     accelerations(scene, step->cloth(), step->families(), l, step->bend_links(),
                   method == Method::spring_friction, a);
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i)
         for (int c = 0; c < 3; ++c) {
           float& v = l.v.at(c, j, i);
-          const double start = from && l.w(j, i) > 0 ? *from : v;
-          v = float(start + a[std::size_t(j) * l.columns + i][c] * by);
-          if (from) ++from;
+          const double start = now && l.w(j, i) > 0 ? *now : v;
+          v = float(start - a[std::size_t(j) * l.columns + i][c] * lag);
+          if (now) ++now;
         }
   }
-  if (scene.time.substeps != kAutoSubsteps) accelerations_ = std::vector<Vec3>();
 }
 
 void Simulation::State::advance_frame() {
@@ -154,10 +152,12 @@ void Simulation::State::advance_frame() {
     return;
   }
   calm();
+  if (is_explicit(method) && !(rest && rest->all_asleep())) lag = dt / 2;
   for (auto& step : cloths)
     if (step->topology()) step->topology()->update();
   ++frame;
   total_substeps += substeps;
+
   if (rest) rest->end_frame([&](std::size_t c) -> const Rows& { return backups_[c].x; });
   if (is_explicit(method) && !(rest && rest->all_asleep())) follow_stretch(limit_);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
@@ -191,13 +191,18 @@ void Simulation::State::run_frame() {
   }
 }
 
+Substeps Simulation::State::substeps_from(int first, int count) const {
+  const bool kicked = first == 0 && is_explicit(method);
+  return {double(frame) * scene.time.frame + first * dt, dt, count, kicked ? lag + dt / 2 : dt};
+}
+
 void Simulation::State::run_substeps(int first, int count) {
-  const double time = double(frame) * scene.time.frame + first * dt;
+  const Substeps run = substeps_from(first, count);
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
     const Lattice& l = cloths[c]->lattice();
-    const bool small = l.columns * l.rows <= kSmallCloth;
-    cloths[c]->passes().run(time, dt, count, small ? one_thread : threads,
+    Passes& passes = cloths[c]->passes();
+    passes.run(run, passes.worth_sharing(l.columns * l.rows, count) ? threads : one_thread,
                             rest ? rest->rows(c) : std::span<const RowSpan>());
   }
 }
@@ -226,7 +231,7 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
   }
   restart_stages();
   if (is_explicit(method)) {
-    shift_velocities(-dt / 2, velocities.data());
+    stagger(velocities.data());
     follow_stretch(stretched_limit());
   }
   guard_.open(scene, method, cloths, double(frame) * scene.time.frame, dt);
@@ -251,6 +256,7 @@ void Simulation::State::wake(int cloth) {
 
 void Simulation::State::save() {
   saved_substeps_ = substeps;
+  saved_lag_ = lag;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
     backups_[c].x.copy(cloths[c]->lattice().x);
@@ -266,12 +272,12 @@ void Simulation::State::restore() {
     cloths[c]->lattice().v.copy(backups_[c].v);
     if (Topology* topology = cloths[c]->topology()) topology->go_back();
   }
-  // The velocities lie half a substep of that length behind the positions.
   take_substeps(saved_substeps_);
+  lag = saved_lag_;
 }
 
 std::size_t Simulation::State::backup_bytes() const {
-  std::size_t bytes = accelerations_.capacity() * sizeof(Vec3);
+  std::size_t bytes = 0;
   for (const Backup& b : backups_) bytes += b.x.bytes() + b.v.bytes();
   return bytes;
 }
@@ -288,10 +294,11 @@ void Simulation::State::find_fault() {
   status.ok = false;
   status.frame = frame + 1;
   status.stage = "step";
+  const Substeps all = substeps_from(0, substeps);
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     Lattice& l = cloths[c]->lattice();
     for (int s = 0; s < substeps; ++s) {
-      const Substep substep{dt, double(frame) * scene.time.frame + (s + 1) * dt, 0};
+      const Substep substep = all.at(s);
       for (const auto& stage : cloths[c]->stages()) {
         stage->run_alone(l.rows, substep, threads);
         for (int j = 0; j < l.rows && status.text == "ok"; ++j)

@@ -62,6 +62,7 @@ struct Simulation::State {
   std::uint64_t changes = 0;  // state set from outside
   int substeps = 1;
   double dt = 0;
+  double lag = 0;  // s; by which velocities lie behind the positions (explicit springs)
   std::vector<physics::Spectrum> spectra;  // of every cloth at the start (explicit springs)
 
   // Wall time of every frame [ms]; reserved ahead for the scene's own length.
@@ -76,11 +77,11 @@ struct Simulation::State {
   };
   std::vector<Backup> backups_;
   int saved_substeps_ = 1;
+  double saved_lag_ = 0;
   physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
   int grabbed_ = 0;
   std::vector<physics::Carry*> carried_;  // in the plan of each cloth; null while it rests
   int since_collision_ = 0, until_collision_ = 1;  // substeps
-  std::vector<Vec3> accelerations_;  // of one cloth, kept where automatic substeps change (explicit)
   physics::EnergyGuard guard_;
   double limit_ = 0;  // s; the stability limit at the end of the last frame (explicit)
   int finer_ = 1;     // times as many substeps as are due, since a frame failed
@@ -91,7 +92,7 @@ struct Simulation::State {
   void build_cloths();
   void take_substeps(int count);
   void set_substeps(int count);
-  void shift_velocities(double by, const double* from = nullptr);
+  void stagger(const double* now = nullptr);
   double stretched_limit() const;
   int substeps_within(double limit) const;
   void follow_stretch(double limit);
@@ -108,6 +109,7 @@ struct Simulation::State {
   void run_frame();
   physics::ClothStep& step_with(int cloth, int i, int j);
   void plan_changed();
+  physics::Substeps substeps_from(int first, int count) const;
   void run_substeps(int first, int count);
   void save();
   void restore();

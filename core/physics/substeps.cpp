@@ -98,7 +98,10 @@ void Simulation::State::choose_method_and_substeps() {
   plan.notes = std::move(notes);
   substeps = count;
   dt = scene.time.frame / count;
-  if (is_explicit(method)) shift_velocities(-dt / 2);
+  if (is_explicit(method)) {
+    lag = dt / 2;
+    stagger();
+  }
   guard_.open(scene, method, cloths, 0, dt);
 }
 
@@ -111,9 +114,7 @@ void Simulation::State::take_substeps(int count) {
 }
 
 void Simulation::State::set_substeps(int count) {
-  const double before = dt;
   take_substeps(count);
-  shift_velocities((before - dt) / 2);
   if (scene.time.substeps != kAutoSubsteps && count != scene.time.substeps)
     fall_back("springs need " + std::to_string(count) + " substeps a frame from frame " +
               std::to_string(frame + 1) + " on, as far as the sheet is stretched");

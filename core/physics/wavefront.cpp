@@ -17,14 +17,15 @@ constexpr std::size_t kTileBytes = 384 * 1024;
 // So many stages that their rows are better kept in the first-level cache: measured with sweeps.
 constexpr std::size_t kManyStages = 5;
 constexpr int kManyStagesHeight = 16;
+constexpr int kSharedHeight = 16;  // so that all threads are busy to the end of a frame
 // The least work worth a task [ns].
 constexpr double kTaskNanoseconds = 12000;
 
 }  // namespace
 
 struct Wavefront::Run {
-  double time, dt;
-  int count, chunks;
+  const Substeps& substeps;
+  int chunks;
   std::span<const RowSpan> awake;
 };
 
@@ -50,7 +51,8 @@ void Wavefront::choose_tiles(int count, int threads) {
     const int cache_rows = std::max<int>(4, int(kTileBytes / std::max<std::size_t>(row_bytes_, 1)));
     // A tile and its lean share the cache; several tiles per thread keep all threads busy.
     height_ = std::max(2 * reach, cache_rows / 2);
-    if (threads > 1) height_ = std::min(height_, std::max(rows_ / (4 * threads), reach));
+    if (threads > 1)
+      height_ = std::min(height_, std::max(std::min(rows_ / (4 * threads), kSharedHeight), reach));
     height_ = std::clamp(height_, 1, rows_);
     chunk_substeps_ = std::clamp(height_ / reach, 1, 8);
     const double tile = row_nanoseconds_ * height_;
@@ -69,13 +71,12 @@ void Wavefront::choose_tiles(int count, int threads) {
   ring_ = threads > 1 ? threads + 1 : 1;
 }
 
-void Wavefront::run(double time, double dt, int count, Threads& threads,
-                    std::span<const RowSpan> awake) {
-  choose_tiles(count, threads.count());
-  if (dt != prepared_dt_)
-    for (RowStage* s : stages_) s->prepare(dt);
-  prepared_dt_ = dt;
-  const Run r{time, dt, count, (count + chunk_substeps_ - 1) / chunk_substeps_, awake};
+void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake) {
+  choose_tiles(substeps.count, threads.count());
+  if (substeps.dt != prepared_dt_)
+    for (RowStage* s : stages_) s->prepare(substeps.dt);
+  prepared_dt_ = substeps.dt;
+  const Run r{substeps, (substeps.count + chunk_substeps_ - 1) / chunk_substeps_, awake};
   if (const int slots = chunk_substeps_ * ring_; slots > slots_) {
     for (RowStage* s : stages_) s->reserve_slots(slots);
     slots_ = slots;
@@ -97,11 +98,10 @@ void Wavefront::run_rows(const Run& r, RowStage& stage, RowSpan rows, const Subs
 
 void Wavefront::run_tile(const Run& r, int tile, int chunk) const {
   const int first = chunk * chunk_substeps_;
-  const int last = std::min(first + chunk_substeps_, r.count);
+  const int last = std::min(first + chunk_substeps_, r.substeps.count);
   std::size_t level = 0;
   for (int s = first; s < last; ++s) {
-    const Substep substep{r.dt, r.time + (s + 1) * r.dt,
-                          chunk % ring_ * chunk_substeps_ + (s - first)};
+    const Substep substep = r.substeps.at(s, chunk % ring_ * chunk_substeps_ + (s - first));
     for (std::size_t q = 0; q < stages_.size(); ++q, ++level) {
       const int begin = std::max(0, tile * height_ - offset_[level]);
       const int end = std::min(rows_, (tile + 1) * height_ - offset_[level]);

@@ -27,10 +27,8 @@ class Wavefront {
   Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes,
             double row_nanoseconds);
 
-  // Runs substeps first … first+count-1 of a frame; dt and time are those of the first. Only the
-  // rows of `awake` are worked on, spans in order and apart; empty: all rows.
-  void run(double time, double dt, int count, Threads& threads,
-           std::span<const RowSpan> awake = {});
+  // Only the rows of `awake` are worked on, spans in order and apart; empty: all rows.
+  void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {});
 
   // Adds to ticks[q] the time that stage q took; off when null.
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds) { profile_ = nanoseconds; }

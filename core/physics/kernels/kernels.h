@@ -36,11 +36,11 @@ struct SpringConstants {
   float damping = 0;  // along the spring [N·s/m]
 };
 
-// v <- drag v + dt (f/m + g), x <- x + dt v, pinned particles (inverse mass 0) unmoved.
+// v <- drag v + kick (f/m + g), x <- x + dt v, pinned particles (inverse mass 0) unmoved.
 struct Advance {
-  float dt;              // s
+  float dt, kick;        // s; the same but after the substep's length has changed
   float drag;            // factor on the velocity
-  float gx, gy, gz;      // velocity gained from gravity in one substep [m/s]
+  float gx, gy, gz;      // velocity gained from gravity [m/s]
 };
 
 // The six families of a plain cloth at once for rows begin … end-1 (kernels/plain_rows.h). Row j is

@@ -54,15 +54,15 @@ class LongDelay3 {
 // the same operations whatever the instruction set.
 WEFT_INLINE int padded(int count) { return (count + 15) & ~15; }
 
-// v <- c v + dt (f/m + g), x <- x + dt v; a pinned particle's inverse mass of 0 keeps it in place.
+// v <- c v + kick (f/m + g), x <- x + dt v; a pinned particle's inverse mass of 0 keeps it in place.
 WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const Advance& a,
                       std::ptrdiff_t i) {
   const Wide w = load(inverse_mass + i);
   const WideInt free = w > 0.0f;
-  const Wide w_dt = w * a.dt;
+  const Wide w_kick = w * a.kick;
   const Wide3 gained{select(free, wide(a.gx), Wide{}), select(free, wide(a.gy), Wide{}),
                      select(free, wide(a.gz), Wide{})};
-  const Wide3 velocity = load3(v, i) * wide(a.drag) + (f * w_dt + gained);
+  const Wide3 velocity = load3(v, i) * wide(a.drag) + (f * w_kick + gained);
   store3(v, i, velocity);
   store3(x, i, load3(x, i) + velocity * wide(a.dt));
 }

@@ -53,8 +53,8 @@ class BendingForce final : public RowStage {
     r.across = left(parts_, &BendLinks::across, at);
     r.twist = left(parts_, &BendLinks::twist, at);
     // The leapfrog step that follows takes drag off the velocity that it finds, but not off forces.
-    const double kept = 1 - s.dt * parts_.cloth.drag;
-    r.dt = float(kept > 0.01 ? s.dt / kept : s.dt);
+    const double kept = 1 - s.kick * parts_.cloth.drag;
+    r.dt = float(kept > 0.01 ? s.kick / kept : s.kick);
     parts_.kernels.bend_row(r);
   }
 

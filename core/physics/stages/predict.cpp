@@ -25,7 +25,7 @@ class Predict final : public RowStage {
         multipliers_(multipliers) {}
   void run(int begin, int end, const Substep& s) override {
     AdvanceRow a = rows_of(parts_, begin, end);
-    a.advance = advance_of(parts_, s.dt);
+    a.advance = advance_of(parts_, s);
     parts_.kernels.predict(a);
     if (multipliers_) multipliers_->clear(begin, end);
   }

@@ -22,18 +22,16 @@ class PlainSprings final : public PlainRowsStage {
   std::size_t bytes() const override {
     return PlainRowsStage::bytes() + springs_.size() * sizeof(SpringConstants);
   }
-  void prepare(double dt) override { advance_ = advance_of(parts_, dt); }
   void run(int begin, int end, const Substep& s) override {
     SpringRows r{};
     fill(r, begin, end, s);
     r.springs = springs_.data();
-    r.advance = advance_;
+    r.advance = advance_of(parts_, s);
     parts_.kernels.spring_rows(r);
   }
 
  private:
   std::vector<SpringConstants> springs_;
-  Advance advance_{};
 };
 
 // Any families, one kernel call each: levels, subsets, damping along the spring.
@@ -81,7 +79,7 @@ class FamilySprings final : public RowStage {
     a.v = l.v.row(j);
     a.w = l.w(j);
     a.f = force(j);
-    a.advance = advance_of(parts_, s.dt);
+    a.advance = advance_of(parts_, s);
     parts_.kernels.integrate(a);
   }
 
@@ -107,10 +105,14 @@ int greatest_reach(const ClothParts& parts) {
   return reach;
 }
 
-Advance advance_of(const ClothParts& parts, double dt) {
+Advance advance_of(const ClothParts& parts, const Substep& s) {
   const Vec3& g = parts.scene.gravity;
-  return {float(dt), float(std::max(0.0, 1 - dt * parts.cloth.drag)), float(g[0] * dt),
-          float(g[1] * dt), float(g[2] * dt)};
+  return {float(s.dt),
+          float(s.kick),
+          float(std::max(0.0, 1 - s.kick * parts.cloth.drag)),
+          float(g[0] * s.kick),
+          float(g[1] * s.kick),
+          float(g[2] * s.kick)};
 }
 
 std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped) {

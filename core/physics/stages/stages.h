@@ -37,7 +37,7 @@ struct ClothParts {
 int greatest_reach(const ClothParts& parts);
 
 // Constants of the leapfrog move over one substep.
-Advance advance_of(const ClothParts& parts, double dt);
+Advance advance_of(const ClothParts& parts, const Substep& substep);
 
 std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped);
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, struct Multipliers* multipliers);
