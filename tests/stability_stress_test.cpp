@@ -84,6 +84,39 @@ TEST(Stress, AFrameThatGainsEnergyIsRunAgain) {
   EXPECT_LT(v.energy, bench::kBound);
 }
 
+// Substeps of two microseconds, which single precision hardly resolves, and no room for smaller ones.
+TEST(Stress, WhatNoSubstepResolvesGoesOnByTheCompliantMethod) {
+  for (const std::uint64_t n : {67, 649, 1640, 2118}) {
+    const bench::Verdict v = bench::run_stress(bench::random_case(n));
+    EXPECT_EQ(v.fate, Fate::saved) << n << ": " << fate_name(v.fate) << " " << v.why;
+    EXPECT_LT(v.energy, bench::kBound) << n;
+  }
+}
+
+// A run that goes back to an earlier moment begins with the springs that the scene asks for.
+TEST(Stress, SpringsComeBackWithAnEarlierMoment) {
+  const Scene scene = bench::random_case(2118).scene;
+  Simulation simulation(scene);
+  const auto runs_springs = [&] {
+    const auto& stages = simulation.plan().stages;
+    return std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.name == "springs"; });
+  };
+  std::vector<double> x = simulation.positions();
+  for (std::size_t k = 3 * std::size_t(scene.cloths[0].grid.nx); k < x.size(); ++k) x[k] = 1e-3 * double(k % 3);
+  simulation.set_state(x, std::vector<double>(x.size(), 0));
+  const Moment start = simulation.moment();
+  std::uint64_t hashes[2];
+  for (std::uint64_t& hash : hashes) {
+    EXPECT_TRUE(runs_springs());
+    for (int f = 0; f < 5; ++f) simulation.advance_frame();
+    EXPECT_TRUE(simulation.status().ok) << simulation.status().text;
+    EXPECT_FALSE(runs_springs());
+    hash = simulation.hash();
+    simulation.restore(start);
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
 // One sweep for each of 8 substeps is far too few for 64 rows, which stretch to several lengths; a
 // stretched sheet resists sideways too, and has the largest eigenvalues.
 TEST(Stress, TooFewJacobiSweepsStretchASheetAndNothingElse) {

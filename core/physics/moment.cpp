@@ -81,9 +81,9 @@ void Simulation::State::restore(const Moment& m) {
       for (const auto& stage : step->stages()) stage->follow(scene.colliders[n]);
   }
   frame = std::llround(m.time / scene.time.frame);
-  take_substeps(substeps / finer_);
   finer_ = 1;
-  solve_as(asked_);
+  take_substeps(began_at_);
+  go_on_as(began_as_, began_with_);
   status = Status{};
   plan_changed();
   set(positions, velocities);

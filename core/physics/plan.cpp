@@ -35,10 +35,11 @@ ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::ui
 void ClothStep::allow_tearing() {
   if (topology_) return;
   make_topology();
-  choose_anew();
+  choose_anew(method_);
 }
 
-void ClothStep::choose_anew() {
+void ClothStep::choose_anew(Method method) {
+  method_ = method;
   Stages added;
   for (auto& s : stages_)
     if (std::find(added_.begin(), added_.end(), s.get()) != added_.end()) added.push_back(std::move(s));

@@ -41,9 +41,9 @@ class ClothStep {
   // Puts a stage right after the one that moves the particles; takes it away again.
   void add_stage(std::unique_ptr<Stage> stage);
   void remove_stage(const Stage* stage);
-  // Chooses the stages anew: the scene's solver has changed. Added stages stay; what the others carry
-  // from substep to substep starts anew.
-  void choose_anew();
+  // Chooses the stages anew for this method and the scene's solver as it is now. Added stages stay; what
+  // the others carry from substep to substep starts anew.
+  void choose_anew(Method method);
   ClothParts parts() const { return parts_; }
   // Null while the cloth cannot tear. allow_tearing() lets a cloth tear from now on.
   Topology* topology() { return topology_.get(); }
@@ -62,7 +62,7 @@ class ClothStep {
   void make_passes();
 
   const Cloth& cloth_;
-  const Method method_;
+  Method method_;
   const std::uint64_t seed_;
   std::vector<Family> families_;
   Lattice lattice_;

@@ -16,7 +16,6 @@ using namespace physics;
 
 namespace {
 
-constexpr float kFarAway = 1e7f;         // m; nothing in a sane scene gets there
 
 Simd resolve(Simd simd) {
   if (simd != Simd::best) return simd;
@@ -63,9 +62,11 @@ Simulation::State::State(Scene given, const Options& given_options)
       one_thread(1),
       method(scene.solver.method) {
   const std::string changed = steady_jacobi(scene);
-  asked_ = scene.solver;
   build_cloths();
   choose_method_and_substeps();
+  began_as_ = method;
+  began_with_ = scene.solver;
+  began_at_ = substeps;
   if (!changed.empty()) fall_back(changed);
   frame_ms.reserve(std::size_t(std::clamp(scene.time.seconds / scene.time.frame, 1.0, 1e6)) + 1);
 }

@@ -20,6 +20,8 @@ namespace weft {
 
 inline constexpr double kProjectionRate = 960;  // automatic substeps a second of methods that project
 
+inline constexpr float kFarAway = 1e7f;  // m; nothing in a sane scene gets there
+
 // A number as notes give it.
 inline std::string number(double v) {
   char text[32];
@@ -42,7 +44,7 @@ struct Simulation::State {
   void restore(const Moment& moment);
   std::size_t backup_bytes() const;
 
-  Scene scene;  // as simulated; only move_collider() and solve_as() change it
+  Scene scene;  // as simulated; only move_collider() and go_on_as() change it
   Options options;
   Simd simd;
   physics::Threads threads;
@@ -85,7 +87,10 @@ struct Simulation::State {
   physics::EnergyGuard guard_;
   double limit_ = 0;  // s; the stability limit at the end of the last frame (explicit)
   int finer_ = 1;     // times as many substeps as are due, since a frame failed
-  Solver asked_;      // the scene's, before any line sweeps failed
+  // As the run began, before any of its frames failed.
+  Method began_as_;
+  Solver began_with_;
+  int began_at_ = 1;  // substeps a frame
 
   void choose_method_and_substeps();
   void note_starts(std::vector<std::string>& notes) const;
@@ -98,8 +103,11 @@ struct Simulation::State {
   void follow_stretch(double limit);
   bool driven() const;
   bool blown() const { return scene.wind.drag > 0 || scene.wind.lift > 0; }
+  int projection_substeps() const;
+  bool finest() const;
+  bool flies_away() const;
   bool too_coarse();
-  void solve_as(const Solver& solver);
+  void go_on_as(Method as, const Solver& solver);
   bool overshot() const;
   void calm();
   void fall_back(const std::string& note);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/measure.h"
 #include "physics/stability.h"
 #include "physics/state.h"
 
@@ -88,7 +89,7 @@ void Simulation::State::choose_method_and_substeps() {
       build_cloths();
     }
   }
-  if (count == kAutoSubsteps) count = std::max(1, int(std::lround(scene.time.frame * kProjectionRate)));
+  if (count == kAutoSubsteps) count = projection_substeps();
   Scene as_run = scene;
   as_run.solver.method = method;
   plan = describe(as_run, cloths, count);
@@ -120,6 +121,10 @@ void Simulation::State::set_substeps(int count) {
               std::to_string(frame + 1) + " on, as far as the sheet is stretched");
 }
 
+bool Simulation::State::finest() const {
+  return finer_ == kFinest || dt < 2 * kLeastSubstep;
+}
+
 // Whether the frame came out as it cannot be and has a better chance with more substeps: springs
 // stretched beyond what their substep allows, or springs or line sweeps with more energy than there is.
 // Then everything is back at the frame's start, to be run again.
@@ -127,28 +132,34 @@ bool Simulation::State::too_coarse() {
   const bool springs = is_explicit(method), lines = !springs && scene.solver.sweep == Sweep::line;
   if (!(springs || lines) || (rest && rest->all_asleep())) return false;
   const bool lost = !finite();
-  const bool finest = finer_ == kFinest || dt < 2 * kLeastSubstep;
   bool beyond_limit = false;
   if (!lost) {
     if (springs) limit_ = stretched_limit();
     guard_.look(scene, cloths, driven());
     beyond_limit = springs && dt > limit_;
-    if (!beyond_limit && guard_.holds() && (!lines || finest || !overshot())) return false;
+    if (!beyond_limit && guard_.holds() && (!lines || finest() || !overshot())) return false;
   }
   const std::string which = "frame " + std::to_string(frame + 1);
-  if (springs && finest && !beyond_limit) return false;
-  const int count = beyond_limit ? substeps_within(limit_) : finest ? substeps : 2 * substeps;
+  const bool unresolved = springs && beyond_limit && kLimitShare * limit_ < kLeastSubstep;
+  const bool hopeless = unresolved || (!beyond_limit && finest());
+  const int finer = hopeless ? substeps : 2 * substeps;
+  if (hopeless && flies_away()) return false;
   restore();
-  springs ? set_substeps(count) : take_substeps(count);
-  if (lines && finest) {
+  if (hopeless) {
     Solver steady = scene.solver;
     steady.sweep = Sweep::gauss_seidel;
     steady.order = 1;
-    solve_as(steady);
+    plan.notes.push_back(which + " gained energy from nowhere with so many substeps too; from it on " +
+                         (springs ? "the compliant method runs" : "gauss_seidel sweeps run") +
+                         " in their place");
     plan.fallback = true;
-    plan.notes.push_back(which + " gained energy from nowhere with so many substeps too; from it on "
-                         "gauss_seidel sweeps of the first order run in the place of lines");
-  } else if (!beyond_limit) {
+    go_on_as(springs ? Method::compliant : method, steady);
+    take_substeps(springs ? projection_substeps() : finer);
+    save();
+  } else if (beyond_limit) {
+    set_substeps(substeps_within(limit_));
+  } else {
+    take_substeps(finer);
     finer_ *= 2;
     fall_back(which + " gained energy from nowhere; it and all after it run with more substeps");
   }
@@ -156,11 +167,34 @@ bool Simulation::State::too_coarse() {
   return true;
 }
 
-// Goes on with another solver of the same method.
-void Simulation::State::solve_as(const Solver& solver) {
-  if (scene.solver == solver) return;
+// Whether something was so fast at the frame's start that it leaves all bounds by any method.
+bool Simulation::State::flies_away() const {
+  return std::any_of(backups_.begin(), backups_.end(), [&](const Backup& b) {
+    return !(b.v.greatest() * scene.time.frame < kFarAway);
+  });
+}
+
+int Simulation::State::projection_substeps() const {
+  if (scene.time.substeps != kAutoSubsteps) return scene.time.substeps;
+  return std::max(1, int(std::lround(scene.time.frame * kProjectionRate)));
+}
+
+// Goes on from the state as it is by another method or solver.
+void Simulation::State::go_on_as(Method as, const Solver& solver) {
+  if (method == as && scene.solver == solver) return;
+  if (is_explicit(method) && !is_explicit(as))
+    for (std::size_t c = 0; c < cloths.size(); ++c) {
+      Lattice& l = cloths[c]->lattice();
+      const std::vector<Vec3> v = velocities_now(*this, c);
+      for (int j = 0; j < l.rows; ++j)
+        for (int i = 0; i < l.columns; ++i)
+          for (int k = 0; k < 3; ++k)
+            l.v.at(k, j, i) = float(v[std::size_t(j) * l.columns + i][k]);
+    }
+  method = as;
+  lag = is_explicit(as) ? dt / 2 : 0;
   scene.solver = solver;
-  for (auto& step : cloths) step->choose_anew();
+  for (auto& step : cloths) step->choose_anew(method);
   plan_changed();
 }
 

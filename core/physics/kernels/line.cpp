@@ -255,7 +255,11 @@ void solve_blocks(const LineStrip& given, int first) {
 
 template <bool kLambda, bool kVelocity>
 void solve(const LineStrip& p) {
-  if (kLanes == 16 && p.lines == 32) return solve_blocks<kLambda, kVelocity, 2>(p, 0);
+  if (kLanes >= 8 && p.lines >= 2 * kLanes) {
+    for (int first = 0; first < p.lines; first += 2 * kLanes)
+      solve_blocks<kLambda, kVelocity, 2>(p, first);
+    return;
+  }
   for (int first = 0; first < p.lines; first += kLanes)
     solve_blocks<kLambda, kVelocity, 1>(p, first);
 }
