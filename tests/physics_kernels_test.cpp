@@ -26,7 +26,7 @@ struct Patch {
   int columns, stride;
   Rows x, v, f, previous, carry;
   AlignedArray<float> w, row_w, lambda, scratch;
-  AlignedArray<std::int32_t> lanes;
+  AlignedArray<std::int32_t> lanes, alive;
 
   Patch(int columns_, float padding)
       : columns(columns_),
@@ -40,7 +40,8 @@ struct Patch {
         row_w(kRows),
         lambda(std::size_t(stride)),
         scratch(kGuard + 3 * std::size_t(stride)),
-        lanes(2 * std::size_t(stride)) {
+        lanes(2 * std::size_t(stride)),
+        alive(std::size_t(kPlainFamilies * kRows) * stride) {
     Random random(5, std::uint64_t(columns));
     for (int j = 0; j < kRows; ++j)
       for (int i = 0; i < stride; ++i) {
@@ -56,6 +57,12 @@ struct Patch {
         }
       }
     for (int i = 0; i < stride; ++i) lambda[i] = i < columns ? float(random.symmetric()) : padding;
+    // One constraint in four is torn.
+    const int reach[kPlainFamilies] = {1, 0, 1, 1, 2, 0};
+    for (int f = 0; f < kPlainFamilies; ++f)
+      for (int j = 0; j < kRows; ++j)
+        for (int i = 0; i < columns - reach[f]; ++i)
+          alive[std::size_t(f * kRows + j) * stride + i] = random.unit() < 0.25 ? 0 : -1;
     // Two coincident particles: a spring without a direction.
     for (int axis = 0; axis < 3; ++axis) x.at(axis, 0, 1) = x.at(axis, 0, 0);
   }
@@ -136,7 +143,9 @@ constexpr std::array<std::array<int, 2>, 12> kOffsets{{{1, 0},
                                                        {7, 1},
                                                        {-16, 1}}};
 
-void fill(PlainRows& r, Patch& p, int begin, int end) {
+void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
+  for (int f = 0; f < kPlainFamilies; ++f)
+    r.alive[f] = torn ? p.alive.data() + std::size_t(f * kRows) * p.stride : nullptr;
   r.begin = begin;
   r.end = end;
   r.rows = kRows;
@@ -149,28 +158,30 @@ void fill(PlainRows& r, Patch& p, int begin, int end) {
 }
 
 // Rows begin … end-1 of the patch with the six families of a plain cloth.
-void spring_rows(const KernelTable& k, Patch& p, int begin, int end) {
+void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int begin, int end) {
   std::vector<SpringConstants> springs;
   for (int j = 0; j < kRows; ++j) {
     const auto below = [&](int dj, SpringConstants c) {
       springs.push_back(j + dj < kRows ? c : SpringConstants{});
     };
-    below(0, {70, 63, 0});
-    below(1, {71, 60, 0});
-    below(1, {40, 57, 0});
-    below(1, {41, 56, 0});
-    below(0, {20, 41, 0});
-    below(2, {20, 39, 0});
+    below(0, {70, 63, 0.4f});
+    below(1, {71, 60, 0.4f});
+    below(1, {40, 57, 0.4f});
+    below(1, {41, 56, 0.4f});
+    below(0, {20, 41, 0.4f});
+    below(2, {20, 39, 0.4f});
   }
   SpringRows r{};
-  fill(r, p, begin, end);
+  fill(r, p, begin, end, torn);
   r.springs = springs.data();
+  r.damped = damped;
   r.advance = advance();
   k.spring_rows(r);
 }
 
 // A Jacobi sweep over rows begin … end-1, rigid or compliant.
-void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, int begin, int end) {
+void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, bool torn, int begin,
+                 int end) {
   if (alike) p.weigh_alike();
   std::vector<JacobiConstants> constraints;
   JacobiRows r{};
@@ -182,7 +193,7 @@ void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, i
       if (j + dj < kRows) constraints.push_back({compliance, kappa, kappa * r.rest[f]});
       else constraints.push_back({std::numeric_limits<float>::infinity(), 0, 0});
     }
-  fill(r, p, begin, end);
+  fill(r, p, begin, end, torn);
   r.alike = alike;
   r.constraints = constraints.data();
   r.weight = 3;
@@ -190,28 +201,35 @@ void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, i
   k.jacobi_rows(r);
 }
 
+// A kernel over all rows at once, and in two parts.
+void add_rows(std::vector<Case>& cases, const std::string& name,
+              const std::function<void(const KernelTable&, Patch&, int begin, int end)>& run) {
+  cases.push_back({name, 2, [=](const KernelTable& k, Patch& p) { run(k, p, 0, kRows); }});
+  cases.push_back({name + ", in two parts", 2, [=](const KernelTable& k, Patch& p) {
+                     run(k, p, 0, 1);
+                     run(k, p, 1, kRows);
+                   }});
+}
+
 void add_jacobi(std::vector<Case>& cases) {
   for (const float compliance : {0.0f, 0.7f})
-    for (const bool alike : {false, true}) {
-      const std::string name = std::string("jacobi_rows, ") + (compliance > 0 ? "compliant" : "rigid") +
-                               (alike ? ", alike" : "");
-      cases.push_back({name, 2, [=](const KernelTable& k, Patch& p) {
-                         jacobi_rows(k, p, compliance, alike, 0, kRows);
-                       }});
-      cases.push_back({name + ", in two parts", 2, [=](const KernelTable& k, Patch& p) {
-                         jacobi_rows(k, p, compliance, alike, 0, 1);
-                         jacobi_rows(k, p, compliance, alike, 1, kRows);
-                       }});
-    }
+    for (const bool alike : {false, true})
+      for (const bool torn : {false, true})
+        add_rows(cases,
+                 std::string("jacobi_rows, ") + (compliance > 0 ? "compliant" : "rigid") +
+                     (alike ? ", alike" : "") + (torn ? ", torn" : ""),
+                 [=](const KernelTable& k, Patch& p, int begin, int end) {
+                   jacobi_rows(k, p, compliance, alike, torn, begin, end);
+                 });
 }
 
 void add_springs(std::vector<Case>& cases) {
-  cases.push_back(
-      {"spring_rows", 2, [](const KernelTable& k, Patch& p) { spring_rows(k, p, 0, kRows); }});
-  cases.push_back({"spring_rows, in two parts", 2, [](const KernelTable& k, Patch& p) {
-                     spring_rows(k, p, 0, 1);
-                     spring_rows(k, p, 1, kRows);
-                   }});
+  for (const bool damped : {false, true})
+    for (const bool torn : {false, true})
+      add_rows(cases, std::string("spring_rows") + (damped ? ", damped" : "") + (torn ? ", torn" : ""),
+               [=](const KernelTable& k, Patch& p, int begin, int end) {
+                 spring_rows(k, p, damped, torn, begin, end);
+               });
   for (const auto& [di, dj] : kOffsets) {
     const std::string at = " (" + std::to_string(di) + "," + std::to_string(dj) + ")";
     const auto springs = [di = di, dj = dj](auto kernel) {

@@ -9,8 +9,10 @@
 namespace weft::WEFT_KERNELS {
 namespace {
 
+template <bool kMayTear>
 struct JacobiLaw {
   using Rows = physics::JacobiRows;
+  static constexpr bool kRates = false, kTorn = kMayTear;
   template <PlainFamily F>
   WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
     constexpr bool kNextNear = F == kAntidiagonal, kNextFar = F == kRight || F == kDiagonal;
@@ -22,7 +24,7 @@ struct JacobiLaw {
     return select(inertia > 0.0f, (length - r.rest[F]) / (inertia * length), Wide{});
   }
   template <PlainFamily F>
-  WEFT_INLINE static Wide3 pull(const Rows&, const Block&, Wide3 edge, Wide quotient) {
+  WEFT_INLINE static Wide3 pull(const Rows&, const Block&, Wide3 edge, Wide quotient, Wide) {
     return edge * quotient;
   }
   WEFT_INLINE static void finish(const Rows& r, Wide3 sum, std::ptrdiff_t lane) {
@@ -33,13 +35,15 @@ struct JacobiLaw {
 };
 
 // Between particles of one inverse mass w: Δλ/|e| = κ - κ l/|e|, κ = 1/(2w/ω + α̃).
-struct AlikeLaw : JacobiLaw {
+template <bool kMayTear>
+struct AlikeLaw : JacobiLaw<kMayTear> {
+  using Rows = physics::JacobiRows;
   template <PlainFamily F>
   WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
     return r.constraints[b.constants + F].kl / length;
   }
   template <PlainFamily F>
-  WEFT_INLINE static Wide3 pull(const Rows& r, const Block& b, Wide3 edge, Wide quotient) {
+  WEFT_INLINE static Wide3 pull(const Rows& r, const Block& b, Wide3 edge, Wide quotient, Wide) {
     return edge * (r.constraints[b.constants + F].k - quotient);
   }
 };
@@ -93,8 +97,10 @@ void sum_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
 }  // namespace
 
 void jacobi_rows(const physics::JacobiRows& r) {
-  if (r.alike) return plain_rows<AlikeLaw>(r);
-  plain_rows<JacobiLaw>(r);
+  if (r.alike)
+    r.alive[0] ? plain_rows<AlikeLaw<true>>(r) : plain_rows<AlikeLaw<false>>(r);
+  else
+    r.alive[0] ? plain_rows<JacobiLaw<true>>(r) : plain_rows<JacobiLaw<false>>(r);
 }
 
 void jacobi_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {

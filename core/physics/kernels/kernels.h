@@ -52,6 +52,8 @@ struct PlainRows {
   int columns, stride;
   Row3 x, v;       // row 0
   const float* w;  // inverse mass of row 0 [1/kg]
+  // Of row 0 of each family: -1 in the lanes of constraints, 0 in those of torn ones. Null: cannot tear.
+  const std::int32_t* alive[kPlainFamilies];
   // Negated sums of earlier rows: of row j-1 on row j, and of row j-2 on rows j even and odd.
   Row3 carry[3];
 };
@@ -60,6 +62,7 @@ struct PlainRows {
 struct SpringRows : PlainRows {
   // Six for each row: (1,0) (0,1) (1,1) (-1,1) (2,0) (0,2); zero where row j+dj does not exist.
   const SpringConstants* springs;
+  bool damped;  // whether springs have damping
   Advance advance;
 };
 

@@ -5,8 +5,11 @@
 // A `Law` says what a constraint does to its ends and how a finished row moves:
 //
 //   Law::Rows                                     the kernel's argument, a PlainRows
+//   Law::kTorn                                    whether constraints may have died (PlainRows::alive)
+//   Law::kRates                                   whether pulls depend on velocities
 //   Law::quotient<F>(rows, block, length)         of family F: by the one division it needs
-//   Law::pull<F>(rows, block, edge, quotient)     on the near end; the far end gets its negative
+//   Law::pull<F>(rows, block, edge, quotient, edge·velocity)
+//                                                 on the near end; the far end gets its negative
 //   Law::finish(rows, sum, lane)                  moves a block by the sum of its pulls
 #pragma once
 
@@ -74,22 +77,23 @@ struct Pipeline {
 
   Wide3 edge[kFamilies];
   Wide length[kFamilies];  // squared length, then length, then the quotient
+  Wide rate[kFamilies];    // edge · its ends' difference in velocity
   Wide3 own, below;        // pull on the block in `pull`, and on the row below it (negated)
   Delay3<1> right, diagonal, antidiagonal;
   Delay3<2> right2;
 
   template <PlainFamily F>
   WEFT_INLINE void square(const Rows& s, const Block& b) {
-    const Wide3 near = load3(s.x, F == kAntidiagonal ? b.here + 1 : b.here);
-    Wide3 far;
-    if constexpr (F == kRight) far = load3(s.x, b.here + 1);
-    if constexpr (F == kRight2) far = load3(s.x, b.here + 2);
-    if constexpr (F == kDown || F == kAntidiagonal) far = load3(s.x, b.below);
-    if constexpr (F == kDiagonal) far = load3(s.x, b.below + 1);
-    if constexpr (F == kDown2) far = load3(s.x, b.below2);
-    edge[F] = far - near;
+    const std::ptrdiff_t near = F == kAntidiagonal ? b.here + 1 : b.here;
+    std::ptrdiff_t far = b.below;  // kDown, kAntidiagonal
+    if constexpr (F == kRight) far = b.here + 1;
+    if constexpr (F == kRight2) far = b.here + 2;
+    if constexpr (F == kDiagonal) far = b.below + 1;
+    if constexpr (F == kDown2) far = b.below2;
+    edge[F] = load3(s.x, far) - load3(s.x, near);
     length[F] = max(dot(edge[F], edge[F]), wide(kTiny));
     pin_order(length[F]);
+    if constexpr (Law::kRates) rate[F] = dot(edge[F], load3(s.v, far) - load3(s.v, near));
   }
   template <PlainFamily F>
   WEFT_INLINE void root() {
@@ -104,7 +108,8 @@ struct Pipeline {
   // Pull of family F on its near end; lanes past the last constraint of the row are zero.
   template <PlainFamily F, bool kLast>
   WEFT_INLINE Wide3 pull(const Rows& s, const Block& b) const {
-    const Wide3 f = Law::template pull<F>(s, b, edge[F], length[F]);
+    Wide3 f = Law::template pull<F>(s, b, edge[F], length[F], rate[F]);
+    if constexpr (Law::kTorn) f = select(lanes_at(s.alive[F] + b.here), f, Wide3{});
     if constexpr (!kLast || F == kDown || F == kDown2) return f;
     return select(lanes_below(s.columns - (F == kRight2 ? 2 : 1) - b.i), f, Wide3{});
   }

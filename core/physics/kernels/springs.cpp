@@ -1,6 +1,7 @@
 // Springs as forces and the leapfrog step, one row at a time.
 //
 //   force on particle a from spring ab:  f = k (|e| - l) e/|e| = e (k - k l/|e|),  e = x_b - x_a
+//   its damping:                         f_d = k_d (ê·(v_b - v_a)) ê   (seed 000, "Spring and Friction")
 //   step:                                v <- c v + dt (f/m + g),   x <- x + dt v
 //
 // (seed 000, "Spring or Physical constraint" and "Verlet's Step", with the velocity kept in place of
@@ -10,15 +11,21 @@
 namespace weft::WEFT_KERNELS {
 namespace {
 
+template <bool kDamped, bool kMayTear>
 struct SpringLaw {
   using Rows = SpringRows;
+  static constexpr bool kRates = kDamped, kTorn = kMayTear;
   template <PlainFamily F>
   WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
-    return r.springs[b.constants + F].kl / length;
+    return (kDamped ? 1.0f : r.springs[b.constants + F].kl) / length;
   }
   template <PlainFamily F>
-  WEFT_INLINE static Wide3 pull(const Rows& r, const Block& b, Wide3 edge, Wide quotient) {
-    return edge * (r.springs[b.constants + F].k - quotient);
+  WEFT_INLINE static Wide3 pull(const Rows& r, const Block& b, Wide3 edge, Wide quotient, Wide rate) {
+    const SpringConstants& c = r.springs[b.constants + F];
+    if constexpr (kDamped)
+      return edge * (c.k - c.kl * quotient + c.damping * (rate * (quotient * quotient)));
+    else
+      return edge * (c.k - quotient);
   }
   WEFT_INLINE static void finish(const Rows& r, Wide3 force, std::ptrdiff_t lane) {
     move(r.x, r.v, r.w, force, r.advance, lane);
@@ -27,7 +34,12 @@ struct SpringLaw {
 
 }  // namespace
 
-void spring_rows(const SpringRows& r) { plain_rows<SpringLaw>(r); }
+void spring_rows(const SpringRows& r) {
+  if (r.damped)
+    r.alive[0] ? plain_rows<SpringLaw<true, true>>(r) : plain_rows<SpringLaw<true, false>>(r);
+  else
+    r.alive[0] ? plain_rows<SpringLaw<false, true>>(r) : plain_rows<SpringLaw<false, false>>(r);
+}
 
 namespace {
 
@@ -43,7 +55,6 @@ WEFT_INLINE void add_family(const FamilyRow& r) {
     const Wide reciprocal = 1.0f / sqrt(squared);
     Wide scale = c.k - c.kl * reciprocal;
     if constexpr (kDamped) {
-      // f_d = k_d (ê·(v_b - v_a)) ê   (seed 000, "Spring and Friction")
       const Wide3 dv = load3(r.v_far, a + r.far) - load3(r.v, a + r.near);
       scale = scale + c.damping * (dot(e, dv) * (reciprocal * reciprocal));
     }

@@ -8,7 +8,7 @@ namespace weft::physics {
 
 // families_of lists the six of a plain cloth in one order, which these stages take for granted.
 inline bool is_plain(const ClothParts& parts) {
-  return parts.cloth.level == 0 && parts.families.size() == kPlainFamilies && !parts.families[0].links;
+  return parts.cloth.level == 0 && parts.families.size() == kPlainFamilies;
 }
 
 class PlainRowsStage : public RowStage {
@@ -39,6 +39,10 @@ class PlainRowsStage : public RowStage {
     r.x = l.x.row(0);
     r.v = l.v.row(0);
     r.w = l.w(0);
+    for (int f = 0; f < kPlainFamilies; ++f) {
+      Links* const links = parts_.families[std::size_t(f)].links;
+      r.alive[f] = links ? links->row(0) : nullptr;
+    }
     if (begin == 0) start(s);
     for (int k = 0; k < kCarries; ++k) r.carry[k] = carry_.row(kCarries * s.slot + k);
   }

@@ -11,8 +11,12 @@ constexpr int kGuard = 16;  // zero lanes that a family's kernel reads before a 
 // The six families of a plain cloth in one kernel.
 class PlainSprings final : public PlainRowsStage {
  public:
-  explicit PlainSprings(const ClothParts& parts)
-      : PlainRowsStage("springs", "structural, shear and bend springs, leapfrog step", parts),
+  PlainSprings(const ClothParts& parts, bool damped)
+      : PlainRowsStage("springs",
+                       std::string("structural, shear and bend springs") +
+                           (damped ? " with damping" : "") + ", leapfrog step",
+                       parts),
+        damped_(damped),
         springs_(std::size_t(parts.lattice.rows) * kPlainFamilies) {
     for (int j = 0; j < parts.lattice.rows; ++j)
       for (int f = 0; f < kPlainFamilies; ++f)
@@ -26,15 +30,17 @@ class PlainSprings final : public PlainRowsStage {
     SpringRows r{};
     fill(r, begin, end, s);
     r.springs = springs_.data();
+    r.damped = damped_;
     r.advance = advance_of(parts_, s);
     parts_.kernels.spring_rows(r);
   }
 
  private:
+  bool damped_;
   std::vector<SpringConstants> springs_;
 };
 
-// Any families, one kernel call each: levels, subsets, damping along the spring.
+// Any families, one kernel call each: levels, subsets.
 class FamilySprings final : public RowStage {
  public:
   FamilySprings(const ClothParts& parts, int reach, bool damped)
@@ -116,7 +122,7 @@ Advance advance_of(const ClothParts& parts, const Substep& s) {
 }
 
 std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped) {
-  if (!damped && is_plain(parts)) return std::make_unique<PlainSprings>(parts);
+  if (is_plain(parts)) return std::make_unique<PlainSprings>(parts, damped);
   return std::make_unique<FamilySprings>(parts, greatest_reach(parts), damped);
 }
 
