@@ -126,9 +126,11 @@ int main(int argc, char** argv) {
   CLI::App app{"stress: does anything explode?", "stress"};
   std::string out = ".";
   bool quick = false;
-  int random = -1;
+  int random = 3000;
   app.add_option("--out", out, "folder for stress.json and the maps");
-  app.add_option("--random", random, "random settings to run (default 3000; short: 300)");
+  app.add_option("--random", random, "random settings to run")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
   app.add_flag("--short", quick, "few columns and rows of the maps");
   CLI11_PARSE(app, argc, argv);
   try {
@@ -139,7 +141,7 @@ int main(int argc, char** argv) {
     int exploded = 0;
     for (bench::MapPlan& plan : bench::plan_maps(quick)) exploded += run_map(std::move(plan), out, file);
     exploded += run_told(file);
-    exploded += run_random(random >= 0 ? random : quick ? 300 : 3000, file);
+    exploded += run_random(random, file);
     std::ofstream(out + "/stress.json") << file.dump(1) << '\n';
     return exploded > 0;
   } catch (const std::exception& e) {
