@@ -328,4 +328,16 @@ Verdict run_course_stress(const StressCase& c) {
   return verdict;
 }
 
+weft::Scene stress_sheet(int n, double spacing, double particle_mass, bool held) {
+  weft::Scene scene;
+  weft::Cloth cloth;
+  const double side = spacing * (n - 1);
+  cloth.grid = {n, n, {-side / 2, 0, -side / 2}, {side, 0, 0}, {0, 0, side}, 0};
+  cloth.particle_mass = particle_mass;
+  for (int i = 0; held && i < n; ++i) cloth.pins.push_back({i, 0, {}});
+  scene.cloths.push_back(cloth);
+  scene.time.seconds = 1;
+  return scene;
+}
+
 }  // namespace bench

@@ -161,15 +161,10 @@ void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
 void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int begin, int end) {
   std::vector<SpringConstants> springs;
   for (int j = 0; j < kRows; ++j) {
-    const auto below = [&](int dj, SpringConstants c) {
-      springs.push_back(j + dj < kRows ? c : SpringConstants{});
-    };
-    below(0, {70, 63, 0.4f});
-    below(1, {71, 60, 0.4f});
-    below(1, {40, 57, 0.4f});
-    below(1, {41, 56, 0.4f});
-    below(0, {20, 41, 0.4f});
-    below(2, {20, 39, 0.4f});
+    const std::pair<int, SpringConstants> of_each[kPlainFamilies] = {
+        {0, {70, 63, 0.4f}}, {1, {71, 60, 0.4f}}, {1, {40, 57, 0.4f}},
+        {1, {41, 56, 0.4f}}, {0, {20, 41, 0.4f}}, {2, {20, 39, 0.4f}}};
+    for (const auto& [dj, c] : of_each) springs.push_back(j + dj < kRows ? c : SpringConstants{});
   }
   SpringRows r{};
   fill(r, p, begin, end, torn);
@@ -397,8 +392,7 @@ INSTANTIATE_TEST_SUITE_P(, WideKernels, testing::Values(Simd::sse2, Simd::avx2, 
 TEST(Kernels, EachChangesSomething) {
   for (const Case& test : all_cases()) {
     bool numbers = true;
-    EXPECT_NE(bits_after(test, Simd::scalar, 40, 0, numbers), Patch(40, 0).bits(numbers))
-        << test.name;
+    EXPECT_NE(bits_after(test, Simd::scalar, 40, 0, numbers), Patch(40, 0).bits(numbers)) << test.name;
   }
 }
 

@@ -83,6 +83,21 @@ TEST(Tear, CallerCutsAlongASegment) {
   }
 }
 
+// The first cut gives a cloth its masks and chooses its stages anew; a hand keeps what it holds.
+TEST(Tear, AHandHoldsOnThroughACut) {
+  for (const Method method : {Method::spring, Method::compliant}) {
+    Simulation simulation(hung(20, method));
+    const Vec3 held = at(simulation.positions(), 18 * 20 + 10);
+    simulation.grab(0, 10, 18, held, 1000);
+    EXPECT_GE(simulation.cut({-1, -0.5, 0}, {1, -0.5, 0}, 0.02), 20 + 2 * 19);
+    advance(simulation, 1.2);
+    EXPECT_NEAR(at(simulation.positions(), 18 * 20 + 10)[1], held[1], 0.1);
+    simulation.release();
+    advance(simulation, 2.4);
+    EXPECT_LT(lowest(simulation), -4);
+  }
+}
+
 TEST(Tear, CutterCutsItsWay) {
   Scene scene = hung(30, Method::spring);
   Collider cutter = collider_of(Sphere{{0, -0.5, -0.5}, 0.1});

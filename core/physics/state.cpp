@@ -203,8 +203,8 @@ void Simulation::State::run_substeps(int first, int count) {
     if (asleep(c)) continue;
     const Lattice& l = cloths[c]->lattice();
     Passes& passes = cloths[c]->passes();
-    passes.run(run, passes.worth_sharing(l.columns * l.rows, count) ? threads : one_thread,
-                            rest ? rest->rows(c) : std::span<const RowSpan>());
+    Threads& team = passes.worth_sharing(l.columns * l.rows, count) ? threads : one_thread;
+    passes.run(run, team, rest ? rest->rows(c) : std::span<const RowSpan>());
   }
 }
 

@@ -2,7 +2,7 @@
 //
 //   force on particle a from spring ab:  f = k (|e| - l) e/|e| = e (k - k l/|e|),  e = x_b - x_a
 //   its damping:                         f_d = k_d (ê·(v_b - v_a)) ê   (seed 000, "Spring and Friction")
-//   step:                                v <- c v + dt (f/m + g),   x <- x + dt v
+//   step:                                v <- c v + kick (f/m + g),   x <- x + dt v
 //
 // (seed 000, "Spring or Physical constraint" and "Verlet's Step", with the velocity kept in place of
 // the previous position: the same method, without the rounding of x - x_previous.)
