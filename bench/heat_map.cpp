@@ -10,10 +10,10 @@
 namespace bench {
 namespace {
 
-constexpr int kAcross = 4;                         // panels
-constexpr double kLeft = 62, kTop = 96;            // of the first panel's cells [px]
+constexpr int kAcross = 4;               // panels
+constexpr double kLeft = 62, kTop = 96;  // of the first panel's cells [px]
 constexpr double kCell = 15, kGap = 38, kHead = 30;
-constexpr double kLeastPitch = 178;                // from panel to panel: room for their names
+constexpr double kLeastPitch = 178;  // from panel to panel: room for their names
 const char* const kColours[kFates] = {"#2f9e6e", "#8cc7e8", "#c8cdd6", "#f2a03d", "#c2352b"};
 const char* const kMeanings[kFates] = {"stable", "stable by another way than asked",
                                        "refused before it runs", "out of bounds", "not finite"};

@@ -61,8 +61,7 @@ class CourseCloth final : public CoursePeer {
     for (std::size_t n = 0; n < points_.size(); ++n) {
       PointMass& p = points_[n];
       p.position = {x[3 * n], x[3 * n + 1], x[3 * n + 2]};
-      p.last_position =
-          p.position - Vector3D{v[3 * n], v[3 * n + 1], v[3 * n + 2]} * delta_t();
+      p.last_position = p.position - Vector3D{v[3 * n], v[3 * n + 1], v[3 * n + 2]} * delta_t();
     }
   }
 

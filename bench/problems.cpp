@@ -85,8 +85,10 @@ struct Kind {
 
 const std::map<std::string, Kind>& kinds() {
   static const std::map<std::string, Kind> all{
-      {"swing", {swing, {32, 64, 100, 316}}}, {"stiff", {stiff, {32, 64, 100}}},
-      {"settle", {settle, {32}}},        {"sheet", {sheet, {32, 64, 100}}},
+      {"swing", {swing, {32, 64, 100, 316}}},
+      {"stiff", {stiff, {32, 64, 100}}},
+      {"settle", {settle, {32}}},
+      {"sheet", {sheet, {32, 64, 100}}},
       {"drape", {drape, {32}}},
   };
   return all;

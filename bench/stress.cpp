@@ -24,7 +24,8 @@ using Json = nlohmann::ordered_json;
 using Counts = std::array<int, bench::kFates>;
 
 // Calls work(n) for n = 0 … count-1 on all cores.
-void on_all_cores(std::size_t count, const char* what, const std::function<void(std::size_t)>& work) {
+void on_all_cores(std::size_t count, const char* what,
+                  const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next = 0;
   std::vector<std::jthread> workers;
   const bool shown = isatty(STDERR_FILENO);
@@ -63,7 +64,8 @@ int run_map(bench::MapPlan plan, const std::string& out, Json& file) {
     const auto& cell = plan.cells[n];
     Fate& worst = plan.map.panels[cell.panel].cells[cell.cell];
     for (const auto& c : cell.cases)
-      worst = std::max(worst, (cell.course ? bench::run_course_stress(c) : bench::run_stress(c)).fate);
+      worst =
+          std::max(worst, (cell.course ? bench::run_course_stress(c) : bench::run_stress(c)).fate);
   });
   std::vector<Counts> counts(plan.map.panels.size());
   int exploded = 0;
@@ -78,10 +80,15 @@ int run_map(bench::MapPlan plan, const std::string& out, Json& file) {
   Json panels = Json::array();
   for (std::size_t p = 0; p < counts.size(); ++p) {
     print_row(plan.map.panels[p].name, counts[p]);
-    panels.push_back({{"name", plan.map.panels[p].name}, {"course", bool(course[p])}, {"cells", json_of(counts[p])}});
+    panels.push_back({{"name", plan.map.panels[p].name},
+                      {"course", bool(course[p])},
+                      {"cells", json_of(counts[p])}});
   }
-  file["maps"].push_back(
-      {{"name", plan.name}, {"title", plan.map.title}, {"about", plan.map.subtitle}, {"runs", plan.cells.size()}, {"panels", panels}});
+  file["maps"].push_back({{"name", plan.name},
+                          {"title", plan.map.title},
+                          {"about", plan.map.subtitle},
+                          {"runs", plan.cells.size()},
+                          {"panels", panels}});
   bench::write_heat_map(out + "/" + plan.name, plan.map);
   return exploded;
 }
@@ -112,7 +119,8 @@ int run_random(int count, Json& file) {
     ++counts[std::size_t(v.fate)];
     if (v.fate < Fate::unbounded) greatest = std::max(greatest, v.energy);
     if (v.fate >= Fate::unbounded)
-      std::printf("  case %zu: %s, energy %.3g-fold %s\n", n, fate_name(v.fate), v.energy, v.why.c_str());
+      std::printf("  case %zu: %s, energy %.3g-fold %s\n", n, fate_name(v.fate), v.energy,
+                  v.why.c_str());
   }
   print_head("Random settings");
   print_row("0 to " + std::to_string(count - 1), counts);
@@ -137,9 +145,12 @@ int main(int argc, char** argv) {
     std::printf("%s\n", bench::machine_line().c_str());
     std::filesystem::create_directories(out);
     const bench::Machine& m = bench::machine();
-    Json file{{"machine", {{"cpu", m.cpu}, {"cores", m.cores}, {"compiler", m.compiler}, {"system", m.system}}}};
+    Json file{
+        {"machine",
+         {{"cpu", m.cpu}, {"cores", m.cores}, {"compiler", m.compiler}, {"system", m.system}}}};
     int exploded = 0;
-    for (bench::MapPlan& plan : bench::plan_maps(quick)) exploded += run_map(std::move(plan), out, file);
+    for (bench::MapPlan& plan : bench::plan_maps(quick))
+      exploded += run_map(std::move(plan), out, file);
     exploded += run_told(file);
     exploded += run_random(random, file);
     std::ofstream(out + "/stress.json") << file.dump(1) << '\n';

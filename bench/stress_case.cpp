@@ -16,9 +16,10 @@ namespace {
 using weft::Vec3;
 using weft::physics::Random;
 
-constexpr int kLeastSubsteps = 60;   // of a run
-constexpr double kRounding = 1e-6;   // of positions, added up over a run, relative to the size of the scene
-constexpr double kJitter = 0.3;      // of the spacing, where the sheet is to tear
+constexpr int kLeastSubsteps = 60;  // of a run
+// Of positions, added up over a run, relative to the size of the scene.
+constexpr double kRounding = 1e-6;
+constexpr double kJitter = 0.3;  // of the spacing, where the sheet is to tear
 
 std::vector<Vec3> as_points(const std::vector<double>& flat) {
   std::vector<Vec3> points(flat.size() / 3);
@@ -187,8 +188,8 @@ class Ledger {
     if (scene_.solver.method != weft::Method::positional) return std::min(k, rigid(a, b));
     return rigid(a, b) * std::min(1.0, 2 * cloth_.positional_k * scene_.solver.iterations);
   }
-  // Energy of bending that is felt for sure: (x₀ - 2x₁ + x₂)², projected by itself, is at most as stiff as
-  // m/6dt². Whole lines feel more of it, up to all.
+  // Energy of bending that is felt for sure: (x₀ - 2x₁ + x₂)², projected by itself, is at most as
+  // stiff as m/6dt². Whole lines feel more of it, up to all.
   double bent(const std::vector<Vec3>& x) const {
     const double u = spacing_u(cloth_.grid), v = spacing_v(cloth_.grid);
     const double k = cloth_.bending * std::max(u / v / (v * v), v / u / (u * u));
@@ -211,8 +212,8 @@ class Ledger {
     return sum_of([&](const weft::physics::Family& f, std::size_t a, std::size_t b, double k) {
       const double length = distance(x[a], x[b]), c = length - f.rest;
       const double over = length - limit * f.rest;
-      const bool limited = cloth_.strain_limit > 0 && over > 0 &&
-                           f.kind != weft::physics::Kind::bend;
+      const bool limited =
+          cloth_.strain_limit > 0 && over > 0 && f.kind != weft::physics::Kind::bend;
       return 0.5 * (k * c * c + (limited ? rigid(a, b) * over * over : 0));
     });
   }
@@ -250,7 +251,8 @@ class Ledger {
 
 bool runs_springs(const weft::Simulation& simulation) {
   const auto& stages = simulation.plan().stages;
-  return std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.name == "springs"; });
+  return std::any_of(stages.begin(), stages.end(),
+                     [](const auto& s) { return s.name == "springs"; });
 }
 
 int frames_of(const StressCase& c, int substeps) {
@@ -297,9 +299,8 @@ Verdict run_stress(const StressCase& c) {
       springs = false;
       ledger.project_every(simulation.dt());
     }
-    verdict.energy =
-        std::max(verdict.energy, ledger.share(as_points(simulation.positions()),
-                                              as_points(simulation.velocities())));
+    verdict.energy = std::max(verdict.energy, ledger.share(as_points(simulation.positions()),
+                                                           as_points(simulation.velocities())));
   }
   if (simulation.plan().fallback) verdict.fate = Fate::saved;
   if (!(verdict.energy <= kBound)) verdict.fate = Fate::unbounded;

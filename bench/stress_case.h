@@ -4,8 +4,9 @@
 // energy of the start, the start's motion, and what gravity has released. A projected constraint
 // counts as a spring of at most the inertia of its ends over dt², which is all that a sweep makes of
 // it, and of its positional share; bending counts in full where it is put in, and later as much as a
-// projection of it feels at least. Leapfrog at 0.9 of the stability limit swings by 1/(1 - 0.9²) = 5 about its energy, so that
-// kBound leaves three times that; what explodes passes it by many decades.
+// projection of it feels at least. Leapfrog at 0.9 of the stability limit swings by 1/(1 - 0.9²) =
+// 5 about its energy, so that kBound leaves three times that; what explodes passes it by many
+// decades.
 #pragma once
 
 #include <cstdint>

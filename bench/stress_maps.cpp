@@ -112,9 +112,13 @@ MapPlan stiffness_map(bool quick) {
             : std::vector<double>{30, 60, 120, 240, 500, 1000, 2000, 5000, 10000};
   std::vector<double> stiffness;
   for (double k = 0.1; k < 2e9; k *= quick ? 1000 : 10) stiffness.push_back(k);
-  HeatMap map{"Stiffness and substep", "Seed 000's sheet; a cell is the worst of five starts: flat, "
+  HeatMap map{"Stiffness and substep",
+              "Seed 000's sheet; a cell is the worst of five starts: flat, "
               "folded, inside a ball, all particles in one point, torn to shreds",
-              {"substep [s]", {}}, {"stiffness [N/m]", {}}, {}, {}};
+              {"substep [s]", {}},
+              {"stiffness [N/m]", {}},
+              {},
+              {}};
   for (const double rate : rates) map.across.ticks.push_back("1/" + brief(rate));
   for (const double k : stiffness) map.up.ticks.push_back(brief(k));
   if (!quick)
@@ -132,11 +136,15 @@ MapPlan stiffness_map(bool quick) {
 MapPlan mass_map(bool quick) {
   std::vector<double> masses;
   for (double m = 1e-3; m < 2e3; m *= quick ? 1000 : 10) masses.push_back(m);
-  const std::vector<double> gravities = quick ? std::vector<double>{0.392, 981}
-                                              : std::vector<double>{0.0981, 0.392, 0.981, 9.81, 98.1, 981};
+  const std::vector<double> gravities =
+      quick ? std::vector<double>{0.392, 981}
+            : std::vector<double>{0.0981, 0.392, 0.981, 9.81, 98.1, 981};
   HeatMap map{"Particle mass and gravity",
               "Seed 003's sheet, a step of 1/60 s; the worse of two starts: flat, inside a ball",
-              {"gravity [m/s²]", {}}, {"mass of a particle [kg]", {}}, {}, {}};
+              {"gravity [m/s²]", {}},
+              {"mass of a particle [kg]", {}},
+              {},
+              {}};
   for (const double g : gravities) map.across.ticks.push_back(brief(g));
   for (const double m : masses) map.up.ticks.push_back(brief(m));
   if (!quick)
@@ -154,13 +162,17 @@ MapPlan mass_map(bool quick) {
 }
 
 MapPlan resolution_map(bool quick) {
-  const std::vector<int> sizes = quick ? std::vector<int>{10, 40} : std::vector<int>{10, 20, 40, 80, 160};
+  const std::vector<int> sizes =
+      quick ? std::vector<int>{10, 40} : std::vector<int>{10, 20, 40, 80, 160};
   std::vector<double> factors;
   for (double f = 0.1; f < 2e6; f *= quick ? 1000 : 10) factors.push_back(f);
   HeatMap map{"Resolution and stiffness",
               "Seed 003's sheet of 2 m and 10 t, a step of 1/60 s; the worse of two starts: flat, "
               "inside a ball",
-              {"particles along a side", {}}, {"stiffness, times the seed's", {}}, {}, {}};
+              {"particles along a side", {}},
+              {"stiffness, times the seed's", {}},
+              {},
+              {}};
   for (const int n : sizes) map.across.ticks.push_back(std::to_string(n));
   for (const double f : factors) map.up.ticks.push_back(brief(f));
   if (!quick)

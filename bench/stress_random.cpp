@@ -20,8 +20,7 @@ int pick(Random& random, int count) {
 weft::Solver random_solver(Random& random) {
   weft::Solver s;
   s.method = static_cast<weft::Method>(pick(random, 4));
-  const bool projects =
-      s.method == weft::Method::positional || s.method == weft::Method::compliant;
+  const bool projects = s.method == weft::Method::positional || s.method == weft::Method::compliant;
   if (projects) s.sweep = static_cast<weft::Sweep>(pick(random, 3));
   s.tethers = projects && pick(random, 4) == 0;
   if (s.method == weft::Method::compliant) s.order = 1 + pick(random, 2);

@@ -27,7 +27,9 @@ std::ofstream open(const std::string& path) {
 std::string series_name(const Trial& t, const std::vector<Trial>& all) {
   std::string name = t.setting.method;
   const auto differ = [&](auto&& other) { return std::any_of(all.begin(), all.end(), other); };
-  const auto other_set = [&](const Trial& o) { return o.ok() && !o.simd.empty() && o.simd != t.simd; };
+  const auto other_set = [&](const Trial& o) {
+    return o.ok() && !o.simd.empty() && o.simd != t.simd;
+  };
   if (!t.simd.empty() && differ(other_set)) name += ", " + t.simd;
   if (differ([&](const Trial& o) { return o.threads != t.threads; }))
     name += t.threads == 1 ? ", 1 thread" : ", " + std::to_string(t.threads) + " threads";

@@ -15,11 +15,11 @@
 namespace bench {
 
 // Each registers its benchmarks; `quick` leaves out large sheets and rare combinations.
-void register_steps(bool quick);     // whole steps: method x size x instruction set x threads
-void register_stages(bool quick);    // every stage of the plan by itself
-void register_features(bool quick);  // what a feature adds to a step
+void register_steps(bool quick);           // whole steps: method x size x instruction set x threads
+void register_stages(bool quick);          // every stage of the plan by itself
+void register_features(bool quick);        // what a feature adds to a step
 void register_self_collision(bool quick);  // its parts: sort, search, response
-void register_scenes(bool quick);    // the seeds' scenes in frames a second; setup; memory
+void register_scenes(bool quick);          // the seeds' scenes in frames a second; setup; memory
 
 // Registers a benchmark of which the smallest values over all repetitions count.
 benchmark::internal::Benchmark* add_benchmark(const std::string& name,

@@ -13,8 +13,9 @@ namespace {
 using weft::physics::ClothStep;
 using weft::physics::SelfContact;
 
-constexpr double kMargin = 0.45;    // of the thickness, as the simulation searches
-constexpr double kThickness = 1.34; // spacings: 27 cells of layers a spacing apart hold 200 particles
+constexpr double kMargin = 0.45;  // of the thickness, as the simulation searches
+// Spacings: 27 cells of layers a spacing apart hold 200 particles.
+constexpr double kThickness = 1.34;
 constexpr int kRowsOfLayer = 20;
 
 // A sheet of n x n and its self-collision.
@@ -84,8 +85,8 @@ void measure(benchmark::State& state, Sheet& sheet, Part&& part) {
 
 void add_part(const std::string& part, int n, int threads, bool folded,
               std::function<void(Sheet&)> work) {
-  const std::string name = std::string("self_collision/") + (folded ? "folded" : "flat") + "/" + part + "/" +
-                           std::to_string(n) + "/threads:" + std::to_string(threads);
+  const std::string name = std::string("self_collision/") + (folded ? "folded" : "flat") + "/" +
+                           part + "/" + std::to_string(n) + "/threads:" + std::to_string(threads);
   add_benchmark(name, [=](benchmark::State& state) {
     Sheet sheet(n, folded, threads);
     measure(state, sheet, [&] { work(sheet); });

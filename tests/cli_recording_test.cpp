@@ -10,7 +10,8 @@ TEST(Recording, ReplaysToTheSameBits) {
   const Folder folder;
   const std::string scene = small_scene(folder);
   ASSERT_EQ(run_weft(folder, "run small.json --frames 9 --record a.rec").exit_code, 0);
-  const Outcome again = run_weft(folder, "run --replay a.rec --record b.rec --threads 1 --simd scalar");
+  const Outcome again =
+      run_weft(folder, "run --replay a.rec --record b.rec --threads 1 --simd scalar");
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(folder.read("a.rec"), folder.read("b.rec"));
   EXPECT_EQ(run_weft(folder, "run small.json --replay a.rec").exit_code, 0);

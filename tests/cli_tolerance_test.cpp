@@ -37,8 +37,9 @@ TEST(CliTolerance, KeepsTheErrorThatItPromises) {
     const Folder folder;
     swinging_sheet(folder, stiffness);
     const std::string fine = stiffness > 1e4 ? "2000" : "400";
-    ASSERT_EQ(run_weft(folder, "run sheet.json --dump truth.f64 --set /time/substeps=" + fine).exit_code,
-              0);
+    ASSERT_EQ(
+        run_weft(folder, "run sheet.json --dump truth.f64 --set /time/substeps=" + fine).exit_code,
+        0);
     const std::vector<double> truth = dumped(folder, "truth.f64");
     for (const std::string tolerance : {"0.03", "0.003"}) {
       const Outcome outcome =

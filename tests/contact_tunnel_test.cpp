@@ -102,8 +102,7 @@ TEST(ContactTunnel, SmallCollidersDoNotSlipBetweenParticles) {
 TEST(ContactTunnel, LargeCollidersNeedNoTriangles) {
   Held held(Sphere{{0, 0.5, 0}, 0.4}, {});
   const Simulation simulation(held.scene);
-  for (const PlannedStage& s : simulation.plan().stages)
-    EXPECT_NE(s.name, "collider_faces");
+  for (const PlannedStage& s : simulation.plan().stages) EXPECT_NE(s.name, "collider_faces");
 }
 
 }  // namespace

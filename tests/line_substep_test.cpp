@@ -224,7 +224,8 @@ TEST(LineRuns, LinesComeBackWithAnEarlierMoment) {
   const Moment start = simulation.moment();
   const auto has_line = [&] {
     const auto& stages = simulation.plan().stages;
-    return std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.name == "line"; });
+    return std::any_of(stages.begin(), stages.end(),
+                       [](const auto& s) { return s.name == "line"; });
   };
   EXPECT_TRUE(has_line());
   for (int f = 0; f < 300; ++f) simulation.advance_frame();

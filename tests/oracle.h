@@ -44,8 +44,8 @@ struct Link {
   double rest, k, damping, lambda = 0;
 };
 
-// Links that share an offset. A Gauss–Seidel sweep goes along the rows first, both colours of an offset
-// in turn, then by row offset and colour through the groups.
+// Links that share an offset. A Gauss–Seidel sweep goes along the rows first, both colours of an
+// offset in turn, then by row offset and colour through the groups.
 struct Group {
   int di, dj;
   std::vector<Link> colour[2];
@@ -138,8 +138,8 @@ class Cloth {
     for (int j = 0; j + dj < g.ny; ++j)
       for (int i = std::max(0, -di); i < g.nx && i + di < g.nx; ++i) {
         const double factor = 1 - cloth_.stiffness_gradient * (j + 0.5 * dj) / (g.ny - 1);
-        const Link link{j * g.nx + i, (j + dj) * g.nx + i + di, structural_or_shear, length(edge), stiffness * factor,
-                        damping * factor};
+        const Link link{j * g.nx + i, (j + dj) * g.nx + i + di, structural_or_shear,
+                        length(edge), stiffness * factor,       damping * factor};
         group.colour[(dj > 0 ? j / dj : i / di) % 2].push_back(link);
       }
     if (!group.colour[0].empty()) groups.push_back(group);
@@ -220,15 +220,16 @@ class Cloth {
       b.x = b.x - (b.w * step) * n;
     });
   }
-  // ω of a Jacobi sweep: a little under what keeps (1 - ω λ)^sweeps above -1/3 for the largest eigenvalue,
-  // relative to the diagonal, of a sheet that resists in all directions (angles in steps of pi/32, both
-  // numbers to a 256th).
+  // ω of a Jacobi sweep: a little under what keeps (1 - ω λ)^sweeps above -1/3 for the largest
+  // eigenvalue, relative to the diagonal, of a sheet that resists in all directions (angles in
+  // steps of pi/32, both numbers to a 256th).
   double relaxation() const {
     double largest = 1;
     for (int m = 0; m <= 32; ++m)
       for (int n = -32; n <= 32; ++n) {
         double sum = 0;
-        for (const Group& g : groups) sum += 1 - std::cos((m * g.di + n * g.dj) * std::acos(-1.0) / 32);
+        for (const Group& g : groups)
+          sum += 1 - std::cos((m * g.di + n * g.dj) * std::acos(-1.0) / 32);
         largest = std::max(largest, sum);
       }
     const int sweeps = scene_.solver.iterations;

@@ -159,7 +159,8 @@ struct Model {
   nlohmann::json json;
   std::string buffer;
   float value(std::size_t accessor, std::size_t number) const {
-    const auto view = json["bufferViews"][json["accessors"][accessor]["bufferView"].get<std::size_t>()];
+    const auto view =
+        json["bufferViews"][json["accessors"][accessor]["bufferView"].get<std::size_t>()];
     EXPECT_LT(number * 4, view["byteLength"].get<std::size_t>());
     return value_at<float>(buffer, view["byteOffset"].get<std::size_t>() + number * 4);
   }

@@ -7,8 +7,8 @@
 #include <bit>
 #include <cmath>
 #include <functional>
-#include <string>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "physics/kernels/kernels.h"
@@ -185,8 +185,10 @@ void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, b
       r.rest[f] = 0.9f + 0.1f * float(f);
       const int dj = f == 5 ? 2 : f == 0 || f == 4 ? 0 : 1;
       const float kappa = 1 / (2 * 0.8f * 3 + compliance);
-      if (j + dj < kRows) constraints.push_back({compliance, kappa, kappa * r.rest[f]});
-      else constraints.push_back({std::numeric_limits<float>::infinity(), 0, 0});
+      if (j + dj < kRows)
+        constraints.push_back({compliance, kappa, kappa * r.rest[f]});
+      else
+        constraints.push_back({std::numeric_limits<float>::infinity(), 0, 0});
     }
   fill(r, p, begin, end, torn);
   r.alike = alike;
@@ -221,7 +223,8 @@ void add_jacobi(std::vector<Case>& cases) {
 void add_springs(std::vector<Case>& cases) {
   for (const bool damped : {false, true})
     for (const bool torn : {false, true})
-      add_rows(cases, std::string("spring_rows") + (damped ? ", damped" : "") + (torn ? ", torn" : ""),
+      add_rows(cases,
+               std::string("spring_rows") + (damped ? ", damped" : "") + (torn ? ", torn" : ""),
                [=](const KernelTable& k, Patch& p, int begin, int end) {
                  spring_rows(k, p, damped, torn, begin, end);
                });
@@ -392,7 +395,8 @@ INSTANTIATE_TEST_SUITE_P(, WideKernels, testing::Values(Simd::sse2, Simd::avx2, 
 TEST(Kernels, EachChangesSomething) {
   for (const Case& test : all_cases()) {
     bool numbers = true;
-    EXPECT_NE(bits_after(test, Simd::scalar, 40, 0, numbers), Patch(40, 0).bits(numbers)) << test.name;
+    EXPECT_NE(bits_after(test, Simd::scalar, 40, 0, numbers), Patch(40, 0).bits(numbers))
+        << test.name;
   }
 }
 

@@ -17,7 +17,8 @@ Scene curtain() {
   cloth.drag = 1;
   Scene scene;
   scene.cloths = {cloth};
-  scene.colliders = {{.shape = Sphere{{0.5, -0.6, 0.5}, 0.2}, .friction = {}, .offset = 0.01, .keys = {}}};
+  scene.colliders = {
+      {.shape = Sphere{{0.5, -0.6, 0.5}, 0.2}, .friction = {}, .offset = 0.01, .keys = {}}};
   return scene;
 }
 

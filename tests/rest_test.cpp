@@ -25,7 +25,9 @@ Scene lying(Method method, Sweep sweep = Sweep::gauss_seidel) {
   return scene;
 }
 
-std::int64_t asleep(const Simulation& simulation) { return simulation.report().asleep; }
+std::int64_t asleep(const Simulation& simulation) {
+  return simulation.report().asleep;
+}
 
 struct Way {
   Method method;
@@ -152,8 +154,8 @@ TEST(Rest, HandsWakeIt) {
   advance(pinned, 4);
   EXPECT_EQ(asleep(pinned), kRows * kColumns);
   pinned.unpin(0, 3, 3);
-  EXPECT_GT(pinned.view().cloths[0].inverse_mass[std::size_t(3 * pinned.view().cloths[0].stride + 3)],
-            0);
+  EXPECT_GT(
+      pinned.view().cloths[0].inverse_mass[std::size_t(3 * pinned.view().cloths[0].stride + 3)], 0);
 
   Simulation cut = sleeping();
   EXPECT_GT(cut.cut({-1, 0, 0}, {1, 0, 0}, 0.02), 0);

@@ -18,8 +18,9 @@
 namespace weft {
 
 inline bool has_screen_tools() {
-  return std::system("command -v Xvfb >/dev/null && command -v xdotool >/dev/null && "
-                     "command -v ffmpeg >/dev/null") == 0;
+  return std::system(
+             "command -v Xvfb >/dev/null && command -v xdotool >/dev/null && "
+             "command -v ffmpeg >/dev/null") == 0;
 }
 
 class Screen {
@@ -48,11 +49,11 @@ class Screen {
   void open(const std::string& words, const std::string& before = "",
             const std::string& inside = ".") {
     std::remove((folder_ / "log").c_str());
-    viewer_ = spawn("cd '" + (folder_ / inside) + "' && DISPLAY=" + display_ + " HOME='" +
-                    folder_.path() + "' XDG_CONFIG_HOME= XDG_STATE_HOME='" + folder_.path() +
-                    "' " + before + " exec '" WEFT_VIEWER_PROGRAM "' " + words +
-                    " --size 1280x800 --log '" + (folder_ / "log") + "' >'" + (folder_ / "out") +
-                    "' 2>'" + (folder_ / "err") + "'");
+    viewer_ =
+        spawn("cd '" + (folder_ / inside) + "' && DISPLAY=" + display_ + " HOME='" +
+              folder_.path() + "' XDG_CONFIG_HOME= XDG_STATE_HOME='" + folder_.path() + "' " +
+              before + " exec '" WEFT_VIEWER_PROGRAM "' " + words + " --size 1280x800 --log '" +
+              (folder_ / "log") + "' >'" + (folder_ / "out") + "' 2>'" + (folder_ / "err") + "'");
     wait("the window", [](const nlohmann::json& now) { return now.contains("frame"); });
   }
 
@@ -120,8 +121,8 @@ class Screen {
 #ifdef WEFT_DROP_PROGRAM
   // Drops files onto the window; paths are relative to the test's folder.
   void drop(const std::string& files) const {
-    const std::string command = "cd '" + folder_.path() + "' && DISPLAY=" + display_ +
-                                " '" WEFT_DROP_PROGRAM "' " + files;
+    const std::string command =
+        "cd '" + folder_.path() + "' && DISPLAY=" + display_ + " '" WEFT_DROP_PROGRAM "' " + files;
     EXPECT_EQ(std::system(command.c_str()), 0) << files;
   }
 #endif
@@ -129,10 +130,11 @@ class Screen {
   // The screen as RGB bytes.
   std::string picture() const {
     const std::string file = folder_ / "screen.rgb";
-    EXPECT_EQ(std::system(("ffmpeg -y -loglevel error -f x11grab -video_size 1280x800 -i " + display_ +
-                           " -frames:v 1 -pix_fmt rgb24 -f rawvideo '" + file + "' </dev/null")
-                              .c_str()),
-              0);
+    EXPECT_EQ(
+        std::system(("ffmpeg -y -loglevel error -f x11grab -video_size 1280x800 -i " + display_ +
+                     " -frames:v 1 -pix_fmt rgb24 -f rawvideo '" + file + "' </dev/null")
+                        .c_str()),
+        0);
     return folder_.read("screen.rgb");
   }
 
@@ -171,7 +173,9 @@ class Screen {
     ::waitpid(server_, nullptr, 0);
     server_ = 0;
   }
-  const std::string& display() const { return display_; }
+  const std::string& display() const {
+    return display_;
+  }
   std::string said() const {
     return folder_.has("err") ? folder_.read("err") : "";
   }

@@ -16,8 +16,8 @@ using bench::StressCase;
 void expect_bounded(const StressCase& c, const std::string& what) {
   const bench::Verdict v = bench::run_stress(c);
   EXPECT_LT(int(v.fate), int(Fate::unbounded))
-      << what << ", " << start_name(c.start) << ": " << fate_name(v.fate) << ", energy "
-      << v.energy << "-fold of what was put in; " << v.why;
+      << what << ", " << start_name(c.start) << ": " << fate_name(v.fate) << ", energy " << v.energy
+      << "-fold of what was put in; " << v.why;
 }
 
 TEST(Stress, RandomSettingsStayBoundedOrAreRefused) {
@@ -46,9 +46,10 @@ TEST(Stress, EveryMethodStaysBoundedFromEveryStart) {
   using enum Method;
   using enum Sweep;
   const std::pair<Method, Sweep> all[] = {
-      {spring, gauss_seidel}, {spring_friction, gauss_seidel}, {compliant, gauss_seidel},
-      {compliant, jacobi},    {compliant, line},               {positional, gauss_seidel},
-      {positional, jacobi},   {positional, line}};
+      {spring, gauss_seidel},    {spring_friction, gauss_seidel},
+      {compliant, gauss_seidel}, {compliant, jacobi},
+      {compliant, line},         {positional, gauss_seidel},
+      {positional, jacobi},      {positional, line}};
   for (const auto& [method, sweep] : all)
     for (const Start start : bench::kStarts)
       for (const double stiffness : {0.1, 1e3, 1e7})
@@ -65,8 +66,8 @@ TEST(Stress, TheCourseStyleSolverExplodes) {
   EXPECT_GE(int(bench::run_course_stress(c).fate), int(Fate::unbounded));
 }
 
-// A soft sheet hangs, under a fixed substep just inside the limit of the flat one: the stretch that its
-// weight makes needs a smaller one, which the plan tells.
+// A soft sheet hangs, under a fixed substep just inside the limit of the flat one: the stretch that
+// its weight makes needs a smaller one, which the plan tells.
 TEST(Stress, AStretchThatOutgrowsAFixedSubstepIsNoticed) {
   StressCase c = curtain(Method::spring, Sweep::gauss_seidel, 100, 1, Start::flat);
   const double limit = Simulation(c.scene).plan().dt_limit;
@@ -78,7 +79,8 @@ TEST(Stress, AStretchThatOutgrowsAFixedSubstepIsNoticed) {
 // All particles in one point, springs of the greatest stiffness: what is kept is the bound, not the
 // motion, but nothing stops.
 TEST(Stress, AFrameThatGainsEnergyIsRunAgain) {
-  StressCase c = curtain(Method::spring, Sweep::gauss_seidel, 1e4, kAutoSubsteps, Start::coincident);
+  StressCase c =
+      curtain(Method::spring, Sweep::gauss_seidel, 1e4, kAutoSubsteps, Start::coincident);
   const bench::Verdict v = bench::run_stress(c);
   EXPECT_EQ(v.fate, Fate::saved);
   EXPECT_LT(v.energy, bench::kBound);
@@ -99,10 +101,12 @@ TEST(Stress, SpringsComeBackWithAnEarlierMoment) {
   Simulation simulation(scene);
   const auto runs_springs = [&] {
     const auto& stages = simulation.plan().stages;
-    return std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s.name == "springs"; });
+    return std::any_of(stages.begin(), stages.end(),
+                       [](const auto& s) { return s.name == "springs"; });
   };
   std::vector<double> x = simulation.positions();
-  for (std::size_t k = 3 * std::size_t(scene.cloths[0].grid.nx); k < x.size(); ++k) x[k] = 1e-3 * double(k % 3);
+  for (std::size_t k = 3 * std::size_t(scene.cloths[0].grid.nx); k < x.size(); ++k)
+    x[k] = 1e-3 * double(k % 3);
   simulation.set_state(x, std::vector<double>(x.size(), 0));
   const Moment start = simulation.moment();
   std::uint64_t hashes[2];

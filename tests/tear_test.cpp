@@ -195,7 +195,8 @@ TEST(Tear, NothingHoldsAcrossACut) {
         double y = 0;
         const std::vector<double> x = simulation.positions();
         for (int a = 20; a < 40; ++a)
-          for (int b = 0; b < 40; ++b) y += at(x, std::size_t(upright ? b * 40 + a : a * 40 + b))[1];
+          for (int b = 0; b < 40; ++b)
+            y += at(x, std::size_t(upright ? b * 40 + a : a * 40 + b))[1];
         return y / 800;
       };
       const double start = falls();

@@ -144,8 +144,8 @@ TEST(Cantilever, LineSweepsMeetTheElasticaUnderALoadAtTheEnd) {
     c.bending = 0.1 / row.p;
     s.solver.method = Method::compliant;
     s.solver.sweep = Sweep::line;
-    s.time.substeps =
-        128;  // a light cloth under a heavy edge: the sweeps converge with small substeps
+    // A light cloth under a heavy edge: the sweeps converge with small substeps.
+    s.time.substeps = 128;
     const Shape shape = shape_at_rest(s, 6);
     const std::string law = "cantilever under a load at its end",
                       what = numbered("PL²/D", row.p) + ", compliant, line: ";

@@ -38,12 +38,14 @@ TEST(OneSpring, PeriodConvergesWithTheSquareOfTheSubstep) {
   const double truth = 2 * kPi * std::sqrt(0.1 / 10);
   double before = 0;
   for (int n = 20; n <= 320; n *= 2) {
-    const double error = show({"one spring, period", "spring, " + std::to_string(n) +
-                                                         " substeps a period", truth, 0.01, "s"},
-                               ten_periods(truth / n) / 10);
+    const double error =
+        show({"one spring, period", "spring, " + std::to_string(n) + " substeps a period", truth,
+              0.01, "s"},
+             ten_periods(truth / n) / 10);
     if (before > 0)
-      expect({"one spring, period", "order from " + std::to_string(n / 2) + " to " +
-                                        std::to_string(n) + " substeps", 2, 0.05, "log₂"},
+      expect({"one spring, period",
+              "order from " + std::to_string(n / 2) + " to " + std::to_string(n) + " substeps", 2,
+              0.05, "log₂"},
              std::log2(before / error));
     before = error;
   }
@@ -77,10 +79,10 @@ void pendulum(const std::string& name, const Solver& solver, double order, doubl
   const double truth = std::sqrt(1 / 9.81) * 1.8540746773;
   double before = 0;
   for (const int substeps : {50, 100, 200, 400}) {
-    const double error = show({"pendulum on a rigid link, from level to plumb",
-                               name + ", " + std::to_string(substeps) + " substeps", truth, 0.02,
-                               "s"},
-                              quarter_period(solver, substeps));
+    const double error =
+        show({"pendulum on a rigid link, from level to plumb",
+              name + ", " + std::to_string(substeps) + " substeps", truth, 0.02, "s"},
+             quarter_period(solver, substeps));
     if (before > 0)
       expect({"pendulum on a rigid link, from level to plumb",
               name + ", order from " + std::to_string(substeps / 2), order, goal, "log₂"},
@@ -175,7 +177,8 @@ Conserved run_free(int n, double share) {
 // The true energy swings by (ω dt)²/4 in a mode of frequency ω: what is asked of half the limit, a
 // thousandth, is out of reach where the sheet is so coarse that its slowest mode has ω dt > 0.06.
 TEST(Conservation, OfAFreeSheetFor100000Substeps) {
-  const std::tuple<int, double, bool> cases[] = {{12, 0.5, false}, {12, 0.125, true}, {48, 0.5, true}};
+  const std::tuple<int, double, bool> cases[] = {
+      {12, 0.5, false}, {12, 0.125, true}, {48, 0.5, true}};
   for (const auto& [n, share, fine] : cases) {
     const std::string law = "undamped free sheet, 100000 substeps";
     const std::string name = std::to_string(n) + " × " + std::to_string(n) + ", " +

@@ -32,8 +32,8 @@ TEST(Pictures, EveryLookRendersItsOwn) {
   std::set<std::string> pictures;
   int looks = 0;
   for (const char* look :
-       {"colour", "phong_force", "ggx_force", "blinn_phong", "diffuse", "normals", "texture", "bump",
-        "displacement", "mirror", "pbr", "strain", "wireframe", "points"}) {
+       {"colour", "phong_force", "ggx_force", "blinn_phong", "diffuse", "normals", "texture",
+        "bump", "displacement", "mirror", "pbr", "strain", "wireframe", "points"}) {
     const fs::path out = folder / (std::string(look) + ".png");
     ASSERT_EQ(run("sphere --headless --frames 20 --size 160x120 --shader " + std::string(look) +
                   " --out " + out.string()),

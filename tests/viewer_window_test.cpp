@@ -37,13 +37,11 @@ TEST_F(Window, EveryLookShowsAtItsKey) {
   for (int k = 0; k < 14; ++k) {
     const Json now = screen.now();
     screen.key("l");
-    const std::string look = screen.wait("another look", [&](const Json& later) {
-      return later["look"] != now["look"];
-    })["look"];
+    const std::string look = screen.wait(
+        "another look", [&](const Json& later) { return later["look"] != now["look"]; })["look"];
     looks.insert(look);
-    before = screen.wait_picture(look, [&](const std::string& picture) {
-      return difference(picture, before) > 0.05;
-    });
+    before = screen.wait_picture(
+        look, [&](const std::string& picture) { return difference(picture, before) > 0.05; });
   }
   EXPECT_EQ(looks.size(), 14u);
   EXPECT_TRUE(screen.now()["faults"].empty()) << screen.now()["faults"];
@@ -60,9 +58,8 @@ TEST_F(Window, LooksHaveControlsOfTheirOwn) {
   // Each changes the picture; what is drawn at rest is in full quality, and so always the same.
   const auto settled = [&](const std::string& than) {
     screen.type("mousemove 100 790");  // off the control, so that no help covers the picture
-    screen.wait_picture("another picture", [&](const std::string& now) {
-      return difference(now, than) > 0.01;
-    });
+    screen.wait_picture("another picture",
+                        [&](const std::string& now) { return difference(now, than) > 0.01; });
     screen.wait_for("coarse", false);
     return screen.picture();
   };
@@ -102,8 +99,8 @@ TEST_F(Window, HandsPullPinAndCutTheCloth) {
   screen.wait_for("held", 3);
   screen.key("3");
   screen.wait_for("tool", "cut");
-  screen.drag({{800, 300}, {830, 310}, {860, 320}, {890, 330}, {920, 340}, {950, 350}},
-              "a cut", [](const Json& now) { return now["torn"] == true; });
+  screen.drag({{800, 300}, {830, 310}, {860, 320}, {890, 330}, {920, 340}, {950, 350}}, "a cut",
+              [](const Json& now) { return now["torn"] == true; });
   const Json cut = screen.now();
   EXPECT_LT(cut["triangles"], 2 * 49 * 49);
   EXPECT_GT(difference(screen.picture(), before), 0.5);
@@ -129,7 +126,8 @@ TEST_F(Window, ChangesAreCheckedUndoneAndSaved) {
   screen.open("pinned4 --paused");
   const double start = screen.now()["stiffness"];
   screen.click("denim");
-  const Json denim = screen.wait("denim", [&](const Json& now) { return now["stiffness"] != start; });
+  const Json denim =
+      screen.wait("denim", [&](const Json& now) { return now["stiffness"] != start; });
   EXPECT_EQ(denim["edited"], true);
   screen.key("ctrl+z");
   screen.wait_for("stiffness", start);
@@ -166,7 +164,8 @@ TEST_F(Window, ChangesAreCheckedUndoneAndSaved) {
 
 TEST_F(Window, PathsAreEditedKeyByKey) {
   Screen screen(folder);
-  folder.write("path.json", R"({"weft": 1, "cloths": [{"grid": {"points": [9, 9]}, "pins": [[0, 0]]}],
+  folder.write("path.json",
+               R"({"weft": 1, "cloths": [{"grid": {"points": [9, 9]}, "pins": [[0, 0]]}],
     "colliders": [{"sphere": {"center": [0, -2, 0], "radius": 0.2},
                    "keys": [[0, 0, -2, 0], [1, 1, -2, 0], [2, 0, -3, 0]]}]})");
   screen.open("path.json --paused");
@@ -236,11 +235,13 @@ TEST_F(Window, FilesAreFollowedAndBrokenOnesTold) {
   folder.write("mine.json", changed);
   screen.wait_for("stiffness", 800);
   folder.write("mine.json", "{\"weft\": 1, \"cloths\": [{\"dragg\": 1}]}");
-  const Json broken = screen.wait("a fault", [](const Json& now) { return !now["faults"].empty(); });
+  const Json broken =
+      screen.wait("a fault", [](const Json& now) { return !now["faults"].empty(); });
   EXPECT_NE(broken["faults"].dump().find("drag"), std::string::npos);
   screen.wait("frames go on", [&](const Json& now) { return now["frame"] > broken["frame"]; });
   folder.write("mine.json", good);
-  screen.wait("mended", [](const Json& now) { return now["faults"].empty() && now["stiffness"] == 700; });
+  screen.wait("mended",
+              [](const Json& now) { return now["faults"].empty() && now["stiffness"] == 700; });
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 
@@ -248,7 +249,8 @@ TEST_F(Window, BrokenShadersAndPicturesAreTold) {
   Screen screen(folder);
   std::filesystem::copy(WEFT_SOURCE_DIR "/shaders", folder / "shaders");
   screen.open("pinned2 --texture missing.png", "WEFT_SHADERS='" + (folder / "shaders") + "'");
-  const Json missing = screen.wait("a fault", [](const Json& now) { return !now["faults"].empty(); });
+  const Json missing =
+      screen.wait("a fault", [](const Json& now) { return !now["faults"].empty(); });
   EXPECT_NE(missing["faults"].dump().find("missing.png"), std::string::npos);
   const std::string good = folder.read("shaders/colour.frag");
   folder.write("shaders/colour.frag", "void main() { nonsense }");
@@ -280,7 +282,8 @@ TEST_F(Window, BodiesMoveByKeysAndAsBallsAndTheWayBackIsKept) {
   screen.click(760, 300);
   screen.wait("a ball", [&](const Json& now) { return now["bodies"].size() == bodies + 1; });
   const Json running = screen.now();
-  screen.wait("more frames", [&](const Json& now) { return now["frame"] > running["frame"].get<int>() + 5; });
+  screen.wait("more frames",
+              [&](const Json& now) { return now["frame"] > running["frame"].get<int>() + 5; });
   screen.key("p");
   const Json paused = screen.wait_for("paused", true);
   screen.key("b");

@@ -53,9 +53,7 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
       ->type_name("NAME")
       ->check(CLI::Validator(fault_of_look, ""));
   program.add_flag("--headless", a.headless, "Render one picture without any display");
-  program
-      .add_option("--frames", a.frames,
-                  "Frames to simulate before the picture")
+  program.add_option("--frames", a.frames, "Frames to simulate before the picture")
       ->type_name("N")
       ->check(CLI::Range(0, 1'000'000));
   program.add_option("--size", size, "Size of the picture in pixels (1280x720)")
@@ -73,10 +71,10 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
       ->check(CLI::Range(0.01, 100.0));
   program.add_flag("--paused", a.paused, "Open the window with the scene at rest");
   program.add_option("--keys", a.keys, "Which keys do what (docs/viewer.md)")->type_name("FILE");
-  program.add_option("--record", a.record, "Record the session from its start, for weft run --replay")
-      ->type_name("FILE");
   program
-      .add_option("--measure", a.measure, "Measure how quick the window is, print it and close")
+      .add_option("--record", a.record, "Record the session from its start, for weft run --replay")
+      ->type_name("FILE");
+  program.add_option("--measure", a.measure, "Measure how quick the window is, print it and close")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.1, 3600.0));
   program.add_option("--log", a.log, "Tell what the window shows, a line for every change")
@@ -93,13 +91,15 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
 }  // namespace
 
 std::optional<int> parse_arguments(int count, char** words, Arguments& arguments) {
-  CLI::App program{"Play with cloth simulated by Weft in a window, or render pictures of it", "weft-viewer"};
+  CLI::App program{"Play with cloth simulated by Weft in a window, or render pictures of it",
+                   "weft-viewer"};
   std::string size;
   std::vector<std::string> sets;
   add_options(program, arguments, size, sets);
   try {
     program.parse(count, words);
-    if (arguments.headless && arguments.out.empty()) throw CLI::RequiredError("--headless needs --out FILE.png: it");
+    if (arguments.headless && arguments.out.empty())
+      throw CLI::RequiredError("--headless needs --out FILE.png: it");
   } catch (const CLI::Success& asked) {
     return program.exit(asked);
   } catch (const CLI::ParseError& error) {

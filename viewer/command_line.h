@@ -17,7 +17,7 @@ struct Arguments {
   bool headless = false;
   std::int64_t frames = 0;  // to simulate before the picture
   int width = 1280, height = 720;
-  std::string out;  // PNG
+  std::string out;      // PNG
   bool paused = false;  // the window opens with the scene at rest
   std::string keys;     // the file of keys; "": a person's own
   std::string log;      // tells the state of the window, line by line

@@ -159,20 +159,22 @@ void choose(LoadedScene& loaded, double tolerance, double seconds, const Options
 LoadedScene scene_to_run(const RunArguments& arguments, const std::optional<Recording>& replayed) {
   if (!replayed) {
     if (arguments.scene.scene.empty())
-      throw Failure{kBadCommandLine, {{"command line", "SCENE is required", "a scene, or --replay"}}};
+      throw Failure{kBadCommandLine,
+                    {{"command line", "SCENE is required", "a scene, or --replay"}}};
     return load(arguments.scene);
   }
   const auto differs = [&](int code, const std::string& why) {
     return Failure{code, {{arguments.replay, why, ""}}};
   };
   if (!arguments.scene.scene.empty())
-    if (const std::string place = difference(replayed->scene, load(arguments.scene).scene); !place.empty())
-      throw differs(kBadScene, "the recording is of another scene, which differs first at " + place);
+    if (const std::string place = difference(replayed->scene, load(arguments.scene).scene);
+        !place.empty())
+      throw differs(kBadScene,
+                    "the recording is of another scene, which differs first at " + place);
   if (arguments.seed && *arguments.seed != replayed->seed)
     throw differs(kBadCommandLine, "it was recorded with seed " + std::to_string(replayed->seed));
   if (frame_count(arguments, replayed->scene.time, replayed) > replayed->frames())
-    throw differs(kBadCommandLine,
-                  "it has only " + std::to_string(replayed->frames()) + " frames");
+    throw differs(kBadCommandLine, "it has only " + std::to_string(replayed->frames()) + " frames");
   return {replayed->scene, arguments.replay};
 }
 
@@ -187,7 +189,8 @@ int run(const RunArguments& arguments) {
   options.seed = replayed ? replayed->seed : arguments.seed.value_or(options.seed);
   options.profile = !arguments.report.empty();
   if (arguments.tolerance && replayed)
-    throw Failure{kBadCommandLine, {{"--tolerance", "a recording carries its own solver", "not with --replay"}}};
+    throw Failure{kBadCommandLine,
+                  {{"--tolerance", "a recording carries its own solver", "not with --replay"}}};
   if (arguments.tolerance)
     choose(loaded, *arguments.tolerance, double(frames) * loaded.scene.time.frame, options);
   Simulation simulation = simulate(loaded, options);
@@ -257,8 +260,9 @@ void add_run(CLI::App& program, int& exit_code) {
       ->type_name("SET")
       ->check(one_of(simd_names()));
   command
-      ->add_option("--tolerance", arguments->tolerance,
-                   "Pick method, substeps and sweeps for this error of the positions, by trial runs")
+      ->add_option(
+          "--tolerance", arguments->tolerance,
+          "Pick method, substeps and sweeps for this error of the positions, by trial runs")
       ->type_name("M")
       ->check(number_in(1e-6, 1.0, "m, 1e-6 to 1"));
   command->add_option("--seed", arguments->seed, "Seeds every random choice (default: 1)")

@@ -120,13 +120,15 @@ Choice choose_solver(const Scene& scene, double tolerance, double seconds, const
 
 std::string to_text(const Choice& choice, double tolerance) {
   char line[160];
-  std::snprintf(line, sizeof line, "tolerance %.3g m, tried on %.3g s\n", tolerance, choice.seconds);
+  std::snprintf(line, sizeof line, "tolerance %.3g m, tried on %.3g s\n", tolerance,
+                choice.seconds);
   std::string text = line;
   for (std::size_t n = 0; n < choice.trials.size(); ++n) {
     const Trial& t = choice.trials[n];
     if (t.error < kFar)
       std::snprintf(line, sizeof line, "%c %-26s %5d substeps a frame: error %.1e m, work %.2g\n",
-                    int(n) == choice.best ? '*' : ' ', t.method.c_str(), t.substeps, t.error, t.work);
+                    int(n) == choice.best ? '*' : ' ', t.method.c_str(), t.substeps, t.error,
+                    t.work);
     else
       std::snprintf(line, sizeof line, "  %-26s not stable as asked\n", t.method.c_str());
     text += line;

@@ -15,17 +15,18 @@
 namespace weft::cli {
 
 struct Trial {
-  std::string method;   // "compliant, line, order 2"
+  std::string method;  // "compliant, line, order 2"
   Solver solver;
-  int substeps = 0;     // a frame
-  double error = 0;     // m, root mean square over the particles at the end of the trial
-  double work = 0;      // spring evaluations a frame, or as many others as cost the same
+  int substeps = 0;  // a frame
+  double error = 0;  // m, root mean square over the particles at the end of the trial
+  double work = 0;   // spring evaluations a frame, or as many others as cost the same
 };
 
 struct Choice {
-  std::vector<Trial> trials;  // the last of every method: the first that keeps the error, if any does
-  int best = -1;              // of those, the one to take; -1: none keeps the error
-  double seconds = 0;         // s, of motion tried
+  std::vector<Trial>
+      trials;          // the last of every method: the first that keeps the error, if any does
+  int best = -1;       // of those, the one to take; -1: none keeps the error
+  double seconds = 0;  // s, of motion tried
 };
 
 // Tries on the scene's first `seconds` at most; `tolerance` in m.

@@ -30,9 +30,12 @@ void for_each_particle(const View& view, const Work& work) {
 }
 
 // `samples` are to come, 0: nobody knows.
-std::unique_ptr<Animation> open_pc2(const std::string& path, const View& first, std::int64_t samples);
-std::unique_ptr<Animation> open_mdd(const std::string& path, const View& first, std::int64_t samples);
-std::unique_ptr<Animation> open_gltf(const std::string& path, const View& first, std::int64_t samples);
+std::unique_ptr<Animation> open_pc2(const std::string& path, const View& first,
+                                    std::int64_t samples);
+std::unique_ptr<Animation> open_mdd(const std::string& path, const View& first,
+                                    std::int64_t samples);
+std::unique_ptr<Animation> open_gltf(const std::string& path, const View& first,
+                                     std::int64_t samples);
 std::unique_ptr<Animation> open_obj_sequence(const std::string& path, const View& first,
                                              std::int64_t samples);
 

@@ -69,7 +69,8 @@ class Gltf final : public Animation {
     for (std::size_t s = 0; s < times_.size(); ++s)
       for (std::size_t target = 1; target < times_.size(); ++target)
         append_little_endian(tail, s == target ? 1.0F : 0.0F);
-    const std::int64_t size = std::int64_t(indices_.size()) + spool_.bytes() + std::int64_t(tail.size());
+    const std::int64_t size =
+        std::int64_t(indices_.size()) + spool_.bytes() + std::int64_t(tail.size());
     const std::string text = document(size);
     if (buffer_) {
       file_.write(text + "\n");
@@ -103,7 +104,8 @@ class Gltf final : public Animation {
     const auto columns = static_cast<std::uint32_t>(cloth.columns);
     for (int j = 0; j + 1 < cloth.rows; ++j)
       for (int i = 0; i + 1 < cloth.columns; ++i) {
-        const std::uint32_t a = static_cast<std::uint32_t>(j) * columns + static_cast<std::uint32_t>(i);
+        const std::uint32_t a =
+            static_cast<std::uint32_t>(j) * columns + static_cast<std::uint32_t>(i);
         for (const std::uint32_t corner :
              {a, a + 1, a + columns, a + 1, a + columns + 1, a + columns})
           append_little_endian(indices_, corner);
@@ -175,9 +177,9 @@ class Gltf final : public Animation {
       accessors[std::size_t(times)]["max"] = {times_.back()};
       const std::int64_t weights =
           accessor(place(count * (count - 1) * 4, 0), kFloat, count * (count - 1), "SCALAR");
-      json["animations"] = Json::array(
-          {{{"samplers", Json::array({{{"input", times}, {"output", weights}}})},
-            {"channels", channels}}});
+      json["animations"] =
+          Json::array({{{"samplers", Json::array({{{"input", times}, {"output", weights}}})},
+                        {"channels", channels}}});
     }
     json["scenes"] = Json::array({{{"nodes", roots}}});
     json["nodes"] = nodes;

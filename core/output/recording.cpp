@@ -19,7 +19,9 @@ using Kind = Input::Kind;
 constexpr std::array<const char*, 8> kNames{"grab",  "release", "pin",           "unpin",
                                             "carry", "cut",     "move_collider", "set_scene"};
 
-Json scene_json(const Scene& scene) { return Json::parse(write_scene_text(scene)); }
+Json scene_json(const Scene& scene) {
+  return Json::parse(write_scene_text(scene));
+}
 
 Scene scene_of(const Json& json) {
   SceneFile file = read_scene_text(json.dump());
@@ -35,12 +37,18 @@ Json input_json(const Input& input) {
               {"target", input.a},
               {"stiffness", input.amount}};
     case Kind::pin:
-    case Kind::unpin: return {{"particle", {input.cloth, input.i, input.j}}};
-    case Kind::carry: return {{"cloth", input.cloth}, {"velocity", input.a}};
-    case Kind::cut: return {{"from", input.a}, {"to", input.b}, {"width", input.amount}};
-    case Kind::move_collider: return {{"collider", input.collider}, {"target", input.a}};
-    case Kind::set_scene: return scene_json(*input.scene);
-    case Kind::release: break;
+    case Kind::unpin:
+      return {{"particle", {input.cloth, input.i, input.j}}};
+    case Kind::carry:
+      return {{"cloth", input.cloth}, {"velocity", input.a}};
+    case Kind::cut:
+      return {{"from", input.a}, {"to", input.b}, {"width", input.amount}};
+    case Kind::move_collider:
+      return {{"collider", input.collider}, {"target", input.a}};
+    case Kind::set_scene:
+      return scene_json(*input.scene);
+    case Kind::release:
+      break;
   }
   return Json::object();
 }
@@ -102,13 +110,27 @@ void apply(const Input& input, Simulation& simulation) {
     case Kind::grab:
       simulation.grab(input.cloth, input.i, input.j, input.a, input.amount);
       break;
-    case Kind::release: simulation.release(); break;
-    case Kind::pin: simulation.pin(input.cloth, input.i, input.j); break;
-    case Kind::unpin: simulation.unpin(input.cloth, input.i, input.j); break;
-    case Kind::carry: simulation.carry(input.cloth, input.a); break;
-    case Kind::cut: simulation.cut(input.a, input.b, input.amount); break;
-    case Kind::move_collider: simulation.move_collider(input.collider, input.a); break;
-    case Kind::set_scene: simulation.set_scene(*input.scene); break;
+    case Kind::release:
+      simulation.release();
+      break;
+    case Kind::pin:
+      simulation.pin(input.cloth, input.i, input.j);
+      break;
+    case Kind::unpin:
+      simulation.unpin(input.cloth, input.i, input.j);
+      break;
+    case Kind::carry:
+      simulation.carry(input.cloth, input.a);
+      break;
+    case Kind::cut:
+      simulation.cut(input.a, input.b, input.amount);
+      break;
+    case Kind::move_collider:
+      simulation.move_collider(input.collider, input.a);
+      break;
+    case Kind::set_scene:
+      simulation.set_scene(*input.scene);
+      break;
   }
 }
 
@@ -130,7 +152,9 @@ void Recorder::frame(const Simulation& simulation) {
               "\n");
 }
 
-void Recorder::finish() { file_.commit(); }
+void Recorder::finish() {
+  file_.commit();
+}
 
 Recording read_recording(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

@@ -35,8 +35,8 @@ double elastic_energy(const Cloth& cloth, const std::vector<Family>& families,
 std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Family>& families,
                                 const std::vector<Vec3>& x, const std::vector<Vec3>* v);
 
-// Accelerations by springs, bending (the terms that are `left`, null: all) and gravity, zero for pinned
-// particles [m/s²]. Into `a`, which allocates nothing when it is large enough already.
+// Accelerations by springs, bending (the terms that are `left`, null: all) and gravity, zero for
+// pinned particles [m/s²]. Into `a`, which allocates nothing when it is large enough already.
 void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Family>& families,
                    const Lattice& lattice, const BendLinks* left, bool damped,
                    std::vector<Vec3>& a);

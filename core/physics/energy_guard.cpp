@@ -14,9 +14,9 @@ namespace {
 
 using Cloths = std::vector<std::unique_ptr<ClothStep>>;
 
-constexpr double kRounding = 4e-7;    // of positions in single precision, of the scene's size
-constexpr double kStillness = 0.01;   // m/s; motion that is never looked into
-constexpr double kDrivenSpeed = 10;   // m/s; what wind, paths and hands may give besides their own
+constexpr double kRounding = 4e-7;   // of positions in single precision, of the scene's size
+constexpr double kStillness = 0.01;  // m/s; motion that is never looked into
+constexpr double kDrivenSpeed = 10;  // m/s; what wind, paths and hands may give besides their own
 
 // Visits all free particles: row, column, mass.
 template <class Visit>
@@ -44,8 +44,8 @@ void push_out(const Scene& scene, double time, const Lattice& l, std::vector<Vec
 }
 
 // Elastic energy as the method feels it, with what rounding of the positions puts in.
-double elastic(const Scene& scene, Method method, const ClothStep& step,
-               const std::vector<Vec3>& x, double dt) {
+double elastic(const Scene& scene, Method method, const ClothStep& step, const std::vector<Vec3>& x,
+               double dt) {
   const Lattice& l = step.lattice();
   double size = 1;
   for (const Vec3& p : x) size = std::max(size, std::sqrt(dot(p, p)));
@@ -71,8 +71,8 @@ double elastic(const Scene& scene, Method method, const ClothStep& step,
       Vec3 rest;
       for (int k = 0; k < 3; ++k)
         rest[k] = g.u[k] / (g.nx - 1) * (i - pin.i) + g.v[k] / (g.ny - 1) * (j - pin.j);
-      const Vec3 e = minus(x[std::size_t(j) * l.columns + i],
-                           x[std::size_t(pin.j) * l.columns + pin.i]);
+      const Vec3 e =
+          minus(x[std::size_t(j) * l.columns + i], x[std::size_t(pin.j) * l.columns + pin.i]);
       const double over = std::max(0.0, std::sqrt(dot(e, e)) - std::sqrt(dot(rest, rest)));
       sum += 0.5 * mass * over * over / (dt * dt);
     });

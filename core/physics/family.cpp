@@ -45,7 +45,8 @@ std::vector<Family> families_of(const Cloth& cloth) {
 }
 
 Links::Links(int rows, int stride, int per_row)
-    : stride_(static_cast<std::size_t>(stride)), lanes_(2 * kGuard + static_cast<std::size_t>(rows) * stride_) {
+    : stride_(static_cast<std::size_t>(stride)),
+      lanes_(2 * kGuard + static_cast<std::size_t>(rows) * stride_) {
   for (int j = 0; j < rows; ++j) std::fill_n(row(j), per_row, -1);
 }
 

@@ -18,9 +18,12 @@ class Links {
  public:
   Links(int rows, int stride, int per_row);
   // Wide kernels may read up to 16 lanes before the first row and after the last.
-  std::int32_t* row(int j) { return lanes_.data() + kGuard + static_cast<std::size_t>(j) * stride_; }
+  std::int32_t* row(int j) {
+    return lanes_.data() + kGuard + static_cast<std::size_t>(j) * stride_;
+  }
   bool alive(int j, int a) const {
-    return lanes_[kGuard + static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(a)] != 0;
+    return lanes_[kGuard + static_cast<std::size_t>(j) * stride_ + static_cast<std::size_t>(a)] !=
+           0;
   }
   // Takes over the lanes of links of the same shape.
   void copy(const Links& from) { std::copy_n(from.lanes_.data(), lanes_.size(), lanes_.data()); }
@@ -35,9 +38,9 @@ class Links {
 struct Family {
   int di = 0, dj = 0;  // dj >= 0; di > 0 when dj = 0
   Kind kind = Kind::structural;
-  double rest = 0;       // m, on the flat sheet
-  double stiffness = 0;  // N/m, in the first row
-  double damping = 0;    // N·s/m
+  double rest = 0;         // m, on the flat sheet
+  double stiffness = 0;    // N/m, in the first row
+  double damping = 0;      // N·s/m
   Links* links = nullptr;  // null: the cloth cannot tear
 
   bool alive(int j, int a) const { return !links || links->alive(j, a); }

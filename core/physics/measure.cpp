@@ -22,9 +22,8 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   // A strain limit takes back much of what springs alone would add in the half substep to now.
   const std::vector<Vec3> v =
       step.cloth().strain_limit > 0 ? gather(l, l.v) : velocities_now(s, index);
-  r.energy.elastic +=
-      elastic_energy(step.cloth(), step.families(), x) + 
-      bending_energy(step.cloth(), x, step.bend_links());
+  r.energy.elastic += elastic_energy(step.cloth(), step.families(), x) +
+                      bending_energy(step.cloth(), x, step.bend_links());
   for (std::size_t p = 0; p < x.size(); ++p) {
     const int i = int(p) % l.columns, j = int(p) / l.columns;
     if (masses[std::size_t(j) * l.stride + i] == 0) continue;
@@ -91,7 +90,8 @@ void add_self_contact(const Simulation::State& s, Report& r) {
       for (const auto& t : topology->triangles()) {
         Face f;
         for (int k = 0; k < 3; ++k)
-          f[k] = std::int32_t(x.size()) + std::int32_t(t[k]) / l.stride * l.columns + std::int32_t(t[k]) % l.stride;
+          f[k] = std::int32_t(x.size()) + std::int32_t(t[k]) / l.stride * l.columns +
+                 std::int32_t(t[k]) % l.stride;
         faces.push_back(f);
       }
     else
@@ -119,22 +119,26 @@ void add_idle(const Simulation::State& s, Report& r) {
       }
   if (s.rest) {
     char why[96];
-    std::snprintf(why, sizeof why, "%lld particles are asleep; %.1f %% of all rows' frames were slept through",
+    std::snprintf(why, sizeof why,
+                  "%lld particles are asleep; %.1f %% of all rows' frames were slept through",
                   static_cast<long long>(s.rest->asleep()), 100 * s.rest->share());
     r.skipped.push_back({"sleep", why});
   }
   if (s.self_collision && s.self_collision_runs > 0) {
     char why[160];
-    std::snprintf(why, sizeof why,
-                  "looked after %.1f %% of the substeps, searched in %.1f %% of those; %.1f %% of the "
-                  "particles had nothing near",
-                  100 * double(s.self_collision_runs) / double(std::max<std::int64_t>(s.total_substeps, 1)),
-                  100 * (1 - s.self_collision->kept()), 100 * s.self_collision->passed_over());
+    std::snprintf(
+        why, sizeof why,
+        "looked after %.1f %% of the substeps, searched in %.1f %% of those; %.1f %% of the "
+        "particles had nothing near",
+        100 * double(s.self_collision_runs) / double(std::max<std::int64_t>(s.total_substeps, 1)),
+        100 * (1 - s.self_collision->kept()), 100 * s.self_collision->passed_over());
     r.skipped.push_back({"self_collision", why});
     if (s.surface) {
-      std::snprintf(why, sizeof why, "surfaces measured after %.1f %% of the substeps; %lld moves of particles cut short",
-                    100 * double(s.surface->measured()) / double(std::max<std::int64_t>(s.total_substeps, 1)),
-                    static_cast<long long>(s.surface->held_back()));
+      std::snprintf(
+          why, sizeof why,
+          "surfaces measured after %.1f %% of the substeps; %lld moves of particles cut short",
+          100 * double(s.surface->measured()) / double(std::max<std::int64_t>(s.total_substeps, 1)),
+          static_cast<long long>(s.surface->held_back()));
       r.skipped.push_back({"self_surface", why});
     }
   }
@@ -145,7 +149,9 @@ void add_wall_time(const Simulation::State& s, Report& r) {
   std::sort(ms.begin(), ms.end());
   r.wall_ms.total = s.total_ms;
   if (ms.empty()) return;
-  const auto quantile = [&](double q) { return double(ms[std::size_t(q * double(ms.size() - 1))]); };
+  const auto quantile = [&](double q) {
+    return double(ms[std::size_t(q * double(ms.size() - 1))]);
+  };
   r.wall_ms.frame_min = ms.front();
   r.wall_ms.frame_median = quantile(0.5);
   r.wall_ms.frame_p99 = quantile(0.99);

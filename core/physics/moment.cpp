@@ -35,7 +35,8 @@ Moment Simulation::State::moment() const {
         if (masses(n)[std::size_t(j) * l.stride + i] == 0) c.held.push_back({i, j});
       }
     if (const Topology* topology = cloths[n]->topology())
-      for (const Topology::Torn& t : topology->torn_list()) c.torn.push_back({t.di, t.dj, t.j, t.a});
+      for (const Topology::Torn& t : topology->torn_list())
+        c.torn.push_back({t.di, t.dj, t.j, t.a});
     m.cloths.push_back(std::move(c));
   }
   for (const Collider& c : scene.colliders) m.paths.push_back(c.keys);
@@ -58,8 +59,7 @@ void Simulation::State::restore(const Moment& m) {
     Lattice& l = step.lattice();
     wake(int(n));
     for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i)
-        l.w(j)[i] = float(1 / particle_mass(step.cloth(), i, j));
+      for (int i = 0; i < l.columns; ++i) l.w(j)[i] = float(1 / particle_mass(step.cloth(), i, j));
     for (const auto& [i, j] : c.held) l.w(j)[i] = 0;
     for (int j = 0; j < l.rows; ++j) l.weigh_row(j);
     if (rest) rest->keep_masses(int(n));
@@ -70,8 +70,8 @@ void Simulation::State::restore(const Moment& m) {
       step.topology()->set_torn(torn);
     }
     if (is_explicit(method))
-      spectra[n] = estimate_spectrum(step.cloth(), step.families(), l,
-                                     method == Method::spring_friction);
+      spectra[n] =
+          estimate_spectrum(step.cloth(), step.families(), l, method == Method::spring_friction);
     positions.insert(positions.end(), c.positions.begin(), c.positions.end());
     velocities.insert(velocities.end(), c.velocities.begin(), c.velocities.end());
   }
@@ -131,7 +131,11 @@ void Simulation::set_scene(Scene scene) {
   *this = std::move(next);
 }
 
-Moment Simulation::moment() const { return state_->moment(); }
-void Simulation::restore(const Moment& moment) { state_->restore(moment); }
+Moment Simulation::moment() const {
+  return state_->moment();
+}
+void Simulation::restore(const Moment& moment) {
+  state_->restore(moment);
+}
 
 }  // namespace weft

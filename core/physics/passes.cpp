@@ -61,7 +61,8 @@ void Passes::run(const Substeps& substeps, Threads& threads, std::span<const Row
     const Substep substep = substeps.at(s);
     for (Pass& p : passes_) {
       if (p.wavefront) {
-        p.wavefront->run({substeps.time + s * substeps.dt, substeps.dt, 1, substep.kick}, threads, awake);
+        p.wavefront->run({substeps.time + s * substeps.dt, substeps.dt, 1, substep.kick}, threads,
+                         awake);
         continue;
       }
       const auto before = std::chrono::steady_clock::now();

@@ -42,7 +42,8 @@ void ClothStep::choose_anew(Method method) {
   method_ = method;
   Stages added;
   for (auto& s : stages_)
-    if (std::find(added_.begin(), added_.end(), s.get()) != added_.end()) added.push_back(std::move(s));
+    if (std::find(added_.begin(), added_.end(), s.get()) != added_.end())
+      added.push_back(std::move(s));
   stages_.clear();
   added_.clear();
   multipliers_.reset();
@@ -71,9 +72,11 @@ void ClothStep::make_passes() {
 
 void ClothStep::add_stage(std::unique_ptr<Stage> stage) {
   std::size_t at = 0;
-  while (at < stages_.size() && stages_[at]->name != "springs" && stages_[at]->name != "predict") ++at;
+  while (at < stages_.size() && stages_[at]->name != "springs" && stages_[at]->name != "predict")
+    ++at;
   added_.push_back(stage.get());
-  stages_.insert(stages_.begin() + std::ptrdiff_t(std::min(at + 1, stages_.size())), std::move(stage));
+  stages_.insert(stages_.begin() + std::ptrdiff_t(std::min(at + 1, stages_.size())),
+                 std::move(stage));
   make_passes();
 }
 
@@ -104,9 +107,8 @@ void ClothStep::choose_stages() {
       corrections_ = std::make_unique<Rows>(lattice_.rows, lattice_.stride);
     sweep.corrections = corrections_.get();
     if (solver.order == 2) history_ = std::make_unique<History>(lattice_);
-    stages_.push_back(history_
-                          ? make_predict_second_order(parts, *history_, multipliers_.get())
-                          : make_predict(parts, multipliers_.get()));
+    stages_.push_back(history_ ? make_predict_second_order(parts, *history_, multipliers_.get())
+                               : make_predict(parts, multipliers_.get()));
     if (auto wind = make_wind(parts, seed_)) stages_.push_back(std::move(wind));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
     if (auto tethers = solver.tethers ? make_tethers(parts, sweep.compliant) : nullptr)
@@ -124,8 +126,10 @@ void ClothStep::choose_stages() {
         append_gauss_seidel(parts, sweep, stages_);
     }
     if (corrections_) stages_.push_back(make_corrections(parts, *corrections_));
-    if (history_) stages_.push_back(make_velocity_second_order(parts, *history_));
-    else if (!sweep.compliant || lines) stages_.push_back(make_velocity(parts, sweep.compliant));
+    if (history_)
+      stages_.push_back(make_velocity_second_order(parts, *history_));
+    else if (!sweep.compliant || lines)
+      stages_.push_back(make_velocity(parts, sweep.compliant));
   }
   append_contact();
   if (cloth_.strain_limit > 0) {
@@ -168,15 +172,19 @@ void describe_skipped(const Scene& scene, Method method, Plan& plan) {
   const auto any = [&](auto&& has) {
     return std::any_of(scene.cloths.begin(), scene.cloths.end(), has);
   };
-  if (is_explicit(method)) skip("predict, sweeps, velocity", "springs are forces with this method");
-  else skip("springs", "constraints are projected with this method");
+  if (is_explicit(method))
+    skip("predict, sweeps, velocity", "springs are forces with this method");
+  else
+    skip("springs", "constraints are projected with this method");
   if (!any([](const Cloth& c) {
-        return std::any_of(c.pins.begin(), c.pins.end(), [](const Pin& p) { return !p.keys.empty(); });
+        return std::any_of(c.pins.begin(), c.pins.end(),
+                           [](const Pin& p) { return !p.keys.empty(); });
       }))
     skip("keyed_pins", "no pin moves");
   if (!is_explicit(method)) {
     const Solver& s = scene.solver;
-    if (!s.tethers) skip("tethers", "off in the scene");
+    if (!s.tethers)
+      skip("tethers", "off in the scene");
     else if (std::all_of(scene.cloths.begin(), scene.cloths.end(),
                          [](const Cloth& c) { return c.pins.empty(); }))
       skip("tethers", "nothing is pinned");
@@ -194,7 +202,8 @@ void describe_skipped(const Scene& scene, Method method, Plan& plan) {
   if (!any([](const Cloth& c) { return c.self_collision.mode != SelfCollisionMode::off; }))
     skip("self_collision", "off in the scene");
   if (!any([](const Cloth& c) { return c.tear_strain > 0; })) skip("tear", "tear_strain is 0");
-  if (std::none_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) { return c.cuts; }))
+  if (std::none_of(scene.colliders.begin(), scene.colliders.end(),
+                   [](const Collider& c) { return c.cuts; }))
     skip("cut", "no collider cuts");
   if (scene.wind.drag == 0 && scene.wind.lift == 0) skip("wind", "drag and lift are 0");
   if (scene.solver.sleep == 0) skip("sleep", "sleep is 0");
@@ -223,9 +232,9 @@ Plan describe(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>&
     return c.self_collision.mode == SelfCollisionMode::surface;
   });
   if (surface)
-    plan.stages.push_back({"self_surface",
-                           "vertices against triangles, edges against edges; nothing passes through",
-                           double(substeps), particles, "squares"});
+    plan.stages.push_back(
+        {"self_surface", "vertices against triangles, edges against edges; nothing passes through",
+         double(substeps), particles, "squares"});
   else if (particles > 0)
     plan.skipped.push_back({"self_surface", "self_collision is particles in all cloths"});
   describe_skipped(scene, scene.solver.method, plan);

@@ -41,8 +41,8 @@ class ClothStep {
   // Puts a stage right after the one that moves the particles; takes it away again.
   void add_stage(std::unique_ptr<Stage> stage);
   void remove_stage(const Stage* stage);
-  // Chooses the stages anew for this method and the scene's solver as it is now. Added stages stay; what
-  // the others carry from substep to substep starts anew.
+  // Chooses the stages anew for this method and the scene's solver as it is now. Added stages stay;
+  // what the others carry from substep to substep starts anew.
   void choose_anew(Method method);
   ClothParts parts() const { return parts_; }
   // Null while the cloth cannot tear. allow_tearing() lets a cloth tear from now on.
@@ -79,7 +79,9 @@ class ClothStep {
 };
 
 // Whether a method integrates springs as forces, and so has a stability limit.
-inline bool is_explicit(Method m) { return m == Method::spring || m == Method::spring_friction; }
+inline bool is_explicit(Method m) {
+  return m == Method::spring || m == Method::spring_friction;
+}
 
 // The description that `weft explain` prints.
 Plan describe(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths,

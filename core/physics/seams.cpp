@@ -82,8 +82,8 @@ std::optional<std::uint32_t> Seams::point(const Topology& t, Site p, float along
     const int di = axis == 0, dj = axis == 1, side = weight > 0 ? 1 : -1;
     // The step itself, or its continuation from behind, or one beside it.
     bool found = false;
-    for (const auto& [beside, way] : {std::pair(0, side), {0, -side}, {1, side}, {-1, side},
-                                      {1, -side}, {-1, -side}}) {
+    for (const auto& [beside, way] :
+         {std::pair(0, side), {0, -side}, {1, side}, {-1, side}, {1, -side}, {-1, -side}}) {
       const int i = p.i + beside * dj, j = p.j + beside * di;
       if (beside != 0 && !joined(t, p.i, p.j, beside * dj, beside * di)) continue;
       if (!joined(t, i, j, way * di, way * dj)) continue;

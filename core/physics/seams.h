@@ -4,8 +4,8 @@
 // share of such a triangle, up to where the middle of the edge would lie if the sheet on its side went
 // on as it is, so that a tear shows as a line that opens, not as a row of missing triangles:
 //
-// Of a triangle a, b, c without edge ab each of a and b has a half, up to c; without ab and ca the share
-// of a is cut off from what b and c keep; without any edge each corner has its third.
+// Of a triangle a, b, c without edge ab each of a and b has a half, up to c; without ab and ca the
+// share of a is cut off from what b and c keep; without any edge each corner has its third.
 //
 // Points are x_p + Σ weight (x_to - x_from), the steps taken along constraints that are alive.
 #pragma once
@@ -25,7 +25,9 @@ class Seams {
   void update(const Topology& topology, const Lattice& lattice);
 
   const std::vector<std::array<float, 3>>& points() const { return places_; }  // m
-  const std::vector<std::uint32_t>& particles() const { return owners_; }  // of points, j*stride + i
+  const std::vector<std::uint32_t>& particles() const {
+    return owners_;
+  }  // of points, j*stride + i
   const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
   std::size_t bytes() const;
 

@@ -44,17 +44,39 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
-void Simulation::advance_frame() { state_->advance_frame(); }
-const Scene& Simulation::scene() const { return state_->scene; }
-const Options& Simulation::options() const { return state_->options; }
-int Simulation::threads() const { return state_->threads.count(); }
-Simd Simulation::simd() const { return state_->simd; }
-std::int64_t Simulation::frame() const { return state_->frame; }
-double Simulation::time() const { return double(state_->frame) * state_->scene.time.frame; }
-double Simulation::dt() const { return state_->dt; }
-int Simulation::substeps() const { return state_->substeps; }
-const Plan& Simulation::plan() const { return state_->plan; }
-const Status& Simulation::status() const { return state_->status; }
+void Simulation::advance_frame() {
+  state_->advance_frame();
+}
+const Scene& Simulation::scene() const {
+  return state_->scene;
+}
+const Options& Simulation::options() const {
+  return state_->options;
+}
+int Simulation::threads() const {
+  return state_->threads.count();
+}
+Simd Simulation::simd() const {
+  return state_->simd;
+}
+std::int64_t Simulation::frame() const {
+  return state_->frame;
+}
+double Simulation::time() const {
+  return double(state_->frame) * state_->scene.time.frame;
+}
+double Simulation::dt() const {
+  return state_->dt;
+}
+int Simulation::substeps() const {
+  return state_->substeps;
+}
+const Plan& Simulation::plan() const {
+  return state_->plan;
+}
+const Status& Simulation::status() const {
+  return state_->status;
+}
 
 View Simulation::view() const {
   View view;
@@ -111,19 +133,33 @@ void Simulation::set_state(std::span<const double> positions, std::span<const do
 void Simulation::grab(int cloth, int i, int j, const Vec3& target, double stiffness) {
   state_->grab(cloth, i, j, target, stiffness);
 }
-void Simulation::release() { state_->release(); }
-void Simulation::carry(int cloth, const Vec3& velocity) { state_->carry(cloth, velocity); }
-void Simulation::pin(int cloth, int i, int j) { state_->hold(cloth, i, j, true); }
-void Simulation::unpin(int cloth, int i, int j) { state_->hold(cloth, i, j, false); }
+void Simulation::release() {
+  state_->release();
+}
+void Simulation::carry(int cloth, const Vec3& velocity) {
+  state_->carry(cloth, velocity);
+}
+void Simulation::pin(int cloth, int i, int j) {
+  state_->hold(cloth, i, j, true);
+}
+void Simulation::unpin(int cloth, int i, int j) {
+  state_->hold(cloth, i, j, false);
+}
 
 void Simulation::move_collider(int collider, const Vec3& target) {
   state_->move_collider(collider, target);
 }
 
-int Simulation::cut(const Vec3& a, const Vec3& b, double width) { return state_->cut(a, b, width); }
+int Simulation::cut(const Vec3& a, const Vec3& b, double width) {
+  return state_->cut(a, b, width);
+}
 
-Report Simulation::report(bool contacts) const { return measure(*state_, contacts); }
-std::uint64_t Simulation::hash() const { return state_hash(*state_); }
+Report Simulation::report(bool contacts) const {
+  return measure(*state_, contacts);
+}
+std::uint64_t Simulation::hash() const {
+  return state_hash(*state_);
+}
 
 double Simulation::bytes_per_particle() const {
   std::size_t bytes = 0, particles = 0;

@@ -102,8 +102,7 @@ double largest_eigenvalue(const Operator& op) {
     op.apply(v, next);
     const double alpha = dot(v, next);
     diagonal.push_back(alpha);
-    for (std::size_t i = 0; i < size; ++i)
-      next[i] -= float(alpha) * v[i] + float(beta) * before[i];
+    for (std::size_t i = 0; i < size; ++i) next[i] -= float(alpha) * v[i] + float(beta) * before[i];
     beta = std::sqrt(dot(next, next));
     if (!(beta > 1e-12 * std::abs(alpha))) break;
     for (std::size_t i = 0; i < size; ++i) {
@@ -114,8 +113,8 @@ double largest_eigenvalue(const Operator& op) {
   }
   const int m = int(diagonal.size());
   Eigen::VectorXd d = Eigen::Map<Eigen::VectorXd>(diagonal.data(), m);
-  Eigen::VectorXd e = m > 1 ? Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(off.data(), m - 1))
-                            : Eigen::VectorXd();
+  Eigen::VectorXd e =
+      m > 1 ? Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(off.data(), m - 1)) : Eigen::VectorXd();
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
   solver.computeFromTridiagonal(d, e, Eigen::EigenvaluesOnly);
   return solver.eigenvalues().maxCoeff();
@@ -145,11 +144,11 @@ Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Family>& famili
     float normal, transverse;
   };
   Spectrum spectrum;
-  spectrum.omega_squared =
-      largest(cloth, families, l, cloth.bending > 0, [](const Family& f, float factor, float ratio) {
-        const float k = float(f.stiffness) * factor;
-        return Pair{k, k * std::max(0.0f, 1 - ratio)};
-      });
+  spectrum.omega_squared = largest(cloth, families, l, cloth.bending > 0,
+                                   [](const Family& f, float factor, float ratio) {
+                                     const float k = float(f.stiffness) * factor;
+                                     return Pair{k, k * std::max(0.0f, 1 - ratio)};
+                                   });
   if (damped)
     spectrum.damping = largest(cloth, families, l, false, [](const Family& f, float factor, float) {
       return Pair{float(f.damping) * factor, 0};

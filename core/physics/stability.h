@@ -24,6 +24,6 @@ struct Spectrum {
 // Estimates the spectrum of the lattice as it lies now by a Lanczos iteration, from above: the
 // substep it allows is never larger than the true limit, and at most about 3 % smaller.
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Family>& families,
-                               const Lattice& lattice, bool damped);
+                           const Lattice& lattice, bool damped);
 
 }  // namespace weft::physics

@@ -20,8 +20,9 @@ struct Substep {
   int slot = 0;     // which of a stage's carried buffers this substep uses
 };
 
-// Substeps of one length, one after the other. Velocities of explicit springs lie behind the positions by
-// half of the substep before; the first kick takes them to half of the first of these ahead.
+// Substeps of one length, one after the other. Velocities of explicit springs lie behind the
+// positions by half of the substep before; the first kick takes them to half of the first of these
+// ahead.
 struct Substeps {
   double time = 0;  // s, at the start
   double dt = 0;    // s

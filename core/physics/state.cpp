@@ -16,7 +16,6 @@ using namespace physics;
 
 namespace {
 
-
 Simd resolve(Simd simd) {
   if (simd != Simd::best) return simd;
   for (Simd s : {Simd::avx512, Simd::avx2})
@@ -42,7 +41,8 @@ std::string steady_jacobi(Scene& scene) {
     }
     if (heaviest > kAlikeMasses * lightest) {
       scene.solver.sweep = Sweep::gauss_seidel;
-      return "Jacobi sweeps do not converge for masses this unequal; gauss_seidel runs in their place";
+      return "Jacobi sweeps do not converge for masses this unequal; gauss_seidel runs in their "
+             "place";
     }
     const double k = std::max({c.stiffness.structural, c.stiffness.shear, c.stiffness.bend});
     stiff |= 2 * k * dt * dt > lightest;
@@ -77,8 +77,8 @@ void Simulation::State::build_cloths() {
   backups_.clear();
   stage_ns.clear();
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    cloths.push_back(std::make_unique<ClothStep>(scene, int(c), method, options.seed,
-                                                 kernel_table(simd)));
+    cloths.push_back(
+        std::make_unique<ClothStep>(scene, int(c), method, options.seed, kernel_table(simd)));
     const Lattice& l = cloths.back()->lattice();
     carried_.push_back(nullptr);
     backups_.push_back({Rows(l.rows, l.stride), Rows(l.rows, l.stride)});
@@ -86,8 +86,9 @@ void Simulation::State::build_cloths() {
     if (options.profile) cloths.back()->passes().profile(stage_ns.back());
   }
   self_collision = SelfContact::make(scene, cloths, kernel_table(simd));
-  surface = self_collision ? SurfaceContact::make(scene, self_collision->sheets(), kernel_table(simd))
-                           : nullptr;
+  surface = self_collision
+                ? SurfaceContact::make(scene, self_collision->sheets(), kernel_table(simd))
+                : nullptr;
   rest = Rest::make(scene, cloths, kernel_table(simd));
 }
 
@@ -115,12 +116,14 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
   }
   if (!self_collision) return;
   if (const SelfContact::Overlaps o = self_collision->overlaps(); o.pairs > 0)
-    notes.push_back(std::to_string(o.pairs) + " pairs of particles start nearer than the thickness, by up to " +
+    notes.push_back(std::to_string(o.pairs) +
+                    " pairs of particles start nearer than the thickness, by up to " +
                     number(o.deepest) + " m; they are pushed apart");
 }
 
-// v <- v - a lag: velocities of explicit springs are taken to where they lie behind the positions. `now`
-// gives all velocities in double in place of v, so that what velocities() told comes back exactly.
+// v <- v - a lag: velocities of explicit springs are taken to where they lie behind the positions.
+// `now` gives all velocities in double in place of v, so that what velocities() told comes back
+// exactly.
 void Simulation::State::stagger(const double* now) {
   std::vector<Vec3> a;
   for (auto& step : cloths) {

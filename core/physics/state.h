@@ -18,7 +18,8 @@
 
 namespace weft {
 
-inline constexpr double kProjectionRate = 960;  // automatic substeps a second of methods that project
+// Automatic substeps a second of methods that project.
+inline constexpr double kProjectionRate = 960;
 
 inline constexpr float kFarAway = 1e7f;  // m; nothing in a sane scene gets there
 
@@ -53,7 +54,7 @@ struct Simulation::State {
   std::vector<std::unique_ptr<physics::ClothStep>> cloths;
   std::unique_ptr<physics::SelfContact> self_collision;  // over all cloths; null when all are off
   std::unique_ptr<physics::SurfaceContact> surface;      // the same; null unless one asks for it
-  std::unique_ptr<physics::Rest> rest;  // null when nothing may sleep
+  std::unique_ptr<physics::Rest> rest;                   // null when nothing may sleep
   // Inverse masses of a cloth, of sleeping particles too.
   const physics::AlignedArray<float>& masses(std::size_t cloth) const {
     return rest ? rest->masses(cloth) : cloths[cloth]->lattice().inverse_mass;
@@ -82,7 +83,7 @@ struct Simulation::State {
   double saved_lag_ = 0;
   physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
   int grabbed_ = 0;
-  std::vector<physics::Carry*> carried_;  // in the plan of each cloth; null while it rests
+  std::vector<physics::Carry*> carried_;           // in the plan of each cloth; null while it rests
   int since_collision_ = 0, until_collision_ = 1;  // substeps
   physics::EnergyGuard guard_;
   double limit_ = 0;  // s; the stability limit at the end of the last frame (explicit)

@@ -14,11 +14,11 @@ using namespace physics;
 
 namespace {
 
-constexpr double kLimitShare = 0.9;      // of the stability limit that an automatic substep takes
-constexpr int kMostSubsteps = 100000;    // per frame, flat; stretch may ask for 1.4 times as many
-constexpr double kLeastSubstep = 1e-6;   // s; below, single precision loses speeds of cm/s
-constexpr int kFinest = 16;              // times the substeps that are due, to save a frame
-constexpr double kGrabbed = 0.6;         // of stretched_limit's t, room for what a hand may do in a frame
+constexpr double kLimitShare = 0.9;     // of the stability limit that an automatic substep takes
+constexpr int kMostSubsteps = 100000;   // per frame, flat; stretch may ask for 1.4 times as many
+constexpr double kLeastSubstep = 1e-6;  // s; below, single precision loses speeds of cm/s
+constexpr int kFinest = 16;             // times the substeps that are due, to save a frame
+constexpr double kGrabbed = 0.6;  // of stretched_limit's t, room for what a hand may do in a frame
 
 // Without shear springs (or with nothing else) a sheet folds onto a line that stretches nothing, where
 // all its springs pull the same way: up to twice the flat sheet's ω², and no stretch adds to that.
@@ -82,8 +82,8 @@ void Simulation::State::choose_method_and_substeps() {
       count = std::max(1, int(needed));
       notes.push_back("substeps from the stability limit of " + number(limit) + " s");
     } else if (!resolved || scene.time.frame / count > limit) {
-      notes.push_back("springs need substeps below " + number(limit) + " s, " +
-                      number(needed) + " a frame at " + number(kLimitShare) +
+      notes.push_back("springs need substeps below " + number(limit) + " s, " + number(needed) +
+                      " a frame at " + number(kLimitShare) +
                       " of the limit; the compliant method runs in their place");
       method = Method::compliant;
       build_cloths();
@@ -126,8 +126,8 @@ bool Simulation::State::finest() const {
 }
 
 // Whether the frame came out as it cannot be and has a better chance with more substeps: springs
-// stretched beyond what their substep allows, or springs or line sweeps with more energy than there is.
-// Then everything is back at the frame's start, to be run again.
+// stretched beyond what their substep allows, or springs or line sweeps with more energy than there
+// is. Then everything is back at the frame's start, to be run again.
 bool Simulation::State::too_coarse() {
   const bool springs = is_explicit(method), lines = !springs && scene.solver.sweep == Sweep::line;
   if (!(springs || lines) || (rest && rest->all_asleep())) return false;
@@ -149,9 +149,9 @@ bool Simulation::State::too_coarse() {
     Solver steady = scene.solver;
     steady.sweep = Sweep::gauss_seidel;
     steady.order = 1;
-    plan.notes.push_back(which + " gained energy from nowhere with so many substeps too; from it on " +
-                         (springs ? "the compliant method runs" : "gauss_seidel sweeps run") +
-                         " in their place");
+    plan.notes.push_back(
+        which + " gained energy from nowhere with so many substeps too; from it on " +
+        (springs ? "the compliant method runs" : "gauss_seidel sweeps run") + " in their place");
     plan.fallback = true;
     go_on_as(springs ? Method::compliant : method, steady);
     take_substeps(springs ? projection_substeps() : finer);
@@ -188,8 +188,7 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
       const std::vector<Vec3> v = velocities_now(*this, c);
       for (int j = 0; j < l.rows; ++j)
         for (int i = 0; i < l.columns; ++i)
-          for (int k = 0; k < 3; ++k)
-            l.v.at(k, j, i) = float(v[std::size_t(j) * l.columns + i][k]);
+          for (int k = 0; k < 3; ++k) l.v.at(k, j, i) = float(v[std::size_t(j) * l.columns + i][k]);
     }
   method = as;
   lag = is_explicit(as) ? dt / 2 : 0;
@@ -199,8 +198,8 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
 }
 
 // Whether line sweeps stretched a sheet by what gravity and pins on paths, where they alone do work,
-// cannot have put into this frame. A line is solved by one Newton step a substep, which overshoots where
-// much happens in one, as when a straight line is pressed together from its ends.
+// cannot have put into this frame. A line is solved by one Newton step a substep, which overshoots
+// where much happens in one, as when a straight line is pressed together from its ends.
 bool Simulation::State::overshot() const {
   constexpr float kStretched = 1.25f * 1.25f;
   constexpr double kMore = 2;  // times the energy before

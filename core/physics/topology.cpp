@@ -102,8 +102,9 @@ bool Topology::look_at_squares(int row) {
   for (int j = std::max(0, row - 1); j <= row && j + 1 < rows_; ++j)
     for (int i = 0; i + 1 < columns_; ++i) {
       const bool diagonal = alive(-1, 1, i + 1, j);
-      const bool edges[6] = {alive(1, 0, i, j),     diagonal, alive(0, 1, i, j),
-                             alive(0, 1, i + 1, j), alive(1, 0, i, j + 1), diagonal};
+      const bool edges[6] = {alive(1, 0, i, j),     diagonal,
+                             alive(0, 1, i, j),     alive(0, 1, i + 1, j),
+                             alive(1, 0, i, j + 1), diagonal};
       std::uint8_t gone = 0;
       for (int n = 0; n < 6; ++n) gone |= static_cast<std::uint8_t>(!edges[n] << n);
       std::uint8_t& square = squares_[static_cast<std::size_t>(j) * (columns_ - 1) + i];

@@ -45,7 +45,7 @@ class Topology {
   // Exactly these are gone, and what spans them; those of families not here are passed over.
   void set_torn(const std::vector<Torn>& torn);
 
-  std::int64_t torn() const { return torn_; }         // constraints that are gone
+  std::int64_t torn() const { return torn_; }  // constraints that are gone
   std::int64_t torn(int j) const { return died_[static_cast<std::size_t>(j)]; }  // of row j
   std::uint64_t version() const { return version_; }  // rises when triangles change
   // Triangles that are left whole, corners as j*stride + i; empty while the cloth is whole.

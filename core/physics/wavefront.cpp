@@ -1,11 +1,11 @@
 // The wavefront over rows and substeps (wavefront.h).
 #include "physics/wavefront.h"
 
+#include <oneapi/tbb/task_group.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-
-#include <oneapi/tbb/task_group.h>
 
 #include "physics/threads.h"
 
@@ -56,7 +56,9 @@ void Wavefront::choose_tiles(int count, int threads) {
     height_ = std::clamp(height_, 1, rows_);
     chunk_substeps_ = std::clamp(height_ / reach, 1, 8);
     const double tile = row_nanoseconds_ * height_;
-    if (threads > 1) chunk_substeps_ = std::max(chunk_substeps_, std::min(8, int(std::ceil(kTaskNanoseconds / tile))));
+    if (threads > 1)
+      chunk_substeps_ =
+          std::max(chunk_substeps_, std::min(8, int(std::ceil(kTaskNanoseconds / tile))));
     chunk_substeps_ = std::min(chunk_substeps_, count);
   }
   offset_.clear();
@@ -149,8 +151,10 @@ void Wavefront::run_parallel(const Run& r, Threads& threads) {
         };
         if (k + 1 < w.tiles_) done(k + 1, c);
         if (c + 1 < r.chunks) {
-          if (k == w.tiles_ - 1) done(std::max(0, w.tiles_ - 1 - w.span_), c + 1);
-          else if (k >= w.span_) done(k - w.span_, c + 1);
+          if (k == w.tiles_ - 1)
+            done(std::max(0, w.tiles_ - 1 - w.span_), c + 1);
+          else if (k >= w.span_)
+            done(k - w.span_, c + 1);
         }
         if (k == w.tiles_ - 1 && c + w.ring_ < r.chunks) done(0, c + w.ring_);
         if (ready == 0) return;

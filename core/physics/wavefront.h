@@ -24,8 +24,7 @@ class Threads;
 class Wavefront {
  public:
   // Stages of one substep, in order. `row_bytes` sizes the tiles to the cache.
-  Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes,
-            double row_nanoseconds);
+  Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes, double row_nanoseconds);
 
   // Only the rows of `awake` are worked on, spans in order and apart; empty: all rows.
   void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {});

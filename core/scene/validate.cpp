@@ -19,7 +19,7 @@ constexpr std::int64_t kMaxParticles = std::int64_t{1} << 24;  // of all cloths 
 constexpr double kMinSpacing = 1e-6;  // m; float positions resolve no finer grid
 constexpr double kMaxThickness = 4;   // spacings; a particle has some 50 neighbours within it
 constexpr double kMinSine = 1e-3;     // between u and v
-constexpr double kMinReach = 0.01;    // spacings; a cutter that reaches less passes between particles
+constexpr double kMinReach = 0.01;  // spacings; a cutter that reaches less passes between particles
 
 double length(const Vec3& a) {
   return std::hypot(a[0], a[1], a[2]);
@@ -83,7 +83,8 @@ class Together {
       fault("/solver/order", "order is 2", "only with method compliant; the method is " + method);
     // Relaxed corrections lag behind what the extrapolation from two substeps expects of them.
     else if (solver.order == 2 && solver.sweep == Sweep::jacobi && sound({"/solver/order"}))
-      fault("/solver/order", "order is 2", "only with sweep gauss_seidel or line; the sweep is jacobi");
+      fault("/solver/order", "order is 2",
+            "only with sweep gauss_seidel or line; the sweep is jacobi");
   }
 
   void cloth(const Cloth& cloth, const std::string& place) {

@@ -23,7 +23,8 @@ fs::file_time_type time_of(const std::string& path) {
 }
 
 std::string line_of(const Fault& fault) {
-  return fault.place + ": " + fault.what + (fault.allowed.empty() ? "" : " (" + fault.allowed + ")");
+  return fault.place + ": " + fault.what +
+         (fault.allowed.empty() ? "" : " (" + fault.allowed + ")");
 }
 
 }  // namespace
@@ -98,7 +99,9 @@ void Document::redo() {
   if (can_redo()) take(position_ + 1);
 }
 
-std::string Document::next_undo() const { return can_undo() ? history_[position_].place : ""; }
+std::string Document::next_undo() const {
+  return can_undo() ? history_[position_].place : "";
+}
 
 void Document::save(const std::string& path) {
   OutputFile file(path);

@@ -175,9 +175,8 @@ void Pusher::draw(const Workspace& workspace, const Area& area, ImDrawList& list
     if (l < 6) continue;  // towards the eye
     const ImVec2 tip{to.x, to.y}, u{dx / l, dy / l};
     list.AddLine({from.x, from.y}, tip, kAxisColors[k], 3);
-    list.AddTriangleFilled({tip.x + 10 * u.x, tip.y + 10 * u.y},
-                           {tip.x - 5 * u.y, tip.y + 5 * u.x}, {tip.x + 5 * u.y, tip.y - 5 * u.x},
-                           kAxisColors[k]);
+    list.AddTriangleFilled({tip.x + 10 * u.x, tip.y + 10 * u.y}, {tip.x - 5 * u.y, tip.y + 5 * u.x},
+                           {tip.x + 5 * u.y, tip.y - 5 * u.x}, kAxisColors[k]);
   }
   list.AddCircleFilled({from.x, from.y}, 5, IM_COL32(255, 255, 255, 230));
 }

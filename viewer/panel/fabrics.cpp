@@ -23,7 +23,8 @@ void draw_fabrics(Workspace& workspace) {
     }
     mark(std::string(fabric.name));
     char about[160];
-    std::snprintf(about, sizeof about, "%g g/m², %g N/m along the threads, %g N/m in shear, bending %g µN·m",
+    std::snprintf(about, sizeof about,
+                  "%g g/m², %g N/m along the threads, %g N/m in shear, bending %g µN·m",
                   1000 * fabric.weight, fabric.tensile, fabric.shear, 1e6 * fabric.rigidity);
     tooltip(about);
   }

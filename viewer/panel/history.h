@@ -33,7 +33,8 @@ class History {
   // Once a turn of the window.
   void add(const Vitals& vitals, std::uint64_t scene_serial, const Turn& turn);
 
-  Series window_ms, surface_ms, panel_ms, frame_ms, kinetic, elastic, total, strain_max, strain_mean;
+  Series window_ms, surface_ms, panel_ms, frame_ms, kinetic, elastic, total, strain_max,
+      strain_mean;
   std::map<std::string, Series> stages;  // ms a frame
   double turns_per_second = 60;
 

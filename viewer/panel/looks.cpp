@@ -20,8 +20,8 @@ void color(const char* label, Vec3f& linear) {
 
 bool slider(const char* label, float& value, float low, float high, const char* format = "%.3f",
             ImGuiSliderFlags flags = 0) {
-  const bool changed = ImGui::SliderFloat(label, &value, low, high, format,
-                                          flags | ImGuiSliderFlags_AlwaysClamp);
+  const bool changed =
+      ImGui::SliderFloat(label, &value, low, high, format, flags | ImGuiSliderFlags_AlwaysClamp);
   mark(label);
   return changed;
 }
@@ -113,8 +113,9 @@ void draw_looks(Workspace& workspace) {
   mark("Standard look");
   tooltip("All settings of the looks as they were, and the program's own pictures");
   ImGui::PushTextWrapPos(0);
-  ImGui::TextColored(kQuiet, "Shaders are read from their folder while this runs: change one and "
-                             "look. Drop a picture to use it as texture.");
+  ImGui::TextColored(kQuiet,
+                     "Shaders are read from their folder while this runs: change one and "
+                     "look. Drop a picture to use it as texture.");
   ImGui::PopTextWrapPos();
 }
 

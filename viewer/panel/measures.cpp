@@ -37,8 +37,9 @@ void draw_stages(const History& history) {
 void draw_counts(const Vitals& v) {
   const Report& r = v.report;
   ImGui::Text("%lld particles", static_cast<long long>(r.particles));
-  ImGui::Text("%lld structural, %lld shear, %lld bend", static_cast<long long>(r.constraints.structural),
-              static_cast<long long>(r.constraints.shear), static_cast<long long>(r.constraints.bend));
+  ImGui::Text(
+      "%lld structural, %lld shear, %lld bend", static_cast<long long>(r.constraints.structural),
+      static_cast<long long>(r.constraints.shear), static_cast<long long>(r.constraints.bend));
   if (r.torn > 0) ImGui::Text("%lld torn", static_cast<long long>(r.torn));
   ImGui::Text("%d substeps of %.3g ms, %d threads, %s", v.substeps, 1e3 * v.dt, v.threads,
               r.simd.c_str());

@@ -65,8 +65,10 @@ void draw_past(Workspace& workspace, float width) {
   ImGui::EndDisabled();
   mark("past");
   char about[128];
-  std::snprintf(about, sizeof about, "The last %.1f s are kept: drag to go back; going on forgets "
-                "what came after", v.kept_s);
+  std::snprintf(about, sizeof about,
+                "The last %.1f s are kept: drag to go back; going on forgets "
+                "what came after",
+                v.kept_s);
   tooltip(about);
 }
 
@@ -130,8 +132,10 @@ void draw_legend(const Workspace& workspace, const Area& area) {
   const bool lines = workspace.look->draw == Look::Draw::lines;
   if (!strains && !lines) return;
   const float em = ImGui::GetFontSize();
-  const float above = area.width < 56 * em ? 4 * em : 0;  // the transport, where there is no room beside
-  begin_overlay("legend", area.x + area.width - kMargin, area.y + area.height - kMargin - above, 1, 1);
+  // The transport, where there is no room beside.
+  const float above = area.width < 56 * em ? 4 * em : 0;
+  begin_overlay("legend", area.x + area.width - kMargin, area.y + area.height - kMargin - above, 1,
+                1);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float size = ImGui::GetFontSize();
   if (lines) {

@@ -42,7 +42,8 @@ void draw_files(Workspace& workspace, Wishes& wishes, bool filming);
 void draw_fabrics(Workspace& workspace);
 void draw_looks(Workspace& workspace);
 void draw_machine(Workspace& workspace);  // threads, instruction set
-// Keys [t, x, y, z] of a path; a first one is put at `now` [s] and `place`. True when they have changed.
+// Keys [t, x, y, z] of a path; a first one is put at `now` [s] and `place`. True when they have
+// changed.
 bool draw_path(const std::string& name, const std::string& pointer, text::Json& keys, double now,
                const Vec3& place);
 void draw_measures(const Workspace& workspace, const History& history);

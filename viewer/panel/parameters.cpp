@@ -27,7 +27,8 @@ std::string label_of(const std::string& key, const text::Json& schema) {
 // What the tooltip tells: the help, the range, the place.
 std::string help_of(const std::string& pointer, const text::Json& schema) {
   std::string help;
-  if (const text::Json* about = text::member(schema, "description")) help = about->get<std::string>();
+  if (const text::Json* about = text::member(schema, "description"))
+    help = about->get<std::string>();
   const text::Json& bounds = schema.contains("items") ? schema["items"] : schema;
   if (bounds.contains("minimum")) help += "\n" + text::range_words(bounds);
   return help + "\n" + pointer;
@@ -59,10 +60,11 @@ void Parameters::change(const std::string& pointer, const Json& value) {
 bool Parameters::passes(const std::string& key, const Json& schema) const {
   if (filter_.empty()) return true;
   const auto found = [&](const std::string& text) {
-    return std::search(text.begin(), text.end(), filter_.begin(), filter_.end(), [](char a, char b) {
-             return std::tolower(static_cast<unsigned char>(a)) ==
-                    std::tolower(static_cast<unsigned char>(b));
-           }) != text.end();
+    return std::search(text.begin(), text.end(), filter_.begin(), filter_.end(),
+                       [](char a, char b) {
+                         return std::tolower(static_cast<unsigned char>(a)) ==
+                                std::tolower(static_cast<unsigned char>(b));
+                       }) != text.end();
   };
   if (found(words_of(key))) return true;
   const Json* properties = text::member(schema, "properties");
@@ -77,14 +79,14 @@ void Parameters::number(const std::string& pointer, const std::string& label, co
   if (is_type(schema, "integer")) {
     int shown = value.get<int>();
     const int least = static_cast<int>(low), most = static_cast<int>(high);
-    if (ImGui::DragInt(label.c_str(), &shown, std::max(0.1f, 0.01f * static_cast<float>(shown)), least,
-                       most, "%d", ImGuiSliderFlags_AlwaysClamp))
+    if (ImGui::DragInt(label.c_str(), &shown, std::max(0.1f, 0.01f * static_cast<float>(shown)),
+                       least, most, "%d", ImGuiSliderFlags_AlwaysClamp))
       change(pointer, shown);
     return;
   }
   double shown = value.get<double>();
-  if (ImGui::DragScalar(label.c_str(), ImGuiDataType_Double, &shown, speed_of(shown, low, high), &low,
-                        &high, "%.5g", ImGuiSliderFlags_AlwaysClamp))
+  if (ImGui::DragScalar(label.c_str(), ImGuiDataType_Double, &shown, speed_of(shown, low, high),
+                        &low, &high, "%.5g", ImGuiSliderFlags_AlwaysClamp))
     change(pointer, shown);
 }
 
@@ -96,8 +98,8 @@ void Parameters::numbers(const std::string& pointer, const std::string& label, c
   if (is_type(item, "integer")) {
     auto shown = value.get<std::vector<int>>();
     const int least = static_cast<int>(low), most = static_cast<int>(high);
-    if (ImGui::DragScalarN(label.c_str(), ImGuiDataType_S32, shown.data(), count, 0.2f, &least, &most,
-                           "%d", ImGuiSliderFlags_AlwaysClamp))
+    if (ImGui::DragScalarN(label.c_str(), ImGuiDataType_S32, shown.data(), count, 0.2f, &least,
+                           &most, "%d", ImGuiSliderFlags_AlwaysClamp))
       change(pointer, shown);
     return;
   }
@@ -158,7 +160,8 @@ void Parameters::member(const std::string& pointer, const std::string& key, cons
   const std::string label = label_of(key, schema) + "##" + pointer;
   const Json* options = text::member(schema, "oneOf");
   if (value.is_object()) {
-    const Json* chosen = options && !schema.contains("type") ? text::alternative(schema, value) : &schema;
+    const Json* chosen =
+        options && !schema.contains("type") ? text::alternative(schema, value) : &schema;
     group(pointer, words_of(key), *chosen, value, false);
     return;
   }
@@ -210,9 +213,10 @@ void Parameters::group(const std::string& pointer, const std::string& title, con
   const std::string label = title + "##" + pointer;
   const bool top = std::count(pointer.begin(), pointer.end(), '/') <= 2;
   const ImGuiTreeNodeFlags flags = open ? ImGuiTreeNodeFlags_DefaultOpen : 0;
-  const bool shown = top && (pointer.find('/', 1) == std::string::npos || title.find(' ') != std::string::npos)
-                         ? ImGui::CollapsingHeader(label.c_str(), flags)
-                         : ImGui::TreeNodeEx(label.c_str(), flags | ImGuiTreeNodeFlags_NoTreePushOnOpen);
+  const bool shown =
+      top && (pointer.find('/', 1) == std::string::npos || title.find(' ') != std::string::npos)
+          ? ImGui::CollapsingHeader(label.c_str(), flags)
+          : ImGui::TreeNodeEx(label.c_str(), flags | ImGuiTreeNodeFlags_NoTreePushOnOpen);
   if (const Json* about = text::member(schema, "description"))
     tooltip(about->get_ref<const std::string&>().c_str());
   if (!shown) return;
@@ -238,7 +242,8 @@ void Parameters::draw(Workspace& workspace) {
   top("solver", true);
   const Json& cloth = schema["properties"]["cloths"]["items"];
   const bool one = json["cloths"].size() == 1;
-  for (std::size_t n = 0; n < std::min<std::size_t>(json["cloths"].size(), 20) && passes("cloth", cloth); ++n)
+  for (std::size_t n = 0;
+       n < std::min<std::size_t>(json["cloths"].size(), 20) && passes("cloth", cloth); ++n)
     group("/cloths/" + std::to_string(n), one ? "cloth " : "cloth " + std::to_string(n), cloth,
           json["cloths"][n], n == 0);
   if (passes("gravity", schema["properties"]["gravity"]))
@@ -250,7 +255,8 @@ void Parameters::draw(Workspace& workspace) {
   for (std::size_t n = 0; n < std::min<std::size_t>(json["colliders"].size(), 50); ++n) {
     std::string title = "collider " + std::to_string(n);
     for (const char* shape : kShapes)
-      if (json["colliders"][n].contains(shape)) title = std::string(shape) + " " + std::to_string(n);
+      if (json["colliders"][n].contains(shape))
+        title = std::string(shape) + " " + std::to_string(n);
     if (passes("collider", collider))
       group("/colliders/" + std::to_string(n), title, collider, json["colliders"][n], false);
   }

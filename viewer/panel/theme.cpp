@@ -100,7 +100,8 @@ void heading(const char* text) {
 }
 
 void tooltip(const char* text) {
-  if (text == nullptr || *text == '\0' || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+  if (text == nullptr || *text == '\0' ||
+      !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
     return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);

@@ -37,8 +37,9 @@ void append_lines(std::vector<std::uint32_t>& indices, const std::vector<Offset>
         for (int s = 0; s < steps && cloth.torn && left; ++s) {
           const int a = i + s * o.di / steps, b = j + s * o.dj / steps;
           const int square = std::min(b, b + o.dj / steps);
-          left = o.di != 0 && o.dj != 0 ? has_square(triangles, columns, a, square)
-                                        : near_square(a, b) && near_square(a + o.di / steps, b + o.dj / steps);
+          left = o.di != 0 && o.dj != 0
+                     ? has_square(triangles, columns, a, square)
+                     : near_square(a, b) && near_square(a + o.di / steps, b + o.dj / steps);
         }
         if (left) append_line(indices, j * columns + i, (j + o.dj) * columns + i + o.di);
       }
@@ -134,7 +135,8 @@ void ClothMesh::upload_triangles() {
                  GL_DYNAMIC_DRAW);
   } else {
     const auto first = std::mismatch(now.begin(), now.end(), uploaded_.begin()).first - now.begin();
-    const auto after = now.rend() - std::mismatch(now.rbegin(), now.rend(), uploaded_.rbegin()).first;
+    const auto after =
+        now.rend() - std::mismatch(now.rbegin(), now.rend(), uploaded_.rbegin()).first;
     if (first < after)
       glBufferSubData(GL_ELEMENT_ARRAY_BUFFER,
                       static_cast<GLintptr>(first) * static_cast<GLintptr>(sizeof(std::uint32_t)),

@@ -28,15 +28,13 @@ inline constexpr std::array kLooks{
     Look{"normals", "Directions of the normals as colours", false, false, true},
     Look{"texture", "A woven texture", false, false, true},
     Look{"bump", "A height map in the normals", false, false, true},
-    Look{"displacement", "A height map that raises the surface", false, false, true,
-         true},
+    Look{"displacement", "A height map that raises the surface", false, false, true, true},
     Look{"mirror", "Reflects the sky", false, false, true},
     Look{"pbr", "Metallic-roughness material, lit by the sky's image", false, false, true},
     Look{"strain", "Heat map of the strain", false, true},
-    Look{"wireframe", "Constraints in the colours of their kinds", false, false, false,
-         false, Look::Draw::lines},
-    Look{"points", "The particles", false, false, false, false,
-         Look::Draw::points},
+    Look{"wireframe", "Constraints in the colours of their kinds", false, false, false, false,
+         Look::Draw::lines},
+    Look{"points", "The particles", false, false, false, false, Look::Draw::points},
 };
 
 // The look of that name; null when there is none.
@@ -65,7 +63,7 @@ struct LookSettings {
   bool ground = true;
   int tessellation = 64;  // of spheres around, 16 … 128
   int refinement = 0;     // vertices per grid cell side; 0: as many as the detail asks for
-  int detail = 200;      // vertices along a side of the cloth, about
+  int detail = 200;       // vertices along a side of the cloth, about
 
   // Constraints of the wireframe.
   bool structural = true, shear = true, bend = false;

@@ -133,8 +133,8 @@ std::vector<float> thinned(const std::vector<float>& values, const ClothCopy& cl
   kept.reserve(count(columns, rows));
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i)
-      kept.push_back(
-          values[cloth.at(std::min(i * step, cloth.columns - 1), std::min(j * step, cloth.rows - 1))]);
+      kept.push_back(values[cloth.at(std::min(i * step, cloth.columns - 1),
+                                     std::min(j * step, cloth.rows - 1))]);
   return kept;
 }
 
@@ -182,8 +182,7 @@ Offsets offsets_of(const Cloth& description) {
 }
 
 // f += k (|d| - l) d / |d|
-void add_forces(const ClothCopy& cloth, const Cloth& description, int step,
-                ClothSurface& surface) {
+void add_forces(const ClothCopy& cloth, const Cloth& description, int step, ClothSurface& surface) {
   std::vector<float> fx(cloth.x.size()), fy = fx, fz = fx;
   const auto add = [&](const std::vector<Offset>& offsets, double stiffness) {
     const auto k = static_cast<float>(stiffness);

@@ -15,9 +15,7 @@ std::size_t size(int n) {
 class Squares {
  public:
   explicit Squares(const ClothCopy& cloth)
-      : columns_(cloth.columns - 1),
-        rows_(cloth.rows - 1),
-        left_(size(columns_) * size(rows_)) {
+      : columns_(cloth.columns - 1), rows_(cloth.rows - 1), left_(size(columns_) * size(rows_)) {
     for (const auto& t : cloth.triangles) {
       const bool first = t[2] == t[0] + static_cast<std::uint32_t>(cloth.stride);
       const std::uint32_t p = first ? t[0] : t[0] - 1;
@@ -59,8 +57,9 @@ void refine(const std::vector<float>& from, const ClothCopy& cloth, const Square
       const int i = c / r;
       const bool before = i > 0 && squares.along(i - 1, j);
       const bool after = i + 2 < cloth.columns && squares.along(i + 1, j);
-      out(c, j * r) = spline(before ? at(i - 1) : 0, before, at(i), at(i + 1), after ? at(i + 2) : 0,
-                             after, static_cast<float>(c % r) / static_cast<float>(r));
+      out(c, j * r) =
+          spline(before ? at(i - 1) : 0, before, at(i), at(i + 1), after ? at(i + 2) : 0, after,
+                 static_cast<float>(c % r) / static_cast<float>(r));
     }
     out(columns - 1, j * r) = at(cloth.columns - 1);
   }
@@ -68,15 +67,15 @@ void refine(const std::vector<float>& from, const ClothCopy& cloth, const Square
     for (int c = 0; c < columns && r > 1; ++c) {
       const int i = std::min(c / r, cloth.columns - 2);
       const auto held = [&](int row) {
-        return row >= 0 && row + 1 < cloth.rows && squares.across(c == columns - 1 ? i + 1 : i, row) &&
+        return row >= 0 && row + 1 < cloth.rows &&
+               squares.across(c == columns - 1 ? i + 1 : i, row) &&
                (c % r == 0 || squares.across(i + 1, row));
       };
       const bool before = held(j - 1), after = held(j + 1);
       for (int s = 1; s < r; ++s)
-        out(c, j * r + s) =
-            spline(before ? out(c, (j - 1) * r) : 0, before, out(c, j * r), out(c, (j + 1) * r),
-                   after ? out(c, (j + 2) * r) : 0, after,
-                   static_cast<float>(s) / static_cast<float>(r));
+        out(c, j * r + s) = spline(before ? out(c, (j - 1) * r) : 0, before, out(c, j * r),
+                                   out(c, (j + 1) * r), after ? out(c, (j + 2) * r) : 0, after,
+                                   static_cast<float>(s) / static_cast<float>(r));
     }
 }
 
@@ -109,7 +108,8 @@ void triangulate(const ClothCopy& cloth, ClothSurface& surface) {
       const int left = cloth.torn ? squares.at(i, j) : 3;
       const std::size_t end = indices.size() + 6 * size(r) * size(r);
       const std::uint32_t corners[4] = {vertex(i * r, j * r), vertex((i + 1) * r, j * r),
-                                        vertex(i * r, (j + 1) * r), vertex((i + 1) * r, (j + 1) * r)};
+                                        vertex(i * r, (j + 1) * r),
+                                        vertex((i + 1) * r, (j + 1) * r)};
       if (left == 1) indices.insert(indices.end(), {corners[0], corners[1], corners[2]});
       if (left == 2) indices.insert(indices.end(), {corners[1], corners[3], corners[2]});
       for (int n = 0; n < r * r && left == 3; ++n) {

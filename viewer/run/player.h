@@ -71,7 +71,7 @@ class Player {
   FixedStepClock clock_;
   Rewind rewind_;
   int back_ = 0;
-  int until_keep_ = 1;  // frames
+  int until_keep_ = 1;                                        // frames
   double wait_at_ = std::numeric_limits<double>::infinity();  // s
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<Animation> export_;

@@ -9,8 +9,8 @@
 #include <cctype>
 #include <chrono>
 #include <cstdio>
-#include <limits>
 #include <filesystem>
+#include <limits>
 
 #include "failure.h"
 #include "panel/theme.h"
@@ -98,8 +98,9 @@ void App::turn() {
   for (const KeyPress& press : window_.take_keys()) {
     const Action action = keys_.action_of(press);
     const bool typing = ImGui::GetIO().WantTextInput;
-    if (action != Action::count && !typing && (!press.again || action == Action::step ||
-                                               action == Action::back || action == Action::forward))
+    if (action != Action::count && !typing &&
+        (!press.again || action == Action::step || action == Action::back ||
+         action == Action::forward))
       obey(action);
   }
   push_bodies(std::min(now - last_turn_, 0.1));
@@ -186,11 +187,11 @@ void App::push_bodies(double seconds) {
   const auto along = [&](Action less, Action more) {
     return (keys_.held(more, window_) ? 1.0f : 0.0f) - (keys_.held(less, window_) ? 1.0f : 0.0f);
   };
-  hands_.pusher.push(workspace_,
-                     {along(Action::move_left, Action::move_right),
-                      along(Action::move_down, Action::move_up),
-                      along(Action::move_far, Action::move_near)},
-                     seconds);
+  hands_.pusher.push(
+      workspace_,
+      {along(Action::move_left, Action::move_right), along(Action::move_down, Action::move_up),
+       along(Action::move_far, Action::move_near)},
+      seconds);
 }
 
 // A picture becomes the texture, anything else is a scene.

@@ -53,9 +53,9 @@ class App {
   Landmarks landmarks_;
   std::optional<Film> film_;
   double waits_at_ = std::numeric_limits<double>::infinity();  // s, the simulation, for the film
-  double measure_;  // s, 0: not at all
+  double measure_;                                             // s, 0: not at all
   std::vector<Turn> turns_;
-  Turn turn_;  // the present one
+  Turn turn_;             // the present one
   double last_turn_ = 0;  // s
 };
 

@@ -52,27 +52,41 @@ struct KeyName {
   std::string_view name;
   int key;
 };
-constexpr KeyName kNamed[] = {
-    {"Esc", GLFW_KEY_ESCAPE},       {"Space", GLFW_KEY_SPACE},     {"Tab", GLFW_KEY_TAB},
-    {"Enter", GLFW_KEY_ENTER},      {"Left", GLFW_KEY_LEFT},       {"Right", GLFW_KEY_RIGHT},
-    {"Up", GLFW_KEY_UP},            {"Down", GLFW_KEY_DOWN},       {"PageUp", GLFW_KEY_PAGE_UP},
-    {"PageDown", GLFW_KEY_PAGE_DOWN}, {"Home", GLFW_KEY_HOME},     {"End", GLFW_KEY_END},
-    {"Insert", GLFW_KEY_INSERT},    {"Delete", GLFW_KEY_DELETE},   {"Backspace", GLFW_KEY_BACKSPACE},
-    {"Comma", GLFW_KEY_COMMA},      {"Period", GLFW_KEY_PERIOD},   {"Minus", GLFW_KEY_MINUS},
-    {"Plus", GLFW_KEY_EQUAL},       {"Slash", GLFW_KEY_SLASH}};
+constexpr KeyName kNamed[] = {{"Esc", GLFW_KEY_ESCAPE},
+                              {"Space", GLFW_KEY_SPACE},
+                              {"Tab", GLFW_KEY_TAB},
+                              {"Enter", GLFW_KEY_ENTER},
+                              {"Left", GLFW_KEY_LEFT},
+                              {"Right", GLFW_KEY_RIGHT},
+                              {"Up", GLFW_KEY_UP},
+                              {"Down", GLFW_KEY_DOWN},
+                              {"PageUp", GLFW_KEY_PAGE_UP},
+                              {"PageDown", GLFW_KEY_PAGE_DOWN},
+                              {"Home", GLFW_KEY_HOME},
+                              {"End", GLFW_KEY_END},
+                              {"Insert", GLFW_KEY_INSERT},
+                              {"Delete", GLFW_KEY_DELETE},
+                              {"Backspace", GLFW_KEY_BACKSPACE},
+                              {"Comma", GLFW_KEY_COMMA},
+                              {"Period", GLFW_KEY_PERIOD},
+                              {"Minus", GLFW_KEY_MINUS},
+                              {"Plus", GLFW_KEY_EQUAL},
+                              {"Slash", GLFW_KEY_SLASH}};
 constexpr KeyName kModifiers[] = {
     {"Ctrl", GLFW_MOD_CONTROL}, {"Shift", GLFW_MOD_SHIFT}, {"Alt", GLFW_MOD_ALT}};
 constexpr int kAllModifiers = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT;
 
 bool same(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-  return a.size() == b.size() &&
-         std::equal(a.begin(), a.end(), b.begin(), [&](char x, char y) { return lower(x) == lower(y); });
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(),
+                                            [&](char x, char y) { return lower(x) == lower(y); });
 }
 
 std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front()))) text.remove_prefix(1);
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.remove_suffix(1);
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front())))
+    text.remove_prefix(1);
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())))
+    text.remove_suffix(1);
   return text;
 }
 
@@ -188,7 +202,8 @@ std::string Keys::names_of(Action action) const {
 
 std::string keys_file() {
   if (const char* chosen = std::getenv("WEFT_KEYS")) return chosen;
-  if (const char* folder = std::getenv("XDG_CONFIG_HOME")) return std::string(folder) + "/weft/keys";
+  if (const char* folder = std::getenv("XDG_CONFIG_HOME"))
+    return std::string(folder) + "/weft/keys";
   if (const char* home = std::getenv("HOME")) return std::string(home) + "/.config/weft/keys";
   return "";
 }

@@ -22,8 +22,8 @@ void Log::write(const Workspace& workspace, const View& view, const Hands& hands
   if (!file_.is_open()) return;
   const Vitals& v = workspace.vitals();
   const Snapshot& s = workspace.snapshot();
-  const auto held = std::accumulate(
-      s.cloths.begin(), s.cloths.end(), 0L, [](long sum, const ClothCopy& cloth) {
+  const auto held =
+      std::accumulate(s.cloths.begin(), s.cloths.end(), 0L, [](long sum, const ClothCopy& cloth) {
         for (int j = 0; j < cloth.rows; ++j)
           for (int i = 0; i < cloth.columns; ++i) sum += cloth.inverse_mass[cloth.at(i, j)] == 0;
         return sum;

@@ -39,11 +39,11 @@ void View::reload(Workspace& workspace) {
     stale_ = true;
   }
   const std::vector<std::string> problems = renderer_.problems();
-  workspace.messages.fault(
-      "looks", std::accumulate(problems.begin(), problems.end(), std::string(),
-                               [](const std::string& all, const std::string& one) {
-                                 return all + (all.empty() ? "" : "\n") + one;
-                               }));
+  workspace.messages.fault("looks",
+                           std::accumulate(problems.begin(), problems.end(), std::string(),
+                                           [](const std::string& all, const std::string& one) {
+                                             return all + (all.empty() ? "" : "\n") + one;
+                                           }));
 }
 
 void View::draw(Workspace& workspace, int x, int y, int width, int height) {

@@ -23,7 +23,7 @@ class View {
   // Looks after the shaders' files and the pictures asked for.
   void reload(Workspace& workspace);
 
-  bool drawn() const { return drawn_; }           // whether the last draw() drew anew
+  bool drawn() const { return drawn_; }  // whether the last draw() drew anew
   bool coarse() const { return drawn_coarseness_ > 0; }
   double own_ms() const { return renderer_.upload_ms(); }  // normals and upload of the last state
   // How long the window took for a frame with a new picture.

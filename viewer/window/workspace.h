@@ -77,10 +77,10 @@ class Workspace {
   float aspect_ = 1.5f;
   int threads_ = 0;
   Simd simd_ = Simd::best;
-  bool opening_ = true;              // the next new scene is shown from its start
-  std::uint64_t serial_ = 0;         // of the scene that is shown
-  std::uint64_t simulated_ = 0;      // revision that the simulation has, or was told of
-  bool telling_ = false;             // a change is on its way
+  bool opening_ = true;          // the next new scene is shown from its start
+  std::uint64_t serial_ = 0;     // of the scene that is shown
+  std::uint64_t simulated_ = 0;  // revision that the simulation has, or was told of
+  bool telling_ = false;         // a change is on its way
   std::int64_t problems_ = 0;
   std::string recorded_;
   std::uint64_t kept_ = 0;  // revision of the edits that are kept

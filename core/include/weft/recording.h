@@ -20,10 +20,10 @@ namespace weft {
 struct Input {
   enum class Kind { grab, release, pin, unpin, carry, cut, move_collider, set_scene };
   Kind kind = Kind::release;
-  int cloth = 0, i = 0, j = 0;       // grab, pin, unpin; carry: cloth
-  int collider = 0;                  // move_collider
-  Vec3 a{}, b{};                     // grab, move_collider: a the target; carry: a the velocity; cut
-  double amount = 0;                 // grab: stiffness [N/m]; cut: width [m]
+  int cloth = 0, i = 0, j = 0;  // grab, pin, unpin; carry: cloth
+  int collider = 0;             // move_collider
+  Vec3 a{}, b{};                // grab, move_collider: a the target; carry: a the velocity; cut
+  double amount = 0;            // grab: stiffness [N/m]; cut: width [m]
   std::shared_ptr<const Scene> scene = nullptr;  // set_scene
 };
 
@@ -60,7 +60,7 @@ struct Recording {
   };
   Scene scene;
   std::uint64_t seed = 1;
-  std::vector<Event> events;  // in order
+  std::vector<Event> events;    // in order
   std::int64_t frames() const;  // how many have a hash
 };
 

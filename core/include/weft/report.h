@@ -11,11 +11,11 @@ namespace weft {
 
 // One stage of the step plan, in the order of execution.
 struct PlannedStage {
-  std::string name;             // "forces and integrate"
-  std::string detail;           // what it evaluates: "structural, shear, bend; leapfrog"
-  double calls_per_frame = 0;   // how often
-  std::int64_t items = 0;       // how many it touches per call
-  std::string item;             // what an item is: "particles", "constraints", "pairs"
+  std::string name;            // "forces and integrate"
+  std::string detail;          // what it evaluates: "structural, shear, bend; leapfrog"
+  double calls_per_frame = 0;  // how often
+  std::int64_t items = 0;      // how many it touches per call
+  std::string item;            // what an item is: "particles", "constraints", "pairs"
 };
 
 // A stage that the scene does not need, and why.
@@ -27,10 +27,10 @@ struct SkippedStage {
 struct Plan {
   std::vector<PlannedStage> stages;
   std::vector<SkippedStage> skipped;
-  int substeps = 0;             // per frame
-  double dt = 0;                // s
-  double dt_limit = 0;          // s; the stability limit of explicit methods, 0 when there is none
-  bool fallback = false;        // runs another way than the scene asks, to stay stable; notes say how
+  int substeps = 0;       // per frame
+  double dt = 0;          // s
+  double dt_limit = 0;    // s; the stability limit of explicit methods, 0 when there is none
+  bool fallback = false;  // runs another way than the scene asks, to stay stable; notes say how
   std::vector<std::string> notes;  // what was chosen for the user, and why
 };
 
@@ -70,8 +70,8 @@ struct Report {
   std::vector<StageTime> stages;  // sums to wall_ms.total; one entry "step" unless profiled
   std::vector<SkippedStage> skipped;
   std::uint64_t hash = 0;  // of the final positions' bits
-  // Kinetic energy and momenta of springs with a strain limit are of half a substep before `sim_seconds`: what
-  // the springs alone would add since, the limit takes back.
+  // Kinetic energy and momenta of springs with a strain limit are of half a substep before
+  // `sim_seconds`: what the springs alone would add since, the limit takes back.
   struct {
     double kinetic = 0, elastic = 0, gravity = 0, total = 0;  // J
   } energy;

@@ -71,14 +71,15 @@ enum class Tears { split, holes };
 
 struct Cloth {
   Grid grid;
-  double density = 0.3;       // kg/m²; total mass density*|u x v|, shared equally by all particles
-  double particle_mass = 0;   // kg; > 0 replaces density
-  std::vector<double> masses; // kg, nx*ny in row-major order; not empty: replaces both
+  double density = 0.3;      // kg/m²; total mass density*|u x v|, shared equally by all particles
+  double particle_mass = 0;  // kg; > 0 replaces density
+  std::vector<double> masses;        // kg, nx*ny in row-major order; not empty: replaces both
   Kinds stiffness{1000, 1000, 200};  // N/m; 0 = none of that kind
-  Kinds spring_damping;       // N·s/m along the spring (method spring_friction)
-  int level = 0;              // n >= 1: constraints to distance 1..n along rows, columns and both
-                              // diagonals, all with stiffness.structural (seed 000)
-  double stiffness_gradient = 0;  // 0 … 1: relative drop of stiffness from first row to last (seed 003)
+  Kinds spring_damping;              // N·s/m along the spring (method spring_friction)
+  int level = 0;  // n >= 1: constraints to distance 1..n along rows, columns and both
+                  // diagonals, all with stiffness.structural (seed 000)
+  // 0 … 1: relative drop of stiffness from first row to last (seed 003).
+  double stiffness_gradient = 0;
   double positional_k = 0.5;  // 0 … 0.5: share of the error each end takes (method positional)
   double drag = 0;            // 1/s; velocity is multiplied by 1 - dt*drag each substep
   double bending = 0;         // N·m; flexural rigidity of a curvature energy
@@ -135,9 +136,10 @@ using Shape = std::variant<Sphere, Plane, Capsule, Box>;
 struct Collider {
   Shape shape;
   Friction friction;
-  double offset = 0;      // m; the cloth is kept this far off the surface
-  std::vector<Key> keys;  // path of the sphere's or box's center, the plane's point, the capsule's a
-  bool cuts = false;      // cuts the constraints that pass through it instead of pushing
+  double offset = 0;  // m; the cloth is kept this far off the surface
+  std::vector<Key>
+      keys;           // path of the sphere's or box's center, the plane's point, the capsule's a
+  bool cuts = false;  // cuts the constraints that pass through it instead of pushing
   friend bool operator==(const Collider&, const Collider&) = default;
 };
 
@@ -159,8 +161,8 @@ struct Solver {
   int order = 1;                      // 2: second-order substep (compliant)
   int iterations = 1;                 // constraint sweeps per substep, 1 … 1000
   int collision_iterations = 1;       // passes over the colliders per substep, 1 … 100
-  double sleep = 0;                   // m/s; 0 … 1: row-blocks slower than this for half a second rest
-                                      // until something moves them; 0 = nothing ever rests
+  double sleep = 0;  // m/s; 0 … 1: row-blocks slower than this for half a second rest
+                     // until something moves them; 0 = nothing ever rests
   friend bool operator==(const Solver&, const Solver&) = default;
 };
 
@@ -175,7 +177,7 @@ struct Time {
 
 struct Scene {
   std::string name;
-  std::string about;  // one line for `weft scenes`
+  std::string about;          // one line for `weft scenes`
   Vec3 gravity{0, -9.81, 0};  // m/s²
   Time time;
   Solver solver;

@@ -73,15 +73,16 @@ class Simulation {
   // No allocation after the first frame.
   void advance_frame();
 
-  const Scene& scene() const; // as simulated: plan() notes where its sweep is not the one asked for
+  const Scene& scene()
+      const;  // as simulated: plan() notes where its sweep is not the one asked for
   const Options& options() const;
-  int threads() const;        // as resolved from the options
-  Simd simd() const;          // as resolved from the options
-  std::int64_t frame() const; // frames advanced so far
-  double time() const;        // s, frame() * scene().time.frame
-  double dt() const;          // s, the substep now in use
-  int substeps() const;       // per frame, now in use
-  const Plan& plan() const;   // what a frame does, in order, and what it leaves out
+  int threads() const;         // as resolved from the options
+  Simd simd() const;           // as resolved from the options
+  std::int64_t frame() const;  // frames advanced so far
+  double time() const;         // s, frame() * scene().time.frame
+  double dt() const;           // s, the substep now in use
+  int substeps() const;        // per frame, now in use
+  const Plan& plan() const;    // what a frame does, in order, and what it leaves out
   const Status& status() const;
 
   View view() const;
@@ -113,13 +114,14 @@ class Simulation {
   // These throw std::out_of_range for a particle or collider that is not there.
 
   // The state as it is now, and back to one: positions, velocities, time (to the nearest frame),
-  // what is held and torn, paths of the colliders. restore() throws std::invalid_argument for a moment of
-  // other grids; what it has no room for (constraints of absent families) is left out.
+  // what is held and torn, paths of the colliders. restore() throws std::invalid_argument for a
+  // moment of other grids; what it has no room for (constraints of absent families) is left out.
   Moment moment() const;
   void restore(const Moment& moment);
   // Goes on with another scene: cloths whose grids have the same points keep their state, pins that
   // differ between the scenes are set, colliders that differ take the new scene's place and keys.
-  // Otherwise it starts anew. What is grabbed or carried is let go. Throws as the constructor does, and then nothing has changed.
+  // Otherwise it starts anew. What is grabbed or carried is let go. Throws as the constructor does,
+  // and then nothing has changed.
   void set_scene(Scene scene);
 
   // Everything measured so far (weft/report.h). Evaluates energies and strains now. Without

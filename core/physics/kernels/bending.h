@@ -35,11 +35,11 @@ struct BendLine {
   const float* w;
   std::ptrdiff_t step;
   int particles;
-  Row3 v;            // velocities, laid out as x; gain corrections times inverse_dt
-  float inverse_dt;  // 1/s; 0 = velocities are not touched
-  float compliance;  // 1/(k dt²) [1/kg]
+  Row3 v;             // velocities, laid out as x; gain corrections times inverse_dt
+  float inverse_dt;   // 1/s; 0 = velocities are not touched
+  float compliance;   // 1/(k dt²) [1/kg]
   const float* left;  // 1 for second differences that are left, else 0, laid out as w; null: all
-  float* scratch;    // particles * kBendScratch floats
+  float* scratch;     // particles * kBendScratch floats
 };
 
 // The cells between two rows of particles whose left column is even, or odd.

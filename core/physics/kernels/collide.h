@@ -145,11 +145,13 @@ struct Face {
 };
 
 WEFT_INLINE Wide tangent_bound(const Surface& at, Wide3 p, const Face& f) {
-  return at.distance + min(dot(f.a - p, at.normal),
-                           min(dot(f.b - p, at.normal), dot(f.c - p, at.normal)));
+  return at.distance +
+         min(dot(f.a - p, at.normal), min(dot(f.b - p, at.normal), dot(f.c - p, at.normal)));
 }
 
-WEFT_INLINE Wide within_unit(Wide t) { return min(max(t, Wide{}), wide(1)); }
+WEFT_INLINE Wide within_unit(Wide t) {
+  return min(max(t, Wide{}), wide(1));
+}
 
 // The point of a face nearest to q: in its plane, or on one of its sides.
 WEFT_INLINE Wide3 nearest_on(const Face& f, Wide3 q) {
@@ -214,12 +216,10 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
       const Wide3 x10 = load3(r.x, i + 1) - place, x11 = load3(f.x_next, i + 1) - place;
       const Surface s10 = shape.at(x10), s11 = shape.at(x11);
       const Face one{x00, x10, x01}, two{x10, x11, x01};
-      const Wide first =
-          max(tangent_bound(s00, x00, one),
-              max(tangent_bound(s01, x01, one), tangent_bound(s10, x10, one)));
-      const Wide second =
-          max(tangent_bound(s11, x11, two),
-              max(tangent_bound(s01, x01, two), tangent_bound(s10, x10, two)));
+      const Wide first = max(tangent_bound(s00, x00, one),
+                             max(tangent_bound(s01, x01, one), tangent_bound(s10, x10, one)));
+      const Wide second = max(tangent_bound(s11, x11, two),
+                              max(tangent_bound(s01, x01, two), tangent_bound(s10, x10, two)));
       bound = min(descend(shape, f, one, close, first, enough),
                   descend(shape, f, two, close, second, enough)) -
               r.offset;

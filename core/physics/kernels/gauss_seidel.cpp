@@ -13,7 +13,9 @@ namespace {
 
 // What differs between the sweeps, so that each kernel holds just its own.
 enum class Rule { rigid, compliant, multipliers, limit };
-constexpr bool displaced(Rule r) { return r == Rule::compliant || r == Rule::multipliers; }
+constexpr bool displaced(Rule r) {
+  return r == Rule::compliant || r == Rule::multipliers;
+}
 
 // The correction of constraints of row j by unit inverse mass, zero outside `active`.
 template <Rule R>
@@ -105,8 +107,10 @@ WEFT_INLINE void between_rows_alike(const ProjectRows& p, int j, const Alike& c)
     const Wide3 near_moved = load3(kDisplaced ? near.u : near.x, a);
     const Wide3 far_moved = load3(kDisplaced ? far.u : far.x, a);
     Wide3 e;
-    if constexpr (kDisplaced) e = (load3(far.x, a) + far_moved) - (load3(near.x, a) + near_moved);
-    else e = far_moved - near_moved;
+    if constexpr (kDisplaced)
+      e = (load3(far.x, a) + far_moved) - (load3(near.x, a) + near_moved);
+    else
+      e = far_moved - near_moved;
     Wide lambda{};
     if constexpr (kMultipliers) lambda = load(lambdas + a);
     const Wide before = lambda;

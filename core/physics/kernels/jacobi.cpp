@@ -16,7 +16,9 @@ struct JacobiLaw {
   template <PlainFamily F>
   WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
     constexpr bool kNextNear = F == kAntidiagonal, kNextFar = F == kRight || F == kDiagonal;
-    const std::ptrdiff_t far = F == kRight || F == kRight2 ? b.here : F == kDown2 ? b.below2 : b.below;
+    const std::ptrdiff_t far = F == kRight || F == kRight2 ? b.here
+                               : F == kDown2               ? b.below2
+                                                           : b.below;
     const Wide wa = load(r.w + b.here + (kNextNear ? 1 : 0));
     const Wide wb = load(r.w + far + (kNextFar ? 1 : F == kRight2 ? 2 : 0));
     const Wide inertia = (wa + wb) * r.weight + r.constraints[b.constants + F].compliance;

@@ -38,9 +38,9 @@ struct SpringConstants {
 
 // v <- drag v + kick (f/m + g), x <- x + dt v, pinned particles (inverse mass 0) unmoved.
 struct Advance {
-  float dt, kick;        // s; the same but after the substep's length has changed
-  float drag;            // factor on the velocity
-  float gx, gy, gz;      // velocity gained from gravity [m/s]
+  float dt, kick;    // s; the same but after the substep's length has changed
+  float drag;        // factor on the velocity
+  float gx, gy, gz;  // velocity gained from gravity [m/s]
 };
 
 // The six families of a plain cloth at once for rows begin … end-1 (kernels/plain_rows.h). Row j is
@@ -52,7 +52,8 @@ struct PlainRows {
   int columns, stride;
   Row3 x, v;       // row 0
   const float* w;  // inverse mass of row 0 [1/kg]
-  // Of row 0 of each family: -1 in the lanes of constraints, 0 in those of torn ones. Null: cannot tear.
+  // Of row 0 of each family: -1 in the lanes of constraints, 0 in those of torn ones. Null: cannot
+  // tear.
   const std::int32_t* alive[kPlainFamilies];
   // Negated sums of earlier rows: of row j-1 on row j, and of row j-2 on rows j even and odd.
   Row3 carry[3];
@@ -74,11 +75,11 @@ struct JacobiConstants {
 
 // A Jacobi sweep: the corrections of all constraints, added up.
 struct JacobiRows : PlainRows {
-  bool alike;                          // whether all particles of rows begin … end+1 have one mass
+  bool alike;  // whether all particles of rows begin … end+1 have one mass
   const JacobiConstants* constraints;  // six for each row, as the springs
   float rest[kPlainFamilies];          // m
-  float weight;                // of w_a + w_b: 1/relaxation
-  float inverse_dt;            // > 0: the velocity gains the correction times it [1/s]
+  float weight;                        // of w_a + w_b: 1/relaxation
+  float inverse_dt;                    // > 0: the velocity gains the correction times it [1/s]
 };
 
 // One family between row j and row j+dj: constraint a joins lane a+near of row j and lane a+far of
@@ -88,14 +89,15 @@ struct FamilyRow {
   int near, far;
   bool same_row;
   Row3 x, x_far;
-  Row3 v, v_far;      // velocities (springs with damping; sweeps that keep velocity consistent)
+  Row3 v, v_far;  // velocities (springs with damping; sweeps that keep velocity consistent)
   const float* w;
   const float* w_far;
-  Row3 f, f_far;      // accumulated force or correction of both rows
-  float* scratch;     // 3 rows of `stride` floats, zero in the 16 lanes before each (same_row only)
+  Row3 f, f_far;   // accumulated force or correction of both rows
+  float* scratch;  // 3 rows of `stride` floats, zero in the 16 lanes before each (same_row only)
   int stride;
   SpringConstants spring;
-  std::int32_t* alive;  // -1 in the lanes of constraints, 0 in those of torn ones; null: cannot tear
+  std::int32_t*
+      alive;  // -1 in the lanes of constraints, 0 in those of torn ones; null: cannot tear
 };
 
 // One family of projected constraints in rows begin … end-1. Which of the optional parts are given
@@ -108,7 +110,7 @@ struct ProjectRows {
   Row3 u;              // corrections of row 0, which compliant constraints change in place of x
   const float* w;      // inverse mass of row 0 [1/kg]
   const float* row_w;  // of all particles of each row, 0 where they differ; or null
-  int count;       // constraints in a row: a joins lane a+near of row j and lane a+far of row j+dj
+  int count;  // constraints in a row: a joins lane a+near of row j and lane a+far of row j+dj
   int near, far, dj;
   int colour;                 // between rows: those with j/dj % 2 == colour
   const std::int32_t* lanes;  // along rows: -1 in the lanes of a colour, 0 elsewhere; both colours
@@ -147,9 +149,9 @@ struct CollideRow {
   Row3 x, v;
   const float* w;
   float dt, inverse_dt;
-  float cx, cy, cz;        // where the shape is at the end of the substep [m]
-  float ux, uy, uz;        // velocity of the surface [m/s]
-  float offset;            // kept off the surface [m]
+  float cx, cy, cz;  // where the shape is at the end of the substep [m]
+  float ux, uy, uz;  // velocity of the surface [m/s]
+  float offset;      // kept off the surface [m]
   float friction_static, friction_dynamic;
   ShapeConstants shape;
 };
@@ -190,17 +192,17 @@ struct WindRow {
   int columns;
   ConstRow3 x, x_next, v, v_next;
   const float *w, *w_next;
-  Row3 f, f_next;          // N, added to
-  float dt;                // s, that the air pushes for
-  float steps;             // how many substeps that is; the force is that of all of them
-  float wx, wy, wz;        // m/s
-  float drag, lift;        // kg/m³
-  float gust_speed;        // m/s; 0: none
+  Row3 f, f_next;    // N, added to
+  float dt;          // s, that the air pushes for
+  float steps;       // how many substeps that is; the force is that of all of them
+  float wx, wy, wz;  // m/s
+  float drag, lift;  // kg/m³
+  float gust_speed;  // m/s; 0: none
   Gust gusts[kGusts];
 };
 
-struct LineStrip;      // kernels/line.h
-struct BlockRows;      // kernels/contact.h
+struct LineStrip;  // kernels/line.h
+struct BlockRows;  // kernels/contact.h
 struct NearSearch;
 struct NearFound;
 struct SeparateGroup;
@@ -208,43 +210,43 @@ struct SurfaceSquare;  // kernels/surface.h
 struct TransposeRows;
 struct SecondOrderRow;  // kernels/second_order.h
 struct TetherRow;
-struct BendRow;         // kernels/bending.h
+struct BendRow;  // kernels/bending.h
 struct BendLine;
 struct TwistRow;
 
 struct KernelTable {
   void (*spring_rows)(const SpringRows&);
-  void (*spring_family)(const FamilyRow&);          // f += spring force
-  void (*damped_spring_family)(const FamilyRow&);   // f += spring force and damping along it
-  int (*tear)(const FamilyRow&, float longest);     // ends what is longer; returns how many
-  void (*integrate)(const AdvanceRow&);             // leapfrog step from f, then f <- 0
-  void (*predict)(const AdvanceRow&);               // previous <- x, v and x advanced by gravity
-  void (*velocity)(const AdvanceRow&);              // v <- (x - previous)/dt
-  void (*project)(const ProjectRows&);              // Gauss-Seidel, in place
+  void (*spring_family)(const FamilyRow&);         // f += spring force
+  void (*damped_spring_family)(const FamilyRow&);  // f += spring force and damping along it
+  int (*tear)(const FamilyRow&, float longest);    // ends what is longer; returns how many
+  void (*integrate)(const AdvanceRow&);            // leapfrog step from f, then f <- 0
+  void (*predict)(const AdvanceRow&);              // previous <- x, v and x advanced by gravity
+  void (*velocity)(const AdvanceRow&);             // v <- (x - previous)/dt
+  void (*project)(const ProjectRows&);             // Gauss-Seidel, in place
   void (*jacobi_rows)(const JacobiRows&);
   // Jacobi: the corrections of one row's constraints, by unit inverse mass, added to the sums of rows
   // j and j+dj
   void (*jacobi_family)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
   // x += w f, v += w f/dt if inverse_dt > 0, f <- 0 (w null: 1)
   void (*apply_corrections)(const AdvanceRow&);
-  void (*line_strip)(const LineStrip&);             // a strip of lines, each solved as a whole
+  void (*line_strip)(const LineStrip&);  // a strip of lines, each solved as a whole
   void (*rows_to_lanes)(const TransposeRows&);
   void (*lanes_to_rows)(const TransposeRows&);
   void (*predict_second_order)(const SecondOrderRow&);
   void (*velocity_second_order)(const SecondOrderRow&);
   void (*tethers)(const TetherRow&);
-  void (*bend_row)(const BendRow&);                 // v += dt force/mass of the bending energy
-  void (*bend_line)(const BendLine&);               // implicit bending along a strip of lines
-  void (*bend_twist)(const TwistRow&);              // and of every second cell between two rows
+  void (*bend_row)(const BendRow&);     // v += dt force/mass of the bending energy
+  void (*bend_line)(const BendLine&);   // implicit bending along a strip of lines
+  void (*bend_twist)(const TwistRow&);  // and of every second cell between two rows
   RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
   RowReach (*below_faces[kShapes])(const FacesRow&);
   void (*wind)(const WindRow&);
-  void (*push)(const AdvanceRow&);                  // v += dt f/m, x with it, then f <- 0
-  void (*block_bounds)(const BlockRows&);           // how a block lies and moves
-  NearFound (*near_pairs)(const NearSearch&);       // who is in range of whom
+  void (*push)(const AdvanceRow&);             // v += dt f/m, x with it, then f <- 0
+  void (*block_bounds)(const BlockRows&);      // how a block lies and moves
+  NearFound (*near_pairs)(const NearSearch&);  // who is in range of whom
   // Pushes pairs apart; returns the greatest squared relative speed of two that touch [m²/s²].
   float (*separate)(const SeparateGroup&);
-  void (*surface_square)(const SurfaceSquare&);     // a square against those near it
+  void (*surface_square)(const SurfaceSquare&);  // a square against those near it
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

@@ -151,9 +151,7 @@ struct Block {
     }
     is_whole(m) ? eliminate<true>(m) : eliminate<false>(m);
   }
-  WEFT_INLINE bool is_whole(int m) const {
-    return m >= range.whole_begin && m < range.whole_end;
-  }
+  WEFT_INLINE bool is_whole(int m) const { return m >= range.whole_begin && m < range.whole_end; }
 
   // Moves particle m by the pulls of the constraints before and after it.
   template <bool kWhole>

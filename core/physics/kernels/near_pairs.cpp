@@ -43,7 +43,9 @@ WEFT_INLINE Runs runs_about(const NearSearch& s, std::int64_t bucket) {
 typedef WideInt LooseInt __attribute__((aligned(4), may_alias));
 
 // From a box to points outside, axis by axis. Rounding keeps it no longer than from any point inside.
-WEFT_INLINE Wide outside(Wide x, float low, float high) { return max(max(low - x, x - high), Wide{}); }
+WEFT_INLINE Wide outside(Wide x, float low, float high) {
+  return max(max(low - x, x - high), Wide{});
+}
 
 // The runs' particles within the range of the sorted ones from `begin` to `end`, next to each other
 // in the room; the last group is filled up with some far away. Returns how many.

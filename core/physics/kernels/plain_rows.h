@@ -45,7 +45,7 @@ static_assert(kFamilies == physics::kPlainFamilies);
 struct Block {
   std::ptrdiff_t here, below, below2;
   int i;
-  int parity;  // of the row: which of the two carries from two rows above
+  int parity;                // of the row: which of the two carries from two rows above
   std::ptrdiff_t constants;  // number of the row's first family
 };
 
@@ -54,8 +54,8 @@ WEFT_INLINE Block first_block(const physics::PlainRows& s, int j) {
   const std::ptrdiff_t here = std::ptrdiff_t(j) * s.stride;
   const std::ptrdiff_t last = std::ptrdiff_t(s.rows - 1) * s.stride;
   const std::ptrdiff_t below = here + s.stride, below2 = below + s.stride;
-  return {here,  below < last ? below : last, below2 < last ? below2 : last, 0, j % 2,
-          std::ptrdiff_t(j) * kFamilies};
+  return {here,  below < last ? below : last,  below2 < last ? below2 : last, 0,
+          j % 2, std::ptrdiff_t(j) * kFamilies};
 }
 
 WEFT_INLINE void advance(Block& b) {
@@ -66,9 +66,9 @@ WEFT_INLINE void advance(Block& b) {
 }
 
 // The fused kernel works block by block, row after row. Each of the six springs of a block passes
-// four stations: square (edge and squared length), root, quotient (for a spring k l/|e|) and pull. Stations of
-// different springs are interleaved, with pull four springs behind square, so that the divider
-// always has work and nothing waits for it: the order of the statements is the schedule.
+// four stations: square (edge and squared length), root, quotient (for a spring k l/|e|) and pull.
+// Stations of different springs are interleaved, with pull four springs behind square, so that the
+// divider always has work and nothing waits for it: the order of the statements is the schedule.
 //
 // The delays need no reset between rows: past a row's last spring they hold zeros.
 template <class Law>
@@ -160,7 +160,8 @@ struct Pipeline {
 // Squares block b and gives it its first two pulls, while the block before, a, gets the other four
 // and moves. a_last and b_last: the row's last spring to the right lies in or before the block.
 template <bool kA, bool kALast, bool kB, bool kBLast, class Law>
-WEFT_INLINE void turn(Pipeline<Law>& p, const typename Law::Rows& s, const Block& a, const Block& b) {
+WEFT_INLINE void turn(Pipeline<Law>& p, const typename Law::Rows& s, const Block& a,
+                      const Block& b) {
   if constexpr (kA) p.template quotient<kDiagonal>(s, a);
   if constexpr (kB) p.template square<kRight>(s, b);
   if constexpr (kA) p.template root<kDown2>();

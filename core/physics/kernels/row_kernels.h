@@ -52,7 +52,9 @@ class LongDelay3 {
 
 // Rows are worked through in whole groups of 16 lanes at every width, so that lanes past the end see
 // the same operations whatever the instruction set.
-WEFT_INLINE int padded(int count) { return (count + 15) & ~15; }
+WEFT_INLINE int padded(int count) {
+  return (count + 15) & ~15;
+}
 
 // v <- c v + kick (f/m + g), x <- x + dt v; a pinned particle's inverse mass of 0 keeps it in place.
 WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const Advance& a,

@@ -35,7 +35,8 @@ struct Owner {
   WideInt course;
 };
 
-WEFT_INLINE void add_pair(const Owner& p, const Body* bodies, const std::int32_t* number, Sum& sum) {
+WEFT_INLINE void add_pair(const Owner& p, const Body* bodies, const std::int32_t* number,
+                          Sum& sum) {
   const Wide4 q = records_at(bodies->x, kStride, number);
   const Wide held = 0.5f * (p.thickness + q.last) * p.held;
   Wide3 d = p.x - q.xyz;
@@ -76,7 +77,13 @@ float separate(const SeparateGroup& g) {
   for (int i = 0; i < 16; i += kLanes) {
     const Wide4 place = records_at(g.bodies->x, kStride, own + i);
     const Wide4 motion = records_at(g.bodies->v, kStride, own + i);
-    Owner p{place.xyz, motion.xyz, place.last, motion.last, load(g.friction + i), Wide{}, Wide{},
+    Owner p{place.xyz,
+            motion.xyz,
+            place.last,
+            motion.last,
+            load(g.friction + i),
+            Wide{},
+            Wide{},
             lanes_at(g.course + i)};
     p.held = select(p.course, wide(1), wide(physics::kHeld));
     for (int l = 0; l < kLanes; ++l) p.number[l] = float(own[i + l]);

@@ -20,7 +20,8 @@ struct SpringLaw {
     return (kDamped ? 1.0f : r.springs[b.constants + F].kl) / length;
   }
   template <PlainFamily F>
-  WEFT_INLINE static Wide3 pull(const Rows& r, const Block& b, Wide3 edge, Wide quotient, Wide rate) {
+  WEFT_INLINE static Wide3 pull(const Rows& r, const Block& b, Wide3 edge, Wide quotient,
+                                Wide rate) {
     const SpringConstants& c = r.springs[b.constants + F];
     if constexpr (kDamped)
       return edge * (c.k - c.kl * quotient + c.damping * (rate * (quotient * quotient)));
@@ -70,8 +71,7 @@ WEFT_INLINE void add_family(const FamilyRow& r) {
   }
   if (!r.same_row) return;
   const int columns = r.count + r.far;
-  for (int a = padded(r.count); a < padded(columns); a += kLanes)
-    store3(scratch, a, Wide3{});
+  for (int a = padded(r.count); a < padded(columns); a += kLanes) store3(scratch, a, Wide3{});
   for (int a = 0; a < padded(columns); a += kLanes)
     store3(r.f, a, load3(r.f, a) + (load3(scratch, a) - load3(scratch, a - r.far)));
 }

@@ -7,8 +7,9 @@
 //   Δx_i = n (h - d) w_i a_i / (Σ w a² + Σ w b²)
 //
 // and the velocity into the other is lost in the same shares, and of the velocity along it up to μ
-// times as much; of several pairs their mean, each weighing (h - d) h/d, so that between two layers the
-// nearer one has its way. Every square sums up what concerns its own corners: nothing is written twice.
+// times as much; of several pairs their mean, each weighing (h - d) h/d, so that between two layers
+// the nearer one has its way. Every square sums up what concerns its own corners: nothing is
+// written twice.
 #include "physics/kernels/surface.h"
 
 #include "physics/kernels/records.h"
@@ -23,8 +24,10 @@ using physics::SquareSum;
 using physics::SurfaceSquare;
 
 constexpr float kTiny = 1e-20f;
-constexpr float kClosest = 0.01f;  // of the thickness: weights of pairs nearer than that grow no further
-constexpr float kApart = 2.5f;  // columns or rows from which on squares of one sheet are no neighbours
+// Of the thickness: weights of pairs nearer than that grow no further.
+constexpr float kClosest = 0.01f;
+// Columns or rows from which on squares of one sheet are no neighbours.
+constexpr float kApart = 2.5f;
 
 constexpr int kEdges[3][2] = {{0, 1}, {0, 2}, {1, 2}}, kFaces[2][3] = {{0, 1, 2}, {1, 3, 2}};
 constexpr int kStride = sizeof(Square) / sizeof(float);
@@ -42,8 +45,8 @@ struct Edge {
 
 struct Face {
   Wide3 corner[3];
-  Edge side[3];   // from the first corner to the others, and from the second to the third
-  Wide between;   // of the first two sides: their product [m²]
+  Edge side[3];        // from the first corner to the others, and from the second to the third
+  Wide between;        // of the first two sides: their product [m²]
   Wide area, inverse;  // twice the area, squared [m⁴, 1/m⁴]
 };
 
@@ -59,7 +62,9 @@ struct Closest {
   Wide own[4], other[4];
 };
 
-WEFT_INLINE Wide clamp01(Wide s) { return min(max(s, Wide{}), wide(1)); }
+WEFT_INLINE Wide clamp01(Wide s) {
+  return min(max(s, Wide{}), wide(1));
+}
 
 WEFT_INLINE void fill_shape(Shape& s) {
   const auto edge = [&](int i, int j) {
@@ -87,7 +92,8 @@ WEFT_INLINE Wide vertex_face(Wide3 p, const Face& t, Wide (&share)[3]) {
   share[1] = (f.square * de - t.between * df) * t.inverse;
   share[2] = (e.square * df - t.between * de) * t.inverse;
   share[0] = 1.0f - share[1] - share[2];
-  const WideInt inside = (t.area > kTiny) & (share[0] >= 0.0f) & (share[1] >= 0.0f) & (share[2] >= 0.0f);
+  const WideInt inside =
+      (t.area > kTiny) & (share[0] >= 0.0f) & (share[1] >= 0.0f) & (share[2] >= 0.0f);
   const Wide3 above = d - e.along * share[1] - f.along * share[2];
   Wide best = select(inside, dot(above, above), wide(1e18f));
   constexpr int kSides[3][2] = {{0, 1}, {0, 2}, {1, 2}};
@@ -99,20 +105,22 @@ WEFT_INLINE Wide vertex_face(Wide3 p, const Face& t, Wide (&share)[3]) {
     const Wide square = dot(off, off);
     const WideInt nearer = square < best;
     best = select(nearer, square, best);
-    for (int k = 0; k < 3; ++k) share[k] = select(nearer, k == i ? 1.0f - s : k == j ? s : Wide{}, share[k]);
+    for (int k = 0; k < 3; ++k)
+      share[k] = select(nearer, k == i ? 1.0f - s : k == j ? s : Wide{}, share[k]);
   }
   return best;
 }
 
-// Two edges that start in p and q (Ericson 2005, 5.1.9): shares s and t of their ends, and the distance
-// squared.
+// Two edges that start in p and q (Ericson 2005, 5.1.9): shares s and t of their ends, and the
+// distance squared.
 WEFT_INLINE Wide edge_edge(Wide3 p, const Edge& e, Wide3 q, const Edge& f, Wide& s, Wide& t) {
   const Wide3 r = p - q;
   const Wide ef = dot(e.along, f.along), er = dot(e.along, r), fr = dot(f.along, r);
   const Wide area = e.square * f.square - ef * ef;
   s = select(area > kTiny, clamp01((ef * fr - er * f.square) / area), Wide{});
   t = (ef * s + fr) * f.inverse;
-  s = select(t < 0.0f, clamp01(-er * e.inverse), select(t > 1.0f, clamp01((ef - er) * e.inverse), s));
+  s = select(t < 0.0f, clamp01(-er * e.inverse),
+             select(t > 1.0f, clamp01((ef - er) * e.inverse), s));
   t = clamp01(t);
   const Wide3 off = r + e.along * s - f.along * t;
   return dot(off, off);
@@ -121,7 +129,8 @@ WEFT_INLINE Wide edge_edge(Wide3 p, const Edge& e, Wide3 q, const Edge& f, Wide&
 // What one group of 16 others, or a part of it, is to the owner.
 class Group {
  public:
-  WEFT_INLINE Group(const SurfaceSquare& given, const Shape& own, const std::int32_t* others, Sums& sums)
+  WEFT_INLINE Group(const SurfaceSquare& given, const Shape& own, const std::int32_t* others,
+                    Sums& sums)
       : given_(given), p_(given.squares[given.owner]), own_(own), others_(others), sums_(sums) {
     corners_of(&Square::x, other_.x);
     for (Wide3& x : other_.x) x = x - wide3(p_.x[0][0], p_.x[0][1], p_.x[0][2]);
@@ -133,7 +142,8 @@ class Group {
     const Wide held = select(beside, min(thickness, wide(given.close)), thickness);
     held_ = held;
     held_squared_ = held * held;
-    const Wide4 corner = records_at(reinterpret_cast<const float*>(given.squares->corner), kStride, others);
+    const Wide4 corner =
+        records_at(reinterpret_cast<const float*>(given.squares->corner), kStride, others);
     corner_[0] = (WideInt)corner.xyz.x;
     corner_[1] = (WideInt)corner.xyz.y;
     corner_[2] = (WideInt)corner.xyz.z;
@@ -182,7 +192,8 @@ class Group {
     Wide f[12];
     for (int q = 0; q < 3; ++q) {
       const Wide4 four = records_at(&(given_.squares->*part)[0][0] + 4 * q, kStride, others_);
-      f[4 * q] = four.xyz.x, f[4 * q + 1] = four.xyz.y, f[4 * q + 2] = four.xyz.z, f[4 * q + 3] = four.last;
+      f[4 * q] = four.xyz.x, f[4 * q + 1] = four.xyz.y, f[4 * q + 2] = four.xyz.z,
+            f[4 * q + 3] = four.last;
     }
     for (int c = 0; c < 4; ++c) out[c] = {f[3 * c], f[3 * c + 1], f[3 * c + 2]};
   }
@@ -214,7 +225,8 @@ class Group {
     const Wide into = dot(u, n), lost = max(Wide{}, -into);
     const Wide3 slide = u - n * into;
     const Wide sliding = sqrt(dot(slide, slide));
-    const Wide rubbed = select(sliding > 1e-12f, min(wide(1), p_.friction * lost / sliding), Wide{});
+    const Wide rubbed =
+        select(sliding > 1e-12f, min(wide(1), p_.friction * lost / sliding), Wide{});
     const Wide3 gain = n * lost - slide * rubbed;
     const Wide3 nothing = wide3(0, 0, 0);
     for (int k = 0; k < 4; ++k) {
@@ -236,7 +248,8 @@ class Group {
   Wide held_, held_squared_;
 };
 
-WEFT_INLINE void compare(const SurfaceSquare& given, const Shape& own, const std::int32_t* others, Sums& sums) {
+WEFT_INLINE void compare(const SurfaceSquare& given, const Shape& own, const std::int32_t* others,
+                         Sums& sums) {
   Group group(given, own, others, sums);
   for (int n = 0; n < 2; ++n) group.vertex(n);
   for (int n = 0; n < 3; ++n)
@@ -255,7 +268,8 @@ WEFT_INLINE int keep_near(const SurfaceSquare& given) {
     const WideInt number = lanes_at(given.others + i);
     const Wide3 a = low - records_at(given.boxes->high, kBoxStride, given.others + i).xyz;
     const Wide3 b = records_at(given.boxes->low, kBoxStride, given.others + i).xyz - high;
-    const Wide3 gap{max(max(a.x, b.x), Wide{}), max(max(a.y, b.y), Wide{}), max(max(a.z, b.z), Wide{})};
+    const Wide3 gap{max(max(a.x, b.x), Wide{}), max(max(a.y, b.y), Wide{}),
+                    max(max(a.z, b.z), Wide{})};
     near += store_lanes(given.others + near, dot(gap, gap) < given.range * given.range, number);
   }
   for (int l = near; l < padded(near); ++l) given.others[l] = given.far_away;

@@ -6,12 +6,13 @@
 namespace weft::physics {
 
 // A square of a sheet: its corners A (its number's particle), B beyond A along the row, C below A, D
-// below B. It owns the vertex A, the edges AB, AC and BC, and the triangles ABC and BDC. At a sheet's end
-// corners beyond it are those before them: what has no length or area there is of no account.
+// below B. It owns the vertex A, the edges AB, AC and BC, and the triangles ABC and BDC. At a
+// sheet's end corners beyond it are those before them: what has no length or area there is of no
+// account.
 struct alignas(64) Square {
   float x[4][3], v[4][3];  // m, m/s
   float w[4];              // 1/kg
-  float place[3];          // column and row of A; columns of different sheets are far apart; thickness [m]
+  float place[3];  // column and row of A; columns of different sheets are far apart; thickness [m]
   float friction;
   std::int32_t corner[4];  // numbers of the particles, over all sheets
 };
@@ -19,7 +20,8 @@ struct alignas(64) Square {
 // What others want of a square's corners.
 struct SquareSum {
   float nearest;  // distance of what it owns from what others own, at most the range [m]
-  float push[4][3], gain[4][3], weight[4];  // of weights times displacements [m] and velocities [m/s]
+  float push[4][3], gain[4][3],
+      weight[4];  // of weights times displacements [m] and velocities [m/s]
 };
 
 // Box about a square; the fourth values are 0.
@@ -35,8 +37,8 @@ struct SurfaceSquare {
   std::int32_t* others;   // gone over: those whose boxes are in range come first
   int count;              // of them; there is room for 16 more
   std::int32_t far_away;  // a square out of reach of all
-  float range;    // m
-  float close;    // m: pairs of one sheet that are next to each other are kept only so far apart
+  float range;            // m
+  float close;  // m: pairs of one sheet that are next to each other are kept only so far apart
   SquareSum* out;
 };
 

@@ -1,7 +1,8 @@
 // Wide arithmetic: `Wide` is a vector of kLanes floats (16, 8, 4 or 1, as the build of each
-// instruction set sets WEFT_LANES) with the plain operators + - * / of the compilers' vector extensions.
-// A kernel written with it reads like its equation and gives the same bits at every width, because
-// every operation here is exact per lane (IEEE 754, no fused multiply-add, no estimates).
+// instruction set sets WEFT_LANES) with the plain operators + - * / of the compilers' vector
+// extensions. A kernel written with it reads like its equation and gives the same bits at every
+// width, because every operation here is exact per lane (IEEE 754, no fused multiply-add, no
+// estimates).
 //
 // Everything lives in a namespace of its own per instruction set, so that the linker can never mix
 // code built for different ones.
@@ -28,28 +29,56 @@ typedef float Wide __attribute__((vector_size(4 * kLanes)));
 typedef std::int32_t WideInt __attribute__((vector_size(4 * kLanes)));
 typedef Wide WideLoose __attribute__((aligned(4), may_alias));
 
-WEFT_INLINE Wide load(const float* p) { return *reinterpret_cast<const WideLoose*>(p); }
-WEFT_INLINE void store(float* p, Wide v) { *reinterpret_cast<WideLoose*>(p) = v; }
-WEFT_INLINE Wide wide(float s) { return Wide{} + s; }
+WEFT_INLINE Wide load(const float* p) {
+  return *reinterpret_cast<const WideLoose*>(p);
+}
+WEFT_INLINE void store(float* p, Wide v) {
+  *reinterpret_cast<WideLoose*>(p) = v;
+}
+WEFT_INLINE Wide wide(float s) {
+  return Wide{} + s;
+}
 
-WEFT_INLINE Wide select(WideInt mask, Wide a, Wide b) { return mask ? a : b; }
+WEFT_INLINE Wide select(WideInt mask, Wide a, Wide b) {
+  return mask ? a : b;
+}
 // maskz: the plain forms trip a false warning of g++ 12 about uninitialised values.
 #if WEFT_LANES == 16
-WEFT_INLINE Wide max(Wide a, Wide b) { return (Wide)_mm512_maskz_max_ps(0xffff, (__m512)a, (__m512)b); }
-WEFT_INLINE Wide sqrt(Wide v) { return (Wide)_mm512_maskz_sqrt_ps(0xffff, (__m512)v); }
+WEFT_INLINE Wide max(Wide a, Wide b) {
+  return (Wide)_mm512_maskz_max_ps(0xffff, (__m512)a, (__m512)b);
+}
+WEFT_INLINE Wide sqrt(Wide v) {
+  return (Wide)_mm512_maskz_sqrt_ps(0xffff, (__m512)v);
+}
 #elif WEFT_LANES == 8
-WEFT_INLINE Wide max(Wide a, Wide b) { return (Wide)_mm256_max_ps((__m256)a, (__m256)b); }
-WEFT_INLINE Wide sqrt(Wide v) { return (Wide)_mm256_sqrt_ps((__m256)v); }
+WEFT_INLINE Wide max(Wide a, Wide b) {
+  return (Wide)_mm256_max_ps((__m256)a, (__m256)b);
+}
+WEFT_INLINE Wide sqrt(Wide v) {
+  return (Wide)_mm256_sqrt_ps((__m256)v);
+}
 #elif WEFT_LANES == 4
-WEFT_INLINE Wide max(Wide a, Wide b) { return (Wide)_mm_max_ps((__m128)a, (__m128)b); }
-WEFT_INLINE Wide sqrt(Wide v) { return (Wide)_mm_sqrt_ps((__m128)v); }
+WEFT_INLINE Wide max(Wide a, Wide b) {
+  return (Wide)_mm_max_ps((__m128)a, (__m128)b);
+}
+WEFT_INLINE Wide sqrt(Wide v) {
+  return (Wide)_mm_sqrt_ps((__m128)v);
+}
 #else
-WEFT_INLINE Wide max(Wide a, Wide b) { return a > b ? a : b; }
-WEFT_INLINE Wide sqrt(Wide v) { return Wide{__builtin_sqrtf(v[0])}; }
+WEFT_INLINE Wide max(Wide a, Wide b) {
+  return a > b ? a : b;
+}
+WEFT_INLINE Wide sqrt(Wide v) {
+  return Wide{__builtin_sqrtf(v[0])};
+}
 #endif
 
-WEFT_INLINE Wide min(Wide a, Wide b) { return select(a < b, a, b); }
-WEFT_INLINE Wide abs(Wide v) { return max(v, -v); }
+WEFT_INLINE Wide min(Wide a, Wide b) {
+  return select(a < b, a, b);
+}
+WEFT_INLINE Wide abs(Wide v) {
+  return max(v, -v);
+}
 
 // The least and the greatest lane: exact, so the order does not matter.
 WEFT_INLINE float least(Wide v) {
@@ -57,7 +86,9 @@ WEFT_INLINE float least(Wide v) {
   for (int i = 1; i < kLanes; ++i) r = v[i] < r ? v[i] : r;
   return r;
 }
-WEFT_INLINE float greatest(Wide v) { return -least(-v); }
+WEFT_INLINE float greatest(Wide v) {
+  return -least(-v);
+}
 
 WEFT_INLINE WideInt lane_numbers() {
   WideInt r{};
@@ -72,7 +103,9 @@ WEFT_INLINE WideInt lanes_at(const std::int32_t* p) {
 }
 
 // All ones in the lanes whose number is below `count`.
-WEFT_INLINE WideInt lanes_below(int count) { return lane_numbers() < count; }
+WEFT_INLINE WideInt lanes_below(int count) {
+  return lane_numbers() < count;
+}
 
 // The lanes N earlier along a row: Delay<N> d; then d.next(block) for successive blocks returns
 // block shifted by N lanes, the first N coming from the block before (zeros at the row's start).
@@ -146,11 +179,21 @@ struct Wide3 {
   Wide x, y, z;
 };
 
-WEFT_INLINE Wide3 wide3(float x, float y, float z) { return {wide(x), wide(y), wide(z)}; }
-WEFT_INLINE Wide3 operator+(Wide3 a, Wide3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-WEFT_INLINE Wide3 operator-(Wide3 a, Wide3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-WEFT_INLINE Wide3 operator*(Wide3 a, Wide s) { return {a.x * s, a.y * s, a.z * s}; }
-WEFT_INLINE Wide dot(Wide3 a, Wide3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+WEFT_INLINE Wide3 wide3(float x, float y, float z) {
+  return {wide(x), wide(y), wide(z)};
+}
+WEFT_INLINE Wide3 operator+(Wide3 a, Wide3 b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+WEFT_INLINE Wide3 operator-(Wide3 a, Wide3 b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+WEFT_INLINE Wide3 operator*(Wide3 a, Wide s) {
+  return {a.x * s, a.y * s, a.z * s};
+}
+WEFT_INLINE Wide dot(Wide3 a, Wide3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 WEFT_INLINE Wide3 select(WideInt m, Wide3 a, Wide3 b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }

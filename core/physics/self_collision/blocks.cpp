@@ -9,7 +9,7 @@ namespace weft::physics {
 namespace {
 
 constexpr float kFlatter = 0.04f;  // of ρ: what is let go must be so much flatter than it must stay
-constexpr std::size_t kFewBlocks = 24;     // that one thread measures faster
+constexpr std::size_t kFewBlocks = 24;  // that one thread measures faster
 
 // Small sheets in small blocks, so that they have some; large ones in large, so that there are few.
 int block_columns(const Lattice& l) {
@@ -37,7 +37,9 @@ float square_diagonal(const Spread& s) {
   for (int k = 0; k < 3; ++k) square += (s.high[k] - s.low[k]) * (s.high[k] - s.low[k]);
   return square;
 }
-float diagonal(const Spread& s) { return std::sqrt(square_diagonal(s)); }
+float diagonal(const Spread& s) {
+  return std::sqrt(square_diagonal(s));
+}
 
 struct Middle {
   float at[3], within;
@@ -49,7 +51,9 @@ Middle middle(const Spread& s) {
   return m;
 }
 
-float dot(const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+float dot(const float* a, const float* b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 }  // namespace
 
@@ -99,7 +103,8 @@ void Blocks::measure_block(std::size_t b, const KernelTable& kernels) {
   rows.stride = l.stride;
   rows.x = from(l.x);
   rows.v = from(l.v);
-  rows.then = block.active ? ConstRow3(from(then_[std::size_t(block.sheet)])) : ConstRow3(nullptr, nullptr, nullptr);
+  rows.then = block.active ? ConstRow3(from(then_[std::size_t(block.sheet)]))
+                           : ConstRow3(nullptr, nullptr, nullptr);
   rows.bounds = &bounds_[b];
   kernels.block_bounds(rows);
   for (int k = 0; k < 3; ++k) {
@@ -186,23 +191,24 @@ Blocks::Outlook Blocks::look(float reach, float skin, float motion, double longe
     const double square = square_diagonal(both(bounds_[a].v, bounds_[b].v));
     if (way * way < square * out.seconds * out.seconds) out.seconds = way / std::sqrt(square);
   };
-  for_each_near(reach + diagonal(all) * float(longest), [&](std::size_t a, std::size_t b, float square) {
-    if (const int c = corner(a, b); c >= 0) {
-      const Flat& f = flat_[std::size_t(c)];
-      const float above = f.ratio - f.needed;
-      if (above > 0) {
-        if (double(above) < f.rate * out.seconds) out.seconds = double(above) / f.rate;
-        return;
-      }
-    } else if (square > reach * reach) {
-      return until(a, b, std::sqrt(square) - reach + motion);
-    }
-    out.touching = true;
-    until(a, b, motion);
-    if (!out.covered) return;
-    out.covered = blocks_[a].active && blocks_[b].active &&
-                  square_diagonal(both(bounds_[a].moved, bounds_[b].moved)) <= skin * skin;
-  });
+  for_each_near(
+      reach + diagonal(all) * float(longest), [&](std::size_t a, std::size_t b, float square) {
+        if (const int c = corner(a, b); c >= 0) {
+          const Flat& f = flat_[std::size_t(c)];
+          const float above = f.ratio - f.needed;
+          if (above > 0) {
+            if (double(above) < f.rate * out.seconds) out.seconds = double(above) / f.rate;
+            return;
+          }
+        } else if (square > reach * reach) {
+          return until(a, b, std::sqrt(square) - reach + motion);
+        }
+        out.touching = true;
+        until(a, b, motion);
+        if (!out.covered) return;
+        out.covered = blocks_[a].active && blocks_[b].active &&
+                      square_diagonal(both(bounds_[a].moved, bounds_[b].moved)) <= skin * skin;
+      });
   return out;
 }
 

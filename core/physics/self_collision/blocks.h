@@ -9,7 +9,8 @@
 //   ρ = sqrt(1 - |U·V|/(|U||V|)) min(|U|/|u|, |V|/|v|) - √2 max(ε_u/|u|, ε_v/|v|)
 //
 // apart, where u and v are the edges at rest, square to each other. So no pair that is 1/ρ thicknesses
-// apart at rest touches, and nearer ones are neighbours. (Volino and Magnenat-Thalmann 1994 bound normals to the same end.)
+// apart at rest touches, and nearer ones are neighbours. (Volino and Magnenat-Thalmann 1994 bound
+// normals to the same end.)
 #pragma once
 
 #include <vector>

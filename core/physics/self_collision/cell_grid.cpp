@@ -85,8 +85,7 @@ void CellGrid::build(ConstRow3 x, std::size_t particles, const Spread& box, floa
   threads.share(kShares, few, [&](std::size_t share) { deal(x, int(share)); });
   std::int32_t before = 0;
   for (int p = 0; p <= kParts; ++p)
-    for (int s = 0; s < kShares; ++s)
-      before += std::exchange(dealt_to_[p][s], before);
+    for (int s = 0; s < kShares; ++s) before += std::exchange(dealt_to_[p][s], before);
   threads.share(kShares, few, [&](std::size_t share) {
     std::int32_t at[kParts];
     for (int p = 0; p < kParts; ++p) at[p] = dealt_to_[p][share];

@@ -7,9 +7,9 @@
 namespace weft::physics {
 namespace {
 
-constexpr float kHair = 1.001f;             // cells are wider than the range, for rounding
-constexpr std::size_t kHitsReserved = 16;   // per point
-constexpr std::size_t kCandidates = 512;    // of one cell, room at first
+constexpr float kHair = 1.001f;            // cells are wider than the range, for rounding
+constexpr std::size_t kHitsReserved = 16;  // per point
+constexpr std::size_t kCandidates = 512;   // of one cell, room at first
 
 }  // namespace
 
@@ -28,7 +28,8 @@ PairSearch::PairSearch(std::size_t most_points, const std::vector<RestMetric>& m
   }
   const std::size_t n = most_points;
   sites_.resize(n);
-  for (AlignedArray<float>* a : {&x_, &y_, &z_, &u_, &w_, &apart_squared_}) *a = AlignedArray<float>(n + 16);
+  for (AlignedArray<float>* a : {&x_, &y_, &z_, &u_, &w_, &apart_squared_})
+    *a = AlignedArray<float>(n + 16);
   grid_.reserve(n);
   counts_.resize(n);
   for (Chunk& c : chunks_) {
@@ -80,10 +81,16 @@ void PairSearch::find_chunk(std::size_t k, float range, float soon) {
       c.farther.resize(c.number.size());
       c.room.resize(5 * c.number.size());
     }
-    if (c.hits.size() < c.found + std::size_t(needed)) c.hits.resize(2 * (c.found + std::size_t(needed)));
+    if (c.hits.size() < c.found + std::size_t(needed))
+      c.hits.resize(2 * (c.found + std::size_t(needed)));
     const std::size_t size = c.number.size();
     float* const room = c.room.data();
-    s.room = {{room, room + size, room + 2 * size}, room + 3 * size, room + 4 * size, c.number.data(), c.farther.data(), int(size)};
+    s.room = {{room, room + size, room + 2 * size},
+              room + 3 * size,
+              room + 4 * size,
+              c.number.data(),
+              c.farther.data(),
+              int(size)};
     s.hits = c.hits.data() + c.found;
     s.hits_room = int(c.hits.size() - c.found);
     const NearFound found = kernels_.near_pairs(s);

@@ -26,7 +26,8 @@ class PairSearch {
   static constexpr std::size_t kChunks = 64;
 
   // `metrics`: of every sheet.
-  PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics, const KernelTable& kernels);
+  PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics,
+             const KernelTable& kernels);
 
   // Where to put the points, and what they are.
   Row3 points() { return {x_.data(), y_.data(), z_.data()}; }

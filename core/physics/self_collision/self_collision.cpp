@@ -11,17 +11,17 @@ namespace weft::physics {
 namespace {
 
 constexpr double kNeighbour = 1.3;  // thicknesses: pairs nearer than that at rest are none
-constexpr double kSkin = 0.45;   // of the thickness
+constexpr double kSkin = 0.45;      // of the thickness
 // Of the thickness, relative motion between two runs: of those that touch; of others, which must
 // not come from a thickness apart to the other side.
 constexpr double kMotion = 0.4, kMotionApart = 0.9;
-constexpr double kFall = 0.002;  // of the thickness, twice the fall from rest between two runs
-constexpr int kMostSubsteps = 32;       // between two looks
+constexpr double kFall = 0.002;    // of the thickness, twice the fall from rest between two runs
+constexpr int kMostSubsteps = 32;  // between two looks
 constexpr int kMostSubstepsTouching = 12;
-constexpr int kMostSubstepsCourse = 4;  // its push acts like a spring, stable up to here
-constexpr std::size_t kFew = 4096;            // particles that one thread does faster
-constexpr std::size_t kPairsReserved = 16;    // neighbours per particle
-constexpr float kSoon = 1.15f;                // thicknesses: those that touch soon come first
+constexpr int kMostSubstepsCourse = 4;      // its push acts like a spring, stable up to here
+constexpr std::size_t kFew = 4096;          // particles that one thread does faster
+constexpr std::size_t kPairsReserved = 16;  // neighbours per particle
+constexpr float kSoon = 1.15f;              // thicknesses: those that touch soon come first
 
 std::size_t count_particles(const std::vector<Sheet>& sheets) {
   std::size_t n = 0;
@@ -109,7 +109,7 @@ void SelfContact::list_sites(Threads& threads) {
       std::copy_n(row.z + block.column, block.columns, to.z + at);
       for (int i = 0; i < block.columns; ++i)
         search_.sites()[at + std::size_t(i)] = {std::uint16_t(block.sheet), std::uint16_t(j),
-                                       std::uint16_t(block.column + i)};
+                                                std::uint16_t(block.column + i)};
     }
   });
 }
@@ -241,7 +241,8 @@ int SelfContact::run(double dt, int since, Threads& threads) {
   const double pull = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
   const double fall = std::sqrt(kFall * thickness_ / std::max(pull, 1e-12)) / dt;
   double most = kMostSubsteps;
-  if (now.touching) most = course_ ? kMostSubstepsCourse : std::min<double>(fall, kMostSubstepsTouching);
+  if (now.touching)
+    most = course_ ? kMostSubstepsCourse : std::min<double>(fall, kMostSubstepsTouching);
   const double touching = kMotion * thickness_ / std::max(speed, 1e-12);
   return int(std::clamp(std::min(now.seconds, touching) / dt, 1.0, std::max(1.0, most)));
 }

@@ -88,16 +88,16 @@ class SelfContact {
   std::size_t count_ = 0;                // particles of active blocks
   std::vector<std::int32_t> listed_;     // sorted particle -> number into pairs_.site
   NearPairs pairs_;
-  struct {                               // of pairs_, 16 owners at a time
-    std::vector<std::size_t> first;      // of a group's slots, one more than groups
-    std::vector<std::int32_t> neighbour; // slots x 16
-    std::vector<float> friction;         // of every owner
+  struct {                                // of pairs_, 16 owners at a time
+    std::vector<std::size_t> first;       // of a group's slots, one more than groups
+    std::vector<std::int32_t> neighbour;  // slots x 16
+    std::vector<float> friction;          // of every owner
     std::vector<std::int32_t> course;
   } slots_;
-  std::vector<float> speeds_;            // of a group's pairs that touch, squared, at most
+  std::vector<float> speeds_;             // of a group's pairs that touch, squared, at most
   std::vector<Body> bodies_, separated_;  // of pairs_.site, up to whole groups, and 16 far away
-  float thickness_ = 0;  // greatest of the sheets [m]
-  bool course_ = false;  // whether any sheet has the course's rule
+  float thickness_ = 0;                   // greatest of the sheets [m]
+  bool course_ = false;                   // whether any sheet has the course's rule
   bool valid_ = false;
   std::int64_t runs_ = 0, searches_ = 0, passed_over_ = 0;
 };

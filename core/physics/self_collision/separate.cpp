@@ -8,9 +8,9 @@
 namespace weft::physics {
 namespace {
 
-constexpr int kIterations = 3;          // of pushing apart, in one run
-constexpr std::size_t kGroups = 32;     // of a task
-constexpr std::size_t kFewGroups = 64;  // that one thread does faster
+constexpr int kIterations = 3;                                    // of pushing apart, in one run
+constexpr std::size_t kGroups = 32;                               // of a task
+constexpr std::size_t kFewGroups = 64;                            // that one thread does faster
 constexpr Body kFarAway{{1e18f, 1e18f, 1e18f, 0}, {0, 0, 0, 0}};  // its square is still finite
 
 }  // namespace
@@ -66,10 +66,11 @@ double SelfContact::respond(double dt, int since, Threads& threads) {
   for (int i = 0; i < iterations; ++i) {
     each([&](std::size_t g) {
       const auto first = int(16 * g);
-      speeds_[g] = kernels_.separate({bodies_.data(), first, int(slots_.first[g + 1] - slots_.first[g]),
-                         slots_.neighbour.data() + 16 * slots_.first[g], slots_.friction.data() + first,
-                         slots_.course.data() + first, float(since / steps), float(1 / dt),
-                         separated_.data() + first});
+      speeds_[g] =
+          kernels_.separate({bodies_.data(), first, int(slots_.first[g + 1] - slots_.first[g]),
+                             slots_.neighbour.data() + 16 * slots_.first[g],
+                             slots_.friction.data() + first, slots_.course.data() + first,
+                             float(since / steps), float(1 / dt), separated_.data() + first});
     });
     std::swap(bodies_, separated_);
   }

@@ -28,13 +28,18 @@ std::size_t count_particles(const std::vector<Sheet>& sheets) {
 std::vector<RestMetric> metrics_of(const std::vector<Sheet>& sheets) {
   std::vector<RestMetric> metrics;
   for (const Sheet& s : sheets)
-    metrics.push_back({s.lattice->columns, s.lattice->rows, s.uu, s.uv, s.vv, 0.01f * std::min(s.uu, s.vv)});
+    metrics.push_back(
+        {s.lattice->columns, s.lattice->rows, s.uu, s.uv, s.vv, 0.01f * std::min(s.uu, s.vv)});
   return metrics;
 }
 
-float length(const float* a) { return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
+float length(const float* a) {
+  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
 
-float half_diagonal(const Sheet& s) { return 0.5f * std::sqrt(s.uu + s.vv + 2 * std::abs(s.uv)); }
+float half_diagonal(const Sheet& s) {
+  return 0.5f * std::sqrt(s.uu + s.vv + 2 * std::abs(s.uv));
+}
 
 }  // namespace
 
@@ -83,7 +88,8 @@ void SurfaceContact::fill_square(std::size_t sheet, int row, int column) {
   const Lattice& l = *s.lattice;
   Square& q = squares_[number(sheet, row, column)];
   for (int c = 0; c < 4; ++c) {
-    const int i = std::min(column + (c & 1), l.columns - 1), j = std::min(row + (c >> 1), l.rows - 1);
+    const int i = std::min(column + (c & 1), l.columns - 1),
+              j = std::min(row + (c >> 1), l.rows - 1);
     for (int k = 0; k < 3; ++k) {
       q.x[c][k] = l.x.at(k, j, i);
       q.v[c][k] = l.v.at(k, j, i);
@@ -124,7 +130,8 @@ float SurfaceContact::list_squares(Threads& threads, Spread& box) {
       for (int i = 0; i < l.columns; ++i) {
         const Square& q = squares_[number(s, j, i)];
         float middle[3], radius = 0;
-        for (int k = 0; k < 3; ++k) middle[k] = 0.25f * (q.x[0][k] + q.x[1][k] + q.x[2][k] + q.x[3][k]);
+        for (int k = 0; k < 3; ++k)
+          middle[k] = 0.25f * (q.x[0][k] + q.x[1][k] + q.x[2][k] + q.x[3][k]);
         for (int c = 0; c < 4; ++c) {
           const float d[3] = {q.x[c][0] - middle[0], q.x[c][1] - middle[1], q.x[c][2] - middle[2]};
           radius = std::max(radius, length(d));
@@ -253,7 +260,8 @@ SurfaceContact::Motion SurfaceContact::hold(double seconds) {
     ++held_back_;
     const float back = bound / far_off;
     const float out = (u[0] * d[0] + u[1] * d[1] + u[2] * d[2]) / far_off;
-    const float lost = std::clamp(float((far_off - bound) / std::max(seconds, 1e-9)), 0.0f, std::max(out, 0.0f));
+    const float lost =
+        std::clamp(float((far_off - bound) / std::max(seconds, 1e-9)), 0.0f, std::max(out, 0.0f));
     for (int k = 0; k < 3; ++k) {
       l.x.at(k, j, i) = place.x[k] + m.common[k] + d[k] * back;
       l.v.at(k, j, i) -= d[k] / far_off * lost;
@@ -279,7 +287,9 @@ int SurfaceContact::run(double dt, int since, Threads& threads) {
 }
 
 std::size_t SurfaceContact::bytes() const {
-  return squares_.size() * (sizeof(Square) + sizeof(SquareSum) + sizeof(Place) + sizeof(SquareBox) + 4) + search_.bytes();
+  return squares_.size() *
+             (sizeof(Square) + sizeof(SquareSum) + sizeof(Place) + sizeof(SquareBox) + 4) +
+         search_.bytes();
 }
 
 }  // namespace weft::physics

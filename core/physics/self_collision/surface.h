@@ -3,13 +3,13 @@
 // From time to time the least distance d of anything that a vertex belongs to from anything else that
 // shares no corner with it is measured. What is nearer than the thickness is pushed apart then
 // (kernels/surface.cpp), by a quarter of d at most, and the vertex has its place there, and a bound: a
-// fifth of d. While no vertex is farther from its place than its bound, whatever two things were d apart
-// are at least (1 - 2 · (0.25 + 0.2)) d apart, on the whole way from there: nothing can have passed. So
-// what has moved too far is put back to its bound, and all is measured anew before bounds matter much.
-// Below a floor bounds are nothing: however a collider or a pull presses, only pushing apart goes on, so
-// that no distance dwindles to what rounding could cross. The common part of all motion is left out of
-// account. (Conservative bounds on motion, as in Chen et al. 2025, Offset Geometric Contact; distances
-// as in Bridson et al. 2002.)
+// fifth of d. While no vertex is farther from its place than its bound, whatever two things were d
+// apart are at least (1 - 2 · (0.25 + 0.2)) d apart, on the whole way from there: nothing can have
+// passed. So what has moved too far is put back to its bound, and all is measured anew before
+// bounds matter much. Below a floor bounds are nothing: however a collider or a pull presses, only
+// pushing apart goes on, so that no distance dwindles to what rounding could cross. The common part
+// of all motion is left out of account. (Conservative bounds on motion, as in Chen et al. 2025,
+// Offset Geometric Contact; distances as in Bridson et al. 2002.)
 //
 // Squares of the sheets are found by the same search as particles (pair_search.h).
 #pragma once
@@ -47,10 +47,10 @@ class SurfaceContact {
   struct Place {
     float x[3], bound;  // m
   };
-  struct Motion {  // of all vertices
-    float common[3];   // m
-    float share;       // greatest |displacement|/bound
-    float rate;        // greatest speed/bound [1/s]
+  struct Motion {     // of all vertices
+    float common[3];  // m
+    float share;      // greatest |displacement|/bound
+    float rate;       // greatest speed/bound [1/s]
   };
 
   SurfaceContact(std::vector<Sheet> sheets, const KernelTable& kernels);
@@ -61,22 +61,23 @@ class SurfaceContact {
   void set_places_and_push(std::size_t sheet, int row);
   Motion hold(double seconds);
   std::size_t number(std::size_t sheet, int row, int column) const {
-    return first_[sheet] + std::size_t(row) * std::size_t(sheets_[sheet].lattice->columns) + std::size_t(column);
+    return first_[sheet] + std::size_t(row) * std::size_t(sheets_[sheet].lattice->columns) +
+           std::size_t(column);
   }
 
   const std::vector<Sheet> sheets_;
   const KernelTable& kernels_;
-  std::vector<std::size_t> first_;  // number of every sheet's first particle
-  PairSearch search_;               // among squares
-  std::vector<Square> squares_;     // one for each particle, and one far away
-  std::vector<std::int32_t> listed_;  // point of the search -> square
+  std::vector<std::size_t> first_;                 // number of every sheet's first particle
+  PairSearch search_;                              // among squares
+  std::vector<Square> squares_;                    // one for each particle, and one far away
+  std::vector<std::int32_t> listed_;               // point of the search -> square
   std::vector<std::vector<std::int32_t>> others_;  // of one square, a room for each chunk
   std::vector<SquareBox> boxes_;
   std::vector<SquareSum> sums_;
   std::vector<Place> places_;
   float reach_ = 0, close_ = 0, floor_ = 0;  // m; floor_: a distance that motion does not go below
   bool valid_ = false;
-  int since_ = 0;                // substeps since all was measured
+  int since_ = 0;  // substeps since all was measured
   std::int64_t measured_ = 0, held_back_ = 0;
 };
 

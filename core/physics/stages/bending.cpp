@@ -72,7 +72,8 @@ class BendingConstraints final : public WholeStage {
         strips_(parts.lattice, parts.kernels, kBendScratch),
         compliant_(compliant) {
     if (parts.scene.solver.order == 2) strips_.follow_masses();
-    if (left(parts, &BendLinks::along, 0)) torn_ = TurnedLinks<float>(parts.lattice, strips_.row_groups());
+    if (left(parts, &BendLinks::along, 0))
+      torn_ = TurnedLinks<float>(parts.lattice, strips_.row_groups());
   }
 
   std::size_t bytes() const override { return strips_.bytes() + torn_.bytes(); }
@@ -167,8 +168,8 @@ class BendingConstraints final : public WholeStage {
   ClothParts parts_;
   Strips strips_;
   TurnedLinks<float> torn_;  // of the rows
-  bool compliant_;        // velocities gain the corrections as computed
-  float inverse_dt_ = 0;  // 1/s, or 0
+  bool compliant_;           // velocities gain the corrections as computed
+  float inverse_dt_ = 0;     // 1/s, or 0
 };
 
 }  // namespace

@@ -54,8 +54,7 @@ StartInside start_inside(const Lattice& l, const Collider& collider) {
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i) {
       const Vec3 x{l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)};
-      const double depth =
-          l.w(j, i) > 0 ? collider.offset - signed_distance(collider, 0, x) : 0;
+      const double depth = l.w(j, i) > 0 ? collider.offset - signed_distance(collider, 0, x) : 0;
       found.deepest = std::max(found.deepest, depth);
       found.particles += depth > kTouching;
     }

@@ -29,7 +29,7 @@ struct LineFamily {
   const Family* family = nullptr;
   AlignedArray<float> compliance;  // [row][kStripLines], or one row where all are alike
   bool alike = true;
-  AlignedArray<float> lambda;  // shaped like the lattice; families along rows: like the tiles
+  AlignedArray<float> lambda;       // shaped like the lattice; families along rows: like the tiles
   TurnedLinks<std::int32_t> links;  // of families along rows that can tear
 };
 
@@ -150,7 +150,8 @@ class Line final : public WholeStage {
     for (LineFamily& l : along_rows_) {
       const int n = l.family->di;
       const std::int32_t* alive =
-          l.family->links ? l.links.follow(group, *parts_.topology, l.family->links->row(0)) : nullptr;
+          l.family->links ? l.links.follow(group, *parts_.topology, l.family->links->row(0))
+                          : nullptr;
       for (int start = 0; start < n; ++start) {
         LineStrip p{};
         p.x = memory.tile.row(start);

@@ -17,12 +17,11 @@ class PlainRowsStage : public RowStage {
                  const ClothParts& parts)
       : RowStage(stage_name, stage_detail, 2, parts.constraints(), "constraints"), parts_(parts) {}
 
-  void reserve_slots(int slots) override {
-    carry_ = Rows(kCarries * slots, parts_.lattice.stride);
-  }
+  void reserve_slots(int slots) override { carry_ = Rows(kCarries * slots, parts_.lattice.stride); }
   std::size_t bytes() const override { return carry_.bytes(); }
   void start(const Substep& s) override {
-    for (int k = 0; k < kCarries; ++k) zero(carry_.row(kCarries * s.slot + k), parts_.lattice.stride);
+    for (int k = 0; k < kCarries; ++k)
+      zero(carry_.row(kCarries * s.slot + k), parts_.lattice.stride);
   }
 
  protected:

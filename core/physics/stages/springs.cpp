@@ -55,9 +55,7 @@ class FamilySprings final : public RowStage {
     force_ = Rows((reach + 1) * slots, parts_.lattice.stride);
     scratch_ = AlignedArray<float>(kGuard + std::size_t(slots) * 3 * parts_.lattice.stride);
   }
-  std::size_t bytes() const override {
-    return force_.bytes() + scratch_.size() * sizeof(float);
-  }
+  std::size_t bytes() const override { return force_.bytes() + scratch_.size() * sizeof(float); }
 
   void start(const Substep& s) override {
     for (int k = 0; k <= reach; ++k)

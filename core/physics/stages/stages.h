@@ -28,7 +28,7 @@ struct ClothParts {
   const std::vector<Family>& families;
   const KernelTable& kernels;
   const std::vector<StartInside>& starts;  // of every collider
-  const Topology* topology = nullptr;  // null: the cloth cannot tear
+  const Topology* topology = nullptr;      // null: the cloth cannot tear
   std::int64_t particles() const { return std::int64_t(lattice.columns) * lattice.rows; }
   std::int64_t constraints() const;
 };
@@ -67,7 +67,7 @@ struct SweepOptions {
   bool compliant = false;
   Multipliers* multipliers = nullptr;
   Rows* corrections = nullptr;  // the compliant Gauss–Seidel sweep gathers what it finds there
-  double limit = 0;  // > 0: the strain limit's one-sided sweep
+  double limit = 0;             // > 0: the strain limit's one-sided sweep
 };
 void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options, Stages& stages);
 // After the sweeps: positions and velocities gain the corrections, which are then zero again.
