@@ -1,21 +1,25 @@
-// Small runs on two worker threads, for the thread sanitizer (and quick enough to run anywhere).
+// Short runs on several threads, for the thread sanitizer (and quick enough to run anywhere).
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <thread>
+#include <vector>
 
+#include "physics/threads.h"
 #include "weft/simulation.h"
 
 namespace weft {
 namespace {
 
+// Of 17000 particles: large enough to be shared out by every method (passes.cpp).
 Scene falling_sheet(Method method) {
   Cloth cloth;
-  cloth.grid.nx = cloth.grid.ny = 40;
-  cloth.pins = {{0, 0, {}}, {39, 0, {}}};
+  cloth.grid.nx = cloth.grid.ny = 130;
+  cloth.pins = {{0, 0, {}}, {129, 0, {}}};
   Scene scene;
   scene.cloths = {cloth};
   scene.solver.method = method;
-  scene.time.substeps = 20;
+  scene.time.substeps = 10;
   scene.colliders = {{Sphere{{0.5, -0.2, 0.5}, 0.2}, {}, 0.01, {}, false}};
   return scene;
 }
@@ -32,6 +36,43 @@ TEST(Threads, TwoGiveWhatOneGives) {
   for (const Method method : {Method::spring, Method::compliant, Method::positional}) {
     const Scene scene = falling_sheet(method);
     EXPECT_EQ(hash_after(scene, 2), hash_after(scene, 1));
+  }
+}
+
+TEST(Threads, TwoGiveWhatOneGivesByWholeLines) {
+  Scene scene = falling_sheet(Method::compliant);
+  scene.solver.sweep = Sweep::line;
+  scene.cloths[0].bending = 1e-5;
+  EXPECT_EQ(hash_after(scene, 2), hash_after(scene, 1));
+}
+
+// Every share of every round is worked on once, by a thread of its own number, after all of the round
+// before.
+TEST(Threads, ShareOutRoundAfterRound) {
+  for (const int count : {1, 2, 3, 8}) {
+    physics::Threads threads(count);
+    std::vector<int> rounds(100, 0);
+    std::vector<int> worked(std::size_t(count), 0);
+    const auto round = [&](int number, std::size_t shares) {
+      threads.share(shares, false, [&](std::size_t n) {
+        EXPECT_EQ(rounds[n], number);
+        if (count > 1) ++worked[std::size_t(physics::Threads::index())];
+      });
+      threads.share(shares, false, [&](std::size_t n) { ++rounds[n]; });
+    };
+    threads.together([&] {
+      for (int number = 0; number < 300; ++number) round(number, rounds.size());
+    });
+    round(300, rounds.size());  // woken for once
+    std::size_t all = 0;
+    threads.together([&] {
+      threads.share(70000, false, [&](std::size_t n) {
+        if (n == 69999) all = n;
+      });
+    });
+    EXPECT_EQ(all, 69999u);
+    EXPECT_THROW(threads.together([] { throw std::runtime_error("no work"); }), std::runtime_error);
+    round(301, rounds.size());
   }
 }
 

@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "physics/threads.h"
+
 namespace weft::physics {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr double kConstraintNs = 0.5, kParticleNs = 0.5;
 
 // Particles times substeps, and particles, from which several threads are faster than one.
 constexpr double kSharedRun = 150000;
-constexpr int kSharedSubstep = 4096;
+constexpr int kSharedSubstep = 15000;
 
 double row_nanoseconds(const std::vector<RowStage*>& stages, int rows) {
   double ns = 0;
@@ -51,26 +53,33 @@ bool Passes::worth_sharing(int particles, int substeps) const {
 
 void Passes::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake) {
   if (rows_only()) {
-    for (Pass& p : passes_) p.wavefront->run(substeps, threads, awake);
+    threads.together([&] {
+      for (Pass& p : passes_) p.wavefront->run(substeps, threads, awake);
+    });
     return;
   }
   for (Pass& p : passes_)
     if (p.whole && substeps.dt != prepared_dt_) p.whole->prepare(substeps.dt);
   prepared_dt_ = substeps.dt;
-  for (int s = 0; s < substeps.count; ++s) {
-    const Substep substep = substeps.at(s);
-    for (Pass& p : passes_) {
-      if (p.wavefront) {
-        p.wavefront->run({substeps.time + s * substeps.dt, substeps.dt, 1, substep.kick}, threads,
-                         awake);
-        continue;
-      }
-      const auto before = std::chrono::steady_clock::now();
-      p.whole->run(substep, threads);
-      if (profile_.empty()) continue;
-      const auto spent = std::chrono::steady_clock::now() - before;
-      profile_[p.first] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+  threads.together([&] {
+    for (int s = 0; s < substeps.count; ++s) run_substep(substeps, s, threads, awake);
+  });
+}
+
+void Passes::run_substep(const Substeps& substeps, int s, Threads& threads,
+                         std::span<const RowSpan> awake) {
+  const Substep substep = substeps.at(s);
+  for (Pass& p : passes_) {
+    if (p.wavefront) {
+      p.wavefront->run({substeps.time + s * substeps.dt, substeps.dt, 1, substep.kick}, threads,
+                       awake);
+      continue;
     }
+    const auto before = std::chrono::steady_clock::now();
+    p.whole->run(substep, threads);
+    if (profile_.empty()) continue;
+    const auto spent = std::chrono::steady_clock::now() - before;
+    profile_[p.first] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
   }
 }
 

@@ -37,6 +37,9 @@ class Passes {
     std::unique_ptr<Wavefront> wavefront;
     std::size_t count = 1;  // stages
   };
+  void run_substep(const Substeps& substeps, int s, Threads& threads,
+                   std::span<const RowSpan> awake);
+
   std::vector<Pass> passes_;
   std::size_t whole_stages_ = 0;
   double prepared_dt_ = 0;

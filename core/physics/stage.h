@@ -71,8 +71,9 @@ class Stage {
 using Stages = std::vector<std::unique_ptr<Stage>>;
 
 // Works on one row after another: work on row j may read and write rows j … j+reach of the lattice,
-// and comes in the order j = 0, 1, 2 … within a substep. A stage may carry data from row to row in
-// buffers of its own, one set per slot. It overrides run for one row, or for a range of rows.
+// and comes in the order j = 0, 1, 2 … within a substep; with a reach of 0 in any order, several rows
+// at once. A stage of more reach may carry data from row to row in buffers of its own, one set per
+// slot. It overrides run for one row, or for a range of rows.
 class RowStage : public Stage {
  public:
   RowStage(std::string stage_name, std::string stage_detail, int rows_reached, std::int64_t touched,

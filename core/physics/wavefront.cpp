@@ -1,8 +1,6 @@
 // The wavefront over rows and substeps (wavefront.h).
 #include "physics/wavefront.h"
 
-#include <oneapi/tbb/task_group.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -20,6 +18,9 @@ constexpr int kManyStagesHeight = 16;
 constexpr int kSharedHeight = 16;  // so that all threads are busy to the end of a frame
 // The least work worth a task [ns].
 constexpr double kTaskNanoseconds = 12000;
+constexpr double kSharedNanoseconds = 4000;  // and sharing out where nobody has to be woken
+
+constexpr int kNone = -1;  // no tile
 
 }  // namespace
 
@@ -34,14 +35,14 @@ Wavefront::Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_by
     : stages_(std::move(stages)),
       rows_(rows),
       row_bytes_(row_bytes),
-      row_nanoseconds_(row_nanoseconds) {}
+      row_nanoseconds_(row_nanoseconds) {
+  for (const RowStage* s : stages_) reach_ += s->reach;
+}
 
 // One thread and a lattice that fits the cache: one tile a substep. Else tiles as tall as the cache
 // allows, or as a task is worth, and as many substeps a chunk as its lean permits.
 void Wavefront::choose_tiles(int count, int threads) {
-  int reach = 0;
-  for (const RowStage* s : stages_) reach += s->reach;
-  reach = std::max(reach, 1);
+  const int reach = std::max(reach_, 1);
   const bool fits = row_bytes_ * rows_ <= kTileBytes;
   chunk_substeps_ = 1;
   height_ = rows_ + reach;
@@ -74,7 +75,10 @@ void Wavefront::choose_tiles(int count, int threads) {
 }
 
 void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake) {
-  choose_tiles(substeps.count, threads.count());
+  // Tiles of one substep follow one on the other, unless no row reaches another.
+  const bool apart = reach_ == 0 && substeps.count == 1;
+  const int at_once = substeps.count > 1 || apart ? threads.count() : 1;
+  choose_tiles(substeps.count, at_once);
   if (substeps.dt != prepared_dt_)
     for (RowStage* s : stages_) s->prepare(substeps.dt);
   prepared_dt_ = substeps.dt;
@@ -83,7 +87,11 @@ void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const 
     for (RowStage* s : stages_) s->reserve_slots(slots);
     slots_ = slots;
   }
-  if (threads.count() > 1 && tiles_ > 1) return run_parallel(r, threads);
+  if (apart)
+    return threads.share(std::size_t(tiles_),
+                         at_once == 1 || row_nanoseconds_ * rows_ < kSharedNanoseconds,
+                         [&](std::size_t k) { run_tile(r, int(k), 0); });
+  if (at_once > 1 && tiles_ > 1) return run_parallel(r, threads);
   for (int c = 0; c < r.chunks; ++c)
     for (int k = 0; k < tiles_; ++k) run_tile(r, k, c);
 }
@@ -121,12 +129,14 @@ void Wavefront::run_tile(const Run& r, int tile, int chunk) const {
   }
 }
 
-// Every tile counts the tiles it still waits for; whoever finishes the last of them runs it.
+// Every tile counts the tiles it still waits for. Whoever finishes the last of them goes on with it,
+// and puts others that have become ready into a queue, for whoever comes next.
 void Wavefront::run_parallel(const Run& r, Threads& threads) {
   const int all = tiles_ * r.chunks;
-  if (all > waits_size_) {
+  if (all > room_) {
     waits_ = std::make_unique<std::atomic<int>[]>(all);
-    waits_size_ = all;
+    queue_ = std::make_unique<std::atomic<int>[]>(all);
+    room_ = all;
   }
   for (int c = 0; c < r.chunks; ++c)
     for (int k = 0; k < tiles_; ++k) {
@@ -135,41 +145,52 @@ void Wavefront::run_parallel(const Run& r, Threads& threads) {
       const bool before_all = c > 0 && k == std::max(0, tiles_ - 1 - span_) && !before;
       const bool slot = c >= ring_ && k == 0;
       waits_[c * tiles_ + k].store(left + before + before_all + slot, std::memory_order_relaxed);
+      queue_[c * tiles_ + k].store(kNone, std::memory_order_relaxed);
     }
-  oneapi::tbb::task_group group;
-  struct Worker {
-    Wavefront& w;
-    const Run& r;
-    oneapi::tbb::task_group& group;
-    void go(int k, int c) const {
-      for (;;) {
-        w.run_tile(r, k, c);
-        int next[3][2], ready = 0;
-        const auto done = [&](int kk, int cc) {
-          if (w.waits_[cc * w.tiles_ + kk].fetch_sub(1, std::memory_order_acq_rel) == 1)
-            next[ready][0] = kk, next[ready][1] = cc, ++ready;
-        };
-        if (k + 1 < w.tiles_) done(k + 1, c);
-        if (c + 1 < r.chunks) {
-          if (k == w.tiles_ - 1)
-            done(std::max(0, w.tiles_ - 1 - w.span_), c + 1);
-          else if (k >= w.span_)
-            done(k - w.span_, c + 1);
-        }
-        if (k == w.tiles_ - 1 && c + w.ring_ < r.chunks) done(0, c + w.ring_);
-        if (ready == 0) return;
-        for (int n = 1; n < ready; ++n)
-          group.run([self = *this, kk = next[n][0], cc = next[n][1]] { self.go(kk, cc); });
-        k = next[0][0];
-        c = next[0][1];
-      }
+  left_.store(all, std::memory_order_relaxed);
+  taken_.store(0, std::memory_order_relaxed);
+  queue_[0].store(0, std::memory_order_relaxed);
+  queued_.store(1, std::memory_order_relaxed);
+  threads.share(std::size_t(threads.count()), false, [&](std::size_t) { work(r); });
+}
+
+// One thread's part: tiles from the queue, in the order in which they became ready.
+void Wavefront::work(const Run& r) {
+  const int all = tiles_ * r.chunks;
+  for (int place; (place = taken_.fetch_add(1, std::memory_order_relaxed)) < all;) {
+    int tile;
+    for (Patience patience; (tile = queue_[place].load(std::memory_order_acquire)) == kNone;) {
+      if (left_.load(std::memory_order_acquire) == 0) return;
+      patience.wait();
     }
+    while (tile != kNone) tile = run_and_release(r, tile);
+  }
+}
+
+// Runs a tile, and returns one that has become ready by that, or kNone.
+int Wavefront::run_and_release(const Run& r, int tile) {
+  const int k = tile % tiles_, c = tile / tiles_;
+  run_tile(r, k, c);
+  int next = kNone;
+  const auto release = [&](int kk, int cc) {
+    const int waiting = cc * tiles_ + kk;
+    if (waits_[waiting].fetch_sub(1, std::memory_order_acq_rel) > 1) return;
+    if (next == kNone)
+      next = waiting;
+    else
+      queue_[queued_.fetch_add(1, std::memory_order_relaxed)].store(waiting,
+                                                                    std::memory_order_release);
   };
-  const Worker worker{*this, r, group};
-  threads.run([&] {
-    group.run([&] { worker.go(0, 0); });
-    group.wait();
-  });
+  if (k + 1 < tiles_) release(k + 1, c);
+  if (c + 1 < r.chunks) {
+    if (k == tiles_ - 1)
+      release(std::max(0, tiles_ - 1 - span_), c + 1);
+    else if (k >= span_)
+      release(k - span_, c + 1);
+  }
+  if (k == tiles_ - 1 && c + ring_ < r.chunks) release(0, c + ring_);
+  left_.fetch_sub(1, std::memory_order_acq_rel);
+  return next;
 }
 
 }  // namespace weft::physics

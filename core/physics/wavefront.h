@@ -38,18 +38,23 @@ class Wavefront {
   void run_tile(const Run& run, int tile, int chunk) const;
   static void run_rows(const Run& run, RowStage& stage, RowSpan rows, const Substep& substep);
   void run_parallel(const Run& run, Threads& threads);
+  void work(const Run& run);
+  int run_and_release(const Run& run, int tile);
 
   std::vector<RowStage*> stages_;
   int rows_;
   std::size_t row_bytes_;
   double row_nanoseconds_;
+  int reach_ = 0;  // of all stages together
   std::span<std::atomic<std::int64_t>> profile_;
 
   double prepared_dt_ = 0;
   int chunk_substeps_ = 1, height_ = 1, tiles_ = 1, span_ = 1, ring_ = 1, slots_ = 0;
-  std::vector<int> offset_;  // of every stage of every substep of a chunk
-  std::unique_ptr<std::atomic<int>[]> waits_;
-  int waits_size_ = 0;
+  std::vector<int> offset_;                    // of every stage of every substep of a chunk
+  std::unique_ptr<std::atomic<int>[]> waits_;  // of every tile: for how many others
+  std::unique_ptr<std::atomic<int>[]> queue_;  // tiles in the order in which they became ready
+  int room_ = 0;                               // of both
+  std::atomic<int> left_ = 0, queued_ = 0, taken_ = 0;
 };
 
 }  // namespace weft::physics

@@ -27,6 +27,7 @@ using physics::TransposeRows;
 // Pivots below belong to no constraint, or to one of no length and so no direction; their reciprocals
 // would not be finite.
 constexpr float kTinyPivot = 1e-30f;
+constexpr int kForesight = 8;  // rows
 
 // Writes only the lanes of the mask: what lies in the others may belong to another thread.
 WEFT_INLINE void store_where(float* p, WideInt mask, Wide v) {
@@ -108,6 +109,15 @@ struct Block {
   WEFT_INLINE float* scratch(int m) const {
     return p.scratch + static_cast<std::ptrdiff_t>(m) * kStripScratch + offset;
   }
+  // Asks for a row that will be written: rows are too far apart for the processor to foresee them, and
+  // another core may hold them. Any address will do, past the last row, too.
+  WEFT_INLINE void foresee(Row3 r, int m) const {
+#if WEFT_LANES > 1
+    for (const float* row : {r.x, r.y, r.z}) asm volatile("prefetchw %0" : : "m"(row[at(m)]));
+#else
+    (void)r, (void)m;
+#endif
+  }
   // e_c where the constraint exists, else 0.
   WEFT_INLINE Wide3 existing(Wide3 e, int m) const {
     const int lane = line + m * p.lean;
@@ -120,6 +130,7 @@ struct Block {
 
   template <bool kWhole>
   WEFT_INLINE void eliminate(int m) {
+    if constexpr (kWhole) foresee(p.x, m + kForesight);
     const Wide3 far = load3_at(p.x, at(m + 1));
     const Wide w_far = load(p.w + at(m + 1));
     Wide3 e = holding(far - x, m);
@@ -151,7 +162,9 @@ struct Block {
     }
     is_whole(m) ? eliminate<true>(m) : eliminate<false>(m);
   }
-  WEFT_INLINE bool is_whole(int m) const { return m >= range.whole_begin && m < range.whole_end; }
+  WEFT_INLINE bool is_whole(int m) const {
+    return m >= range.whole_begin && m < range.whole_end;
+  }
 
   // Moves particle m by the pulls of the constraints before and after it.
   template <bool kWhole>
@@ -172,6 +185,7 @@ struct Block {
 
   template <bool kWhole>
   WEFT_INLINE void substitute(int m) {
+    if constexpr (kWhole && kVelocity) foresee(p.v, m - kForesight);
     const Wide3 near = load3_at(p.x, at(m));
     Wide3 e = holding(x - near, m);
     if constexpr (!kWhole) e = existing(e, m);
@@ -262,36 +276,38 @@ void solve(const LineStrip& p) {
     solve_blocks<kLambda, kVelocity, 1>(p, first);
 }
 
-// A 4 by 4 tile from one layout to the other.
-WEFT_INLINE void transpose4(const float* from, std::ptrdiff_t from_step, float* to,
-                            std::ptrdiff_t to_step, bool add) {
-#if WEFT_LANES > 1
-  __m128 a = _mm_loadu_ps(from), b = _mm_loadu_ps(from + from_step),
-         c = _mm_loadu_ps(from + 2 * from_step), d = _mm_loadu_ps(from + 3 * from_step);
-  _MM_TRANSPOSE4_PS(a, b, c, d);
-  if (add) {
-    a = _mm_add_ps(_mm_loadu_ps(to), a);
-    b = _mm_add_ps(_mm_loadu_ps(to + to_step), b);
-    c = _mm_add_ps(_mm_loadu_ps(to + 2 * to_step), c);
-    d = _mm_add_ps(_mm_loadu_ps(to + 3 * to_step), d);
+// What lanes_to_rows does with neighbouring columns of a row.
+template <class T>
+WEFT_INLINE void put(const TransposeRows& t, std::ptrdiff_t at, T value) {
+  typedef T Loose __attribute__((aligned(4), may_alias));
+  auto* to = reinterpret_cast<Loose*>(t.rows + at);
+  if (!t.rates) {
+    *to = value;
+    return;
   }
-  _mm_storeu_ps(to, a);
-  _mm_storeu_ps(to + to_step, b);
-  _mm_storeu_ps(to + 2 * to_step, c);
-  _mm_storeu_ps(to + 3 * to_step, d);
-#else
-  for (int i = 0; i < 4; ++i)
-    for (int j = 0; j < 4; ++j) {
-      float& t = to[j * to_step + i];
-      t = (add ? t : 0.0f) + from[i * from_step + j];
-    }
-#endif
+  auto* rate = reinterpret_cast<Loose*>(t.rates + at);
+  *to = *to + value;
+  *rate = *rate + value * t.rate;
 }
-
-#if WEFT_LANES == 16
 
 typedef float Quad __attribute__((vector_size(16)));
 typedef Quad QuadLoose __attribute__((aligned(4), may_alias));
+
+// A 4 by 4 tile.
+WEFT_INLINE void transpose4(Quad (&v)[4]) {
+  const auto low = [](Quad a, Quad b) { return __builtin_shufflevector(a, b, 0, 4, 1, 5); };
+  const auto high = [](Quad a, Quad b) { return __builtin_shufflevector(a, b, 2, 6, 3, 7); };
+  const Quad a = low(v[0], v[1]), b = high(v[0], v[1]), c = low(v[2], v[3]), d = high(v[2], v[3]);
+  v[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  v[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  v[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  v[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+WEFT_INLINE Quad& quad(float* p) {
+  return *reinterpret_cast<QuadLoose*>(p);
+}
+
+#if WEFT_LANES == 16
 
 // Four 16-lane vectors whose quarters are 4 by 4 tiles, each tile transposed.
 WEFT_INLINE void transpose_quarters(Wide (&v)[4]) {
@@ -320,11 +336,9 @@ WEFT_INLINE void transpose_quarters(Wide (&v)[4]) {
 WEFT_INLINE void columns_to_lanes(const TransposeRows& t, int i) {
   Wide v[4];
   for (int r = 0; r < 4; ++r) {
-    const auto quad = [&](int row) {
-      return *reinterpret_cast<const QuadLoose*>(t.rows + row * t.stride + i);
-    };
-    const auto ab = __builtin_shufflevector(quad(r), quad(r + 4), 0, 1, 2, 3, 4, 5, 6, 7);
-    const auto cd = __builtin_shufflevector(quad(r + 8), quad(r + 12), 0, 1, 2, 3, 4, 5, 6, 7);
+    const auto row = [&](int n) -> Quad { return quad(t.rows + n * t.stride + i); };
+    const auto ab = __builtin_shufflevector(row(r), row(r + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+    const auto cd = __builtin_shufflevector(row(r + 8), row(r + 12), 0, 1, 2, 3, 4, 5, 6, 7);
     v[r] = __builtin_shufflevector(ab, cd, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   }
   transpose_quarters(v);
@@ -339,10 +353,7 @@ WEFT_INLINE void lanes_to_columns(const TransposeRows& t, int i) {
                            __builtin_shufflevector(v[r], v[r], 4, 5, 6, 7),
                            __builtin_shufflevector(v[r], v[r], 8, 9, 10, 11),
                            __builtin_shufflevector(v[r], v[r], 12, 13, 14, 15)};
-    for (int q = 0; q < 4; ++q) {
-      auto* to = reinterpret_cast<QuadLoose*>(t.rows + (r + 4 * q) * t.stride + i);
-      *to = t.add ? *to + quads[q] : quads[q];
-    }
+    for (int q = 0; q < 4; ++q) put(t, (r + 4 * q) * t.stride + i, quads[q]);
   }
 }
 
@@ -364,8 +375,12 @@ void rows_to_lanes(const TransposeRows& t) {
 #endif
   const int whole = t.row_count & ~3;
   for (int i = 0; i < t.columns; i += 4)
-    for (int r = 0; r < whole; r += 4)
-      transpose4(t.rows + r * t.stride + i, t.stride, t.lanes + i * t.pitch + r, t.pitch, false);
+    for (int r = 0; r < whole; r += 4) {
+      Quad v[4];
+      for (int n = 0; n < 4; ++n) v[n] = quad(t.rows + (r + n) * t.stride + i);
+      transpose4(v);
+      for (int n = 0; n < 4; ++n) quad(t.lanes + (i + n) * t.pitch + r) = v[n];
+    }
   for (int r = whole; r < t.row_count; ++r)
     for (int i = 0; i < t.columns; ++i) t.lanes[i * t.pitch + r] = t.rows[r * t.stride + i];
 }
@@ -377,13 +392,15 @@ void lanes_to_rows(const TransposeRows& t) {
     for (int i = 0; i < columns; i += 4) lanes_to_columns(t, i);
 #endif
   for (int i = 0; i < columns && (kLanes < 16 || t.row_count < 16); i += 4)
-    for (int r = 0; r < rows; r += 4)
-      transpose4(t.lanes + i * t.pitch + r, t.pitch, t.rows + r * t.stride + i, t.stride, t.add);
-  for (int r = 0; r < t.row_count; ++r)
-    for (int i = r < rows ? columns : 0; i < t.columns; ++i) {
-      float& to = t.rows[r * t.stride + i];
-      to = (t.add ? to : 0.0f) + t.lanes[i * t.pitch + r];
+    for (int r = 0; r < rows; r += 4) {
+      Quad v[4];
+      for (int n = 0; n < 4; ++n) v[n] = quad(t.lanes + (i + n) * t.pitch + r);
+      transpose4(v);
+      for (int n = 0; n < 4; ++n) put(t, (r + n) * t.stride + i, v[n]);
     }
+  for (int r = 0; r < t.row_count; ++r)
+    for (int i = r < rows ? columns : 0; i < t.columns; ++i)
+      put(t, r * t.stride + i, t.lanes[i * t.pitch + r]);
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -46,7 +46,10 @@ struct TransposeRows {
   std::ptrdiff_t stride;
   float* lanes;
   std::ptrdiff_t pitch;
-  bool add;       // lanes_to_rows: add to what the rows hold
+  // lanes_to_rows: not null, then lanes are added to the rows, and `rate` times them to these, laid out
+  // as the rows; else the rows take what the lanes hold.
+  float* rates;
+  float rate;
   int row_count;  // 1 … 16; rows past it are left alone, their lanes hold values of no meaning
   int columns;
 };

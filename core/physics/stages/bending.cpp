@@ -87,11 +87,10 @@ class BendingConstraints final : public WholeStage {
     const double h = s.dt * implicit_share(parts_.scene.solver);
     const auto compliance = [&](double stiffness) { return float(1 / (stiffness * h * h)); };
     inverse_dt_ = velocity_gain(parts_.scene.solver, compliant_, s.dt);
-    strips_.run(threads, [&] {
-      along_rows(compliance(k.along));
-      along_columns(compliance(k.across));
-      twist(compliance(k.twist));
-    });
+    strips_.begin(threads);
+    along_rows(compliance(k.along));
+    along_columns(compliance(k.across));
+    twist(compliance(k.twist));
   }
 
  private:
@@ -102,14 +101,14 @@ class BendingConstraints final : public WholeStage {
                         const float* terms = left(parts_, &BendLinks::along, 0);
                         const float* turned =
                             terms ? torn_.follow(group, *parts_.topology, terms) : nullptr;
-                        strips_.turned(group, memory, inverse_dt_ > 0, [&](int rows) {
+                        strips_.turned(group, memory, inverse_dt_, [&](int rows, float gain) {
                           for (int first = 0; first < rows; first += kBendLines) {
                             const Row3 x = memory.tile.row(0);
                             BendLine p{};
                             p.x = {x.x + first, x.y + first, x.z + first};
-                            const Row3 v = memory.gained.row(0);
+                            const Row3 v = memory.moved.row(0);
                             p.v = {v.x + first, v.y + first, v.z + first};
-                            p.inverse_dt = inverse_dt_;
+                            p.inverse_dt = gain;
                             p.w = strips_.masses(group) + first;
                             p.step = kStripLines;
                             p.particles = l.columns;

@@ -1,6 +1,8 @@
 // Strips of lines (strips.h).
 #include "physics/stages/strips.h"
 
+#include <tuple>
+
 namespace weft::physics {
 
 Strips::Strips(Lattice& lattice, const KernelTable& kernels, int scratch)
@@ -20,7 +22,7 @@ void Strips::turn_masses() {
 std::size_t Strips::bytes() const {
   std::size_t sum = masses_.size() * sizeof(float);
   for (const StripMemory& m : memory_)
-    sum += m.tile.bytes() + m.gained.bytes() + m.scratch.size() * sizeof(float);
+    sum += m.tile.bytes() + m.moved.bytes() + m.scratch.size() * sizeof(float);
   return sum;
 }
 
@@ -53,21 +55,22 @@ void Strips::turn_masses(int group, int rows) {
   }
 }
 
-void Strips::turn_back(int begin, int rows, StripMemory& memory, bool velocities) {
-  for (int half = 0; half < rows; half += 16)
-    for (const bool add : {false, true}) {
-      if (add && !velocities) continue;
-      const Row3 to = (add ? lattice_.v : lattice_.x).row(begin + half);
-      const Row3 from = (add ? memory.gained : memory.tile).row(0);
-      TransposeRows t = turning(half, rows);
-      t.add = add;
-      for (const auto& [lanes, row] :
-           {std::pair(from.x, to.x), std::pair(from.y, to.y), std::pair(from.z, to.z)}) {
-        t.rows = row;
-        t.lanes = lanes + half;
-        kernels_.lanes_to_rows(t);
-      }
+// Where velocities gain what particles move by, positions do so at once: both from the same lanes.
+void Strips::turn_back(int begin, int rows, StripMemory& memory, float inverse_dt) {
+  const Row3 from = (inverse_dt > 0 ? memory.moved : memory.tile).row(0);
+  for (int half = 0; half < rows; half += 16) {
+    const Row3 x = lattice_.x.row(begin + half), v = lattice_.v.row(begin + half);
+    TransposeRows t = turning(half, rows);
+    t.rate = inverse_dt;
+    for (const auto& [lanes, row, rates] :
+         {std::tuple(from.x, x.x, v.x), std::tuple(from.y, x.y, v.y),
+          std::tuple(from.z, x.z, v.z)}) {
+      t.lanes = lanes + half;
+      t.rows = row;
+      t.rates = inverse_dt > 0 ? rates : nullptr;
+      kernels_.lanes_to_rows(t);
     }
+  }
 }
 
 TransposeRows Strips::turning(int half, int rows) const {

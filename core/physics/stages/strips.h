@@ -2,10 +2,6 @@
 // memory of each thread, and rows turned into lanes and back.
 #pragma once
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -20,8 +16,8 @@ namespace weft::physics {
 // The memory of one thread.
 struct StripMemory {
   AlignedArray<float> scratch;
-  Rows tile;    // kStripLines rows as lanes: [column][kStripLines] of x, y, z
-  Rows gained;  // velocity that the solution adds, laid out as the tile
+  Rows tile;   // kStripLines rows as lanes: [column][kStripLines] of x, y, z
+  Rows moved;  // by how much the solution has moved them, laid out as the tile
 };
 
 // What is left of the links along the rows, turned into lanes as the tiles are: [column][kStripLines]
@@ -65,30 +61,21 @@ class Strips {
   int row_groups() const { return (lattice_.rows + kStripLines - 1) / kStripLines; }
   std::size_t bytes() const;
 
-  // Calls work() where share_out may be called, with memory for every thread.
-  template <class Work>
-  void run(Threads& threads, const Work& work) {
-    count_ = threads.count();
-    while (int(memory_.size()) < count_) memory_.push_back(make_memory());
-    threads.run(work);
+  // Before share_out: for which threads.
+  void begin(Threads& threads) {
+    threads_ = &threads;
+    while (int(memory_.size()) < threads.count()) memory_.push_back(make_memory());
   }
 
   // Calls solve(n, memory) for n = 0 … count-1, each worth about `nanoseconds`, in any order.
   template <class Solve>
   void share_out(int count, double nanoseconds, const Solve& solve) {
-    const int grain = std::max(1, int(kTaskNanoseconds / std::max(nanoseconds, 1.0)));
-    if (count_ == 1 || grain >= count) {
+    if (threads_->count() == 1 || count * nanoseconds < kSharedNanoseconds) {
       for (int n = 0; n < count; ++n) solve(n, memory_[0]);
       return;
     }
-    using Range = oneapi::tbb::blocked_range<int>;
-    oneapi::tbb::parallel_for(
-        Range(0, count, std::size_t(grain)),
-        [&](const Range& some) {
-          const int thread = oneapi::tbb::this_task_arena::current_thread_index();
-          for (int n = some.begin(); n < some.end(); ++n) solve(n, memory_[std::size_t(thread)]);
-        },
-        oneapi::tbb::simple_partitioner{});
+    threads_->share(std::size_t(count), false,
+                    [&](std::size_t n) { solve(int(n), memory_[std::size_t(Threads::index())]); });
   }
 
   // Inverse masses of a group's rows as lanes, laid out as the tile.
@@ -99,34 +86,35 @@ class Strips {
   void turn_masses();
   void follow_masses() { masses_change_ = true; }
 
-  // Turns the rows of a group into the lanes of a tile, solves, turns them back and adds to the
-  // velocities what has been gained; solve gets the number of rows.
+  // Turns the rows of a group into the lanes of a tile, solves and turns back. solve gets the number
+  // of rows, and what `moved` of the memory, where it adds up its moves, is multiplied by: 0, nothing
+  // is added up, or 1, and velocities then gain inverse_dt times the moves.
   template <class Solve>
-  void turned(int group, StripMemory& memory, bool velocities, const Solve& solve) {
+  void turned(int group, StripMemory& memory, float inverse_dt, const Solve& solve) {
     const int begin = group * kStripLines, rows = std::min(kStripLines, lattice_.rows - begin);
     turn_there(group, rows, memory);
-    if (velocities) memory.gained.clear();
-    solve(rows);
-    turn_back(begin, rows, memory, velocities);
+    if (inverse_dt > 0) memory.moved.clear();
+    solve(rows, inverse_dt > 0 ? 1.0f : 0.0f);
+    turn_back(begin, rows, memory, inverse_dt);
   }
 
  private:
-  // The least work worth a task [ns].
-  static constexpr double kTaskNanoseconds = 10000;
+  // The least work worth sharing out [ns].
+  static constexpr double kSharedNanoseconds = 40000;
 
   StripMemory make_memory() const;
   TransposeRows turning(int half, int rows) const;
   void turn_there(int group, int rows, StripMemory& memory);
   void turn_masses(int group, int rows);
-  void turn_back(int begin, int rows, StripMemory& memory, bool velocities);
+  void turn_back(int begin, int rows, StripMemory& memory, float inverse_dt);
 
   Lattice& lattice_;
   const KernelTable& kernels_;
   int scratch_;
   AlignedArray<float> masses_;
   bool masses_change_ = false;
-  int count_ = 1;
-  std::vector<StripMemory> memory_;
+  Threads* threads_ = nullptr;
+  std::vector<StripMemory> memory_;  // of every thread
 };
 
 }  // namespace weft::physics
