@@ -31,8 +31,8 @@ struct Sum {
 
 struct Owner {
   Wide3 x, v;
-  Wide thickness, w, friction, held, number;
-  WideInt course;
+  Wide thickness, w, friction, held;
+  WideInt number, course;
 };
 
 WEFT_INLINE void add_pair(const Owner& p, const Body* bodies, const std::int32_t* number,
@@ -47,9 +47,10 @@ WEFT_INLINE void add_pair(const Owner& p, const Body* bodies, const std::int32_t
   // In one place: apart along y, by their order.
   const WideInt together = square < kTiny * kTiny;
   const Wide distance = select(together, Wide{}, sqrt(square));
-  Wide order;
-  for (int l = 0; l < kLanes; ++l) order[l] = float(number[l]);
-  d = select(together, {Wide{}, select(order > p.number, wide(1), wide(-1)), Wide{}}, d);
+  if (any(together)) {
+    const WideInt later = lanes_at(number) > p.number;
+    d = select(together, {Wide{}, select(later, wide(1), wide(-1)), Wide{}}, d);
+  }
   const Wide3 n = d * (1.0f / select(together, wide(1), distance));
   const Wide depth = held - distance;
   const Wide share = p.w / (p.w + motion.last);
@@ -58,9 +59,12 @@ WEFT_INLINE void add_pair(const Owner& p, const Body* bodies, const std::int32_t
   const Wide3 u = p.v - motion.xyz;
   const Wide into = dot(u, n);
   const Wide3 slide = u - n * into;
-  const Wide sliding = sqrt(dot(slide, slide));
   const Wide lost = max(Wide{}, -into);
-  const Wide rubbed = select(sliding > kTiny, min(wide(1), p.friction * lost / sliding), Wide{});
+  Wide rubbed{};
+  if (any(touch & (lost * p.friction > 0.0f))) {
+    const Wide sliding = sqrt(dot(slide, slide));
+    rubbed = select(sliding > kTiny, min(wide(1), p.friction * lost / sliding), Wide{});
+  }
   const Wide3 nothing = wide3(0, 0, 0);
   sum.push = sum.push + select(touch, n * lift, nothing);
   sum.gain = sum.gain + select(touch, (n * lost - slide * rubbed) * (share * weight), nothing);
@@ -83,10 +87,9 @@ float separate(const SeparateGroup& g) {
             motion.last,
             load(g.friction + i),
             Wide{},
-            Wide{},
+            lanes_at(own + i),
             lanes_at(g.course + i)};
     p.held = select(p.course, wide(1), wide(physics::kHeld));
-    for (int l = 0; l < kLanes; ++l) p.number[l] = float(own[i + l]);
     Sum sum;
     for (int k = 0; k < g.slots; ++k) add_pair(p, g.bodies, g.neighbour + 16 * k + i, sum);
     const WideInt moves = (sum.weight > 0.0f) & (p.w > 0.0f);

@@ -2,6 +2,7 @@
 #include "physics/self_collision/self_collision.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -22,6 +23,8 @@ constexpr int kMostSubstepsCourse = 4;      // its push acts like a spring, stab
 constexpr std::size_t kFew = 4096;          // particles that one thread does faster
 constexpr std::size_t kPairsReserved = 16;  // neighbours per particle
 constexpr float kSoon = 1.15f;              // thicknesses: those that touch soon come first
+constexpr std::size_t kWindow = 256;        // owners
+constexpr std::int32_t kMostPairs = 63;     // that owners are told apart by
 
 std::size_t count_particles(const std::vector<Sheet>& sheets) {
   std::size_t n = 0;
@@ -84,6 +87,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
   slots_.neighbour.reserve(kPairsReserved * n);
   slots_.friction.reserve(n + 16);
   slots_.course.reserve(n + 16);
+  place_.reserve(n);
   speeds_.reserve(n / 16 + 1);
   bodies_.reserve(n + 32);
   separated_.reserve(n + 32);
@@ -122,6 +126,7 @@ void SelfContact::sort(double margin, Threads& threads) {
 void SelfContact::find(double margin, Threads& threads) {
   search_.find(thickness_ + float(margin), thickness_ * kSoon, threads);
   join_chunks(threads);
+  order_owners(threads);
   group_owners(threads);
 }
 
@@ -153,6 +158,40 @@ void SelfContact::join_chunks(Threads& threads) {
       pairs_.site[owner] = search_.sites()[std::size_t(search_.number(p))];
       pairs_.first[owner++] = std::exchange(first, first + counts[p]);
     }
+  });
+}
+
+// Puts owners of as many pairs side by side, so that few slots of a group are left empty; within
+// windows, so that owners from one place stay together.
+void SelfContact::order_owners(Threads& threads) {
+  const std::size_t n = pairs_.site.size();
+  place_.resize(n);
+  threads.share((n + kWindow - 1) / kWindow, search_.few(), [&](std::size_t window) {
+    const std::size_t begin = window * kWindow, end = std::min(n, begin + kWindow);
+    std::array<std::int32_t, kWindow> counts;
+    std::array<Site, kWindow> sites;
+    std::array<std::size_t, kMostPairs + 1> next{};  // place of an owner of so many pairs, or more
+    const auto bin = [](std::int32_t count) { return std::size_t(std::min(count, kMostPairs)); };
+    for (std::size_t a = begin; a < end; ++a) {
+      sites[a - begin] = pairs_.site[a];
+      counts[a - begin] = pairs_.first[a + 1] - pairs_.first[a];
+      ++next[bin(counts[a - begin])];
+    }
+    std::size_t before = begin;
+    for (std::size_t b = next.size(); b-- > 0;) before += std::exchange(next[b], before);
+    std::array<std::int32_t, kWindow> ordered;
+    for (std::size_t a = begin; a < end; ++a) {
+      const std::size_t to = next[bin(counts[a - begin])]++;
+      place_[a] = std::int32_t(to);
+      pairs_.site[to] = sites[a - begin];
+      ordered[to - begin] = counts[a - begin];
+    }
+    for (std::size_t a = begin; a + 1 < end; ++a)
+      pairs_.first[a + 1] = pairs_.first[a] + ordered[a - begin];
+  });
+  threads.share(PairSearch::kChunks, search_.few(), [&](std::size_t k) {
+    for (std::size_t p = search_.begin(k); p < search_.begin(k + 1); ++p)
+      if (search_.counts()[p] > 0) listed_[p] = place_[std::size_t(listed_[p])];
   });
 }
 
@@ -272,7 +311,7 @@ SelfContact::Overlaps SelfContact::overlaps() {
 }
 
 std::size_t SelfContact::bytes() const {
-  std::size_t bytes = 4 * listed_.size() + search_.bytes() + blocks_.bytes();
+  std::size_t bytes = 4 * (listed_.size() + place_.size()) + search_.bytes() + blocks_.bytes();
   bytes += 2 * bodies_.capacity() * sizeof(Body) + pairs_.site.capacity() * sizeof(Site);
   bytes += (pairs_.first.capacity() + slots_.neighbour.capacity()) * 4;
   return bytes;

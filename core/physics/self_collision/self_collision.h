@@ -23,7 +23,7 @@ class ClothStep;
 
 // Pairs of particles in range of each other, each listed with both its ends.
 struct NearPairs {
-  std::vector<Site> site;               // of every particle with a pair, cell by cell
+  std::vector<Site> site;               // of every particle with a pair
   std::vector<std::int32_t> first;      // of its neighbours, one more than particles
   std::vector<std::int32_t> neighbour;  // numbers into site; filled by SelfContact::search
 };
@@ -70,6 +70,7 @@ class SelfContact {
   SelfContact(const Scene& scene, std::vector<Sheet> sheets, const KernelTable& kernels);
   void list_sites(Threads& threads);
   void join_chunks(Threads& threads);
+  void order_owners(Threads& threads);
   template <class Visit>
   void for_each_owner(std::size_t chunk, Visit&& visit) const;
   void group_owners(Threads& threads);
@@ -87,6 +88,7 @@ class SelfContact {
   std::vector<std::size_t> first_site_;  // of every block
   std::size_t count_ = 0;                // particles of active blocks
   std::vector<std::int32_t> listed_;     // sorted particle -> number into pairs_.site
+  std::vector<std::int32_t> place_;      // where each owner has come to when owners were ordered
   NearPairs pairs_;
   struct {                                // of pairs_, 16 owners at a time
     std::vector<std::size_t> first;       // of a group's slots, one more than groups
