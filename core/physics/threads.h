@@ -43,7 +43,8 @@ class Threads {
     });
   }
 
-  // work(0) … work(tasks - 1), in any order; `alone`: on this thread, because they are short.
+  // work(0) … work(tasks - 1), in any order; `alone`: on this thread, because they are short. Shares
+  // do not share out again, and do not throw.
   template <class Work>
   void share(std::size_t tasks, bool alone, Work&& work) {
     if (alone || count_ == 1) {

@@ -271,13 +271,31 @@ WEFT_INLINE void row_alike(const ProjectRows& p, int j, float w) {
   for (int colour = 0; colour < 2; ++colour) along_row_alike<R>(p, j, colour, c);
 }
 
+// Whether any constraint of row j is longer than its rest length. Rows where none is, most of them,
+// have nothing to do for the strain limit.
+template <bool kTorn>
+WEFT_INLINE bool any_too_long(const ProjectRows& p, int j) {
+  const ProjectedRow near = projected_row(p, j, p.near), far = projected_row(p, j + p.dj, p.far);
+  WideInt over{};
+  for (int a = 0; a < p.count; a += kLanes) {
+    const Wide3 e = load3(far.x, a) - load3(near.x, a);
+    WideInt longer = dot(e, e) > p.rest * p.rest;
+    if (a + kLanes > p.count) longer = longer & lanes_below(p.count - a);
+    if constexpr (kTorn) longer = longer & alive_lanes(p, j, a);
+    over = over | longer;
+  }
+  return any(over);
+}
+
 // Rows begin … end-1 of one family: along the rows both colours, between rows those of one colour.
 template <Rule R, bool kTorn>
 void sweep(const ProjectRows& given) {
   const ProjectRows p = given;
   for (int j = p.begin; j < p.end; ++j) {
     if (p.dj > 0 && (j / p.dj % 2 != p.colour || j + p.dj >= p.rows)) continue;
-    if constexpr (!kTorn && R != Rule::limit) {
+    if constexpr (R == Rule::limit) {
+      if (!any_too_long<kTorn>(p, j)) continue;
+    } else if constexpr (!kTorn) {
       const float w = p.row_w ? p.row_w[j] : 0;
       if (w > 0 && w == p.row_w[j + p.dj]) {
         row_alike<R>(p, j, w);

@@ -100,25 +100,8 @@ class Line final : public WholeStage {
   void sweep(bool fresh) {
     for (LineFamily& l : diagonal_)
       for (int start = 0; start < l.family->dj; ++start) solve_diagonals(l, start, fresh);
-    const Lattice& lattice = parts_.lattice;
-    if (!along_columns_.empty())
-      strips_.share_out((lattice.columns + kStripLines - 1) / kStripLines,
-                        kConstraintNs * kStripLines * lattice.rows * double(along_columns_.size()),
-                        [&](int strip, StripMemory& memory) {
-                          for (LineFamily& l : along_columns_)
-                            for (int start = 0; start < l.family->dj; ++start)
-                              solve_strip(l, start, strip * kStripLines, lattice.columns, fresh,
-                                          memory);
-                        });
-    if (along_rows_.empty()) return;
-    strips_.share_out(
-        strips_.row_groups(),
-        kConstraintNs * kStripLines * parts_.lattice.columns * double(along_rows_.size()),
-        [&](int group, StripMemory& memory) {
-          strips_.turned(group, memory, inverse_dt(), [&](int rows, float gain) {
-            solve_rows(group, rows, gain, fresh, memory);
-          });
-        });
+    if (!along_columns_.empty()) solve_columns(fresh);
+    if (!along_rows_.empty()) solve_rows(fresh);
   }
 
   void solve_diagonals(LineFamily& l, int start, bool fresh) {
@@ -132,6 +115,18 @@ class Line final : public WholeStage {
     strips_.share_out(strips, kConstraintNs * particles * columns / strips,
                       [&](int strip, StripMemory& memory) {
                         solve_strip(l, start, first + strip * kStripLines, end, fresh, memory);
+                      });
+  }
+
+  void solve_columns(bool fresh) {
+    const Lattice& lattice = parts_.lattice;
+    strips_.share_out((lattice.columns + kStripLines - 1) / kStripLines,
+                      kConstraintNs * kStripLines * lattice.rows * double(along_columns_.size()),
+                      [&](int strip, StripMemory& memory) {
+                        for (LineFamily& l : along_columns_)
+                          for (int start = 0; start < l.family->dj; ++start)
+                            solve_strip(l, start, strip * kStripLines, lattice.columns, fresh,
+                                        memory);
                       });
   }
 
@@ -170,7 +165,18 @@ class Line final : public WholeStage {
     return p;
   }
 
-  void solve_rows(int group, int rows, float gain, bool fresh, StripMemory& memory) {
+  void solve_rows(bool fresh) {
+    strips_.share_out(
+        strips_.row_groups(),
+        kConstraintNs * kStripLines * parts_.lattice.columns * double(along_rows_.size()),
+        [&](int group, StripMemory& memory) {
+          strips_.turned(group, memory, inverse_dt(), [&](int rows, float gain) {
+            solve_group(group, rows, gain, fresh, memory);
+          });
+        });
+  }
+
+  void solve_group(int group, int rows, float gain, bool fresh, StripMemory& memory) {
     const int columns = parts_.lattice.columns;
     for (LineFamily& l : along_rows_) {
       const int n = l.family->di;
