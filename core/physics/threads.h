@@ -20,7 +20,7 @@ class Patience {
   void wait();
 
  private:
-  static constexpr int kBusyWaits = 2000;  // some 50 us
+  static constexpr int kBusyWaits = 100;  // a few microseconds
   int waits_ = 0;
 };
 
