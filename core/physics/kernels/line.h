@@ -32,26 +32,11 @@ struct LineStrip {
   float inverse_dt;                // 1/s; 0 = velocities are not touched
   const float* compliance;         // [m][kStripLines] of constraint m of each line [1/kg]
   std::ptrdiff_t compliance_step;  // kStripLines, or 0 when all rows are alike
-  const std::int32_t*
-      alive;       // -1 where constraint m of line n holds, 0 cut; laid out as x; or null
+  // -1 where constraint m of line n holds, 0 where it is cut, laid out as x; or null.
+  const std::int32_t* alive;
   float* lambda;   // multipliers, laid out as x; null for a single sweep [kg·m]
   bool fresh;      // the multipliers are still zero, whatever the memory says
   float* scratch;  // particles * kStripScratch floats
-};
-
-// 16 neighbouring rows of one array as 16 neighbouring lanes, or back: element (row r, column i) is
-// rows[r*stride + i] and lanes[i*pitch + r].
-struct TransposeRows {
-  float* rows;
-  std::ptrdiff_t stride;
-  float* lanes;
-  std::ptrdiff_t pitch;
-  // lanes_to_rows: not null, then lanes are added to the rows, and `rate` times them to these, laid out
-  // as the rows; else the rows take what the lanes hold.
-  float* rates;
-  float rate;
-  int row_count;  // 1 … 16; rows past it are left alone, their lanes hold values of no meaning
-  int columns;
 };
 
 }  // namespace weft::physics

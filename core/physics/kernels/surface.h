@@ -20,8 +20,8 @@ struct alignas(64) Square {
 // What others want of a square's corners.
 struct SquareSum {
   float nearest;  // distance of what it owns from what others own, at most the range [m]
-  float push[4][3], gain[4][3],
-      weight[4];  // of weights times displacements [m] and velocities [m/s]
+  // Sums of weights times displacements [m] and velocities [m/s], and of weights.
+  float push[4][3], gain[4][3], weight[4];
 };
 
 // Box about a square; the fourth values are 0.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "physics/kernels/line.h"
+#include "physics/kernels/transpose.h"
 #include "physics/lattice.h"
 #include "physics/threads.h"
 #include "physics/topology.h"
