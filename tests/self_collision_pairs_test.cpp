@@ -73,16 +73,13 @@ TEST(SelfCollisionPairs, SearchFindsWhatBruteForceFinds) {
       }
       const auto self = physics::SelfContact::make(scene, cloths, physics::kernel_table(simd));
       physics::Threads threads(2);
-      const physics::NearPairs& found = self->search(0.01, threads);
+      self->search(0.01, threads);
       std::set<Pair> pairs;
       std::size_t listed = 0;
-      for (std::size_t a = 0; a < found.site.size(); ++a)
-        for (auto k = found.first[a]; k < found.first[a + 1]; ++k) {
-          const physics::Site &p = found.site[a],
-                              &q = found.site[std::size_t(found.neighbour[std::size_t(k)])];
-          pairs.insert({{p.cloth, p.row, p.column}, {q.cloth, q.row, q.column}});
-          ++listed;
-        }
+      self->for_each_pair([&](const physics::Site& p, const physics::Site& q) {
+        pairs.insert({{p.cloth, p.row, p.column}, {q.cloth, q.row, q.column}});
+        ++listed;
+      });
       EXPECT_EQ(listed, pairs.size()) << "a pair is listed twice";
       EXPECT_EQ(pairs, all_pairs(cloths, scene, 0.06f + 0.01f)) << size;
       std::printf("box of %.2f m: %zu pairs\n", size, pairs.size());

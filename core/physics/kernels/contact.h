@@ -37,7 +37,7 @@ inline constexpr int kNearPadding = 32;
 struct NearRoom {
   Row3 x;
   float *u, *w;
-  std::int32_t *number, *farther;
+  std::int32_t* number;
   int size;
 };
 
@@ -52,40 +52,64 @@ struct NearSearch {
   std::int64_t table;         // buckets
   std::int64_t offset[9];     // from a bucket to the first of each run, modulo the table
   float range_squared;        // m²
-  float near_squared;         // m²: those nearer than this come first
   int begin, end;             // sorted particles to search about
   std::int32_t* counts;       // out, per particle: how many are in range and no neighbours
-  std::int32_t* hits;         // out, particle after particle: their numbers in sorted order
-  int hits_room;
+  std::int32_t* neighbour;    // out, particle after particle: their numbers in sorted order
+  std::int32_t* owner;        // out, for each of them, the number of the particle
+  int pairs_room;             // of both
   NearRoom room;
 };
 
-// Where a search ended, how many it found, and the room that it needs to go on: 0 at `end`.
+// Where a search ended, how many pairs it found, and the room that it needs to go on: 0 at `end`.
 struct NearFound {
-  int next, hits, needed;
+  int next, pairs, needed;
 };
 
 // Thicknesses that a pair is held apart: layers of a stack sink in a little.
 inline constexpr float kHeld = 1.05f;
 
-// A particle with pairs.
+// In place of an owner's friction: pushed by the course's rule.
+inline constexpr float kCourseRule = -1;
+
+// A particle.
 struct alignas(32) Body {
-  float x[4];  // place and thickness [m]
+  float x[4];  // place, and the distance at which it is held from its like [m]
   float v[4];  // velocity [m/s] and inverse mass [1/kg]
 };
 
-// 16 owners next to each other and what each may touch: slot k of all of them, then slot k + 1. An
-// owner with fewer neighbours names a body far away.
-struct SeparateGroup {
+// Pairs, one owner's after another's, and where those of them go that are nearer than a distance.
+struct PairsWithin {
+  const Body* bodies;  // of all particles with pairs; the others may hold anything
+  int pairs;
+  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of particles
+  float reach;                            // in distances at which they are held
+  // out, and 16 lanes of padding
+  std::int32_t *within_owner, *within_neighbour;
+};
+
+// What a pair that touches asks of its owner, times its weight.
+struct alignas(32) Asked {
+  float push[4];  // displacement [m], and the weight alone
+  float gain[4];  // velocity [m/s]
+};
+
+// Room for the pairs of one call that touch, and 16 lanes of padding.
+struct SeparateRoom {
+  std::int32_t *owner, *neighbour;
+  Asked* asked;
+};
+
+// Particles from `begin` to `end`, and the pairs that they own.
+struct SeparateOwners {
   const Body* bodies;
-  int first;  // number of the first owner
-  int slots;
-  const std::int32_t* neighbour;  // slots x 16
-  const float* friction;          // of the 16 owners
-  const std::int32_t* course;     // -1 in the lanes of owners with the course's rule
-  float course_share;             // of a correction, per run
-  float inverse_dt;               // 1/s
-  Body* out;                      // of the first owner
+  int begin, end;
+  int pairs;
+  const std::int32_t *owner, *neighbour;
+  const float* friction;  // of every particle with pairs, or kCourseRule
+  float course_share;     // of a correction, per run
+  float inverse_dt;       // 1/s
+  Body* out;              // of all particles
+  SeparateRoom room;
 };
 
 }  // namespace weft::physics

@@ -205,7 +205,8 @@ struct LineStrip;  // kernels/line.h
 struct BlockRows;  // kernels/contact.h
 struct NearSearch;
 struct NearFound;
-struct SeparateGroup;
+struct PairsWithin;
+struct SeparateOwners;
 struct SurfaceSquare;  // kernels/surface.h
 struct TransposeRows;
 struct SecondOrderRow;  // kernels/second_order.h
@@ -244,8 +245,9 @@ struct KernelTable {
   void (*push)(const AdvanceRow&);             // v += dt f/m, x with it, then f <- 0
   void (*block_bounds)(const BlockRows&);      // how a block lies and moves
   NearFound (*near_pairs)(const NearSearch&);  // who is in range of whom
+  int (*pairs_within)(const PairsWithin&);     // returns how many are
   // Pushes pairs apart; returns the greatest squared relative speed of two that touch [m²/s²].
-  float (*separate)(const SeparateGroup&);
+  float (*separate)(const SeparateOwners&);
   void (*surface_square)(const SurfaceSquare&);  // a square against those near it
 };
 

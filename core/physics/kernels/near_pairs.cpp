@@ -1,6 +1,6 @@
 // The pair search of self-collision: who of many candidates is within a range of a particle. The
-// candidates of a cell are brought together first, those alone that are within the range of the box
-// about its members, so that each of these tests few and whole groups.
+// candidates of a cell with several members are brought together first, those alone that are within
+// the range of the box about the members, so that each of these tests few and whole groups.
 #include "physics/kernels/contact.h"
 #include "physics/kernels/row_kernels.h"
 
@@ -13,6 +13,8 @@ using physics::NearFound;
 using physics::NearRoom;
 using physics::NearSearch;
 using physics::Run;
+
+constexpr int kFewMembers = 2;  // of a cell, for which its candidates stay where they are
 
 struct Runs {
   Run run[18];
@@ -39,8 +41,6 @@ WEFT_INLINE Runs runs_about(const NearSearch& s, std::int64_t bucket) {
   }
   return r;
 }
-
-typedef WideInt LooseInt __attribute__((aligned(4), may_alias));
 
 // From a box to points outside, axis by axis. Rounding keeps it no longer than from any point inside.
 WEFT_INLINE Wide outside(Wide x, float low, float high) {
@@ -81,24 +81,50 @@ WEFT_INLINE int bring_together(const NearSearch& s, const Runs& runs, int begin,
   return count;
 }
 
-// The numbers of those near particle m, the nearer ones first; returns how many.
-WEFT_INLINE int near_one(const NearSearch& s, int candidates, int m, std::int32_t* hits) {
-  const Wide3 p = wide3(s.x.x[m], s.x.y[m], s.x.z[m]);
-  const Wide u = wide(s.u[m]), w = wide(s.w[m]), apart = wide(s.apart_squared[m]);
-  int found = 0, farther = 0;
-  for (int i = 0; i < candidates; i += kLanes) {
-    const Wide3 d = load3(s.room.x, i) - p;
-    const Wide square = dot(d, d);
-    const Wide a = load(s.room.u + i) - u, b = load(s.room.w + i) - w;
-    const WideInt pair = (square < s.range_squared) & (a * a + b * b >= apart);
-    const WideInt number = *reinterpret_cast<const LooseInt*>(s.room.number + i);
-    found += store_lanes(hits + found, pair & (square < s.near_squared), number);
-    farther += store_lanes(s.room.farther + farther, pair & (square >= s.near_squared), number);
+// A particle, and where the numbers of those near it go.
+struct Seeker {
+  Wide3 p;
+  Wide u, w, apart;
+  std::int32_t* near;
+  int found = 0;
+
+  WEFT_INLINE Seeker(const NearSearch& s, int m, std::int32_t* to)
+      : p(wide3(s.x.x[m], s.x.y[m], s.x.z[m])),
+        u(wide(s.u[m])),
+        w(wide(s.w[m])),
+        apart(wide(s.apart_squared[m])),
+        near(to) {}
+
+  // Of kLanes candidates, those `asked`.
+  WEFT_INLINE void test(const NearSearch& s, Wide3 x, Wide at_u, Wide at_w, WideInt number,
+                        WideInt asked) {
+    const Wide3 d = x - p;
+    const Wide a = at_u - u, b = at_w - w;
+    const WideInt pair = (dot(d, d) < s.range_squared) & (a * a + b * b >= apart) & asked;
+    found += store_lanes(near + found, pair, number);
   }
-  for (int i = 0; i < farther; i += kLanes)
-    *reinterpret_cast<LooseInt*>(hits + found + i) =
-        *reinterpret_cast<const LooseInt*>(s.room.farther + i);
-  return found + farther;
+};
+
+// The numbers of those near particle m among what was brought together; returns how many.
+WEFT_INLINE int near_one(const NearSearch& s, int candidates, int m, std::int32_t* near) {
+  Seeker seeker(s, m, near);
+  const NearRoom& room = s.room;
+  for (int i = 0; i < candidates; i += kLanes)
+    seeker.test(s, load3(room.x, i), load(room.u + i), load(room.w + i), lanes_at(room.number + i),
+                WideInt{} - 1);
+  return seeker.found;
+}
+
+// The same among the runs themselves.
+WEFT_INLINE int near_one(const NearSearch& s, const Runs& runs, int m, std::int32_t* near) {
+  Seeker seeker(s, m, near);
+  for (int r = 0; r < runs.count; ++r) {
+    const int last = runs.run[r].last;
+    for (int i = runs.run[r].first; i < last; i += kLanes)
+      seeker.test(s, load3(s.x, i), load(s.u + i), load(s.w + i), lane_numbers() + i,
+                  lanes_below(last - i));
+  }
+  return seeker.found;
 }
 
 }  // namespace
@@ -113,11 +139,18 @@ NearFound near_pairs(const NearSearch& given) {
     if (s.room.size < needed) return {m, found, needed};
     int end = m + 1;
     while (end < s.end && s.bucket[end] == bucket) ++end;
-    const int near = runs.candidates > 1 ? bring_together(s, runs, m, end) : 0;
+    const bool together = end - m > kFewMembers;
+    const int near = together ? bring_together(s, runs, m, end) : runs.candidates;
     for (; m < end; ++m) {
-      if (s.hits_room - found < needed) return {m, found, needed};
-      s.counts[m] = near > 1 ? near_one(s, near, m, s.hits + found) : 0;
-      found += s.counts[m];
+      if (s.pairs_room - found < needed) return {m, found, needed};
+      int& count = s.counts[m];
+      if (near <= 1)
+        count = 0;
+      else
+        count = together ? near_one(s, near, m, s.neighbour + found)
+                         : near_one(s, runs, m, s.neighbour + found);
+      for (int i = 0; i < count; i += kLanes) fill_lanes(s.owner + found + i, m);
+      found += count;
     }
   }
   return {s.end, found, 0};

@@ -1,9 +1,14 @@
-// Records of four floats, scattered in memory, as four wide values: loaded whole and turned.
+// Records of four floats in memory as four wide values, and back: moved whole, and turned.
 #pragma once
+
+#include <utility>
 
 #include "physics/kernels/wide.h"
 
 namespace weft::WEFT_KERNELS {
+
+typedef float Four __attribute__((vector_size(16), may_alias));
+typedef Four FourLoose __attribute__((aligned(4), may_alias));
 
 // One of the four of kLanes records.
 struct Wide4 {
@@ -11,51 +16,78 @@ struct Wide4 {
   Wide last;
 };
 
-#if WEFT_LANES >= 4
-typedef float Four __attribute__((vector_size(16), may_alias));
-typedef Four FourLoose __attribute__((aligned(4), may_alias));
+WEFT_INLINE Four four_at(const float* p) {
+  return *reinterpret_cast<const FourLoose*>(p);
+}
 
-WEFT_INLINE void turn(const float* records, int stride, const std::int32_t* number,
-                      Four (&out)[4]) {
-  const auto at = [&](int l) -> Four {
-    return *reinterpret_cast<const FourLoose*>(records + std::ptrdiff_t(stride) * number[l]);
-  };
-  const Four a = at(0), b = at(1), c = at(2), d = at(3);
-  const Four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5),
-             cd = __builtin_shufflevector(c, d, 0, 4, 1, 5);
-  const Four ef = __builtin_shufflevector(a, b, 2, 6, 3, 7),
-             gh = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-  out[0] = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
-  out[1] = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
-  out[2] = __builtin_shufflevector(ef, gh, 0, 1, 4, 5);
-  out[3] = __builtin_shufflevector(ef, gh, 2, 3, 6, 7);
+#if WEFT_LANES >= 4
+// In every quarter of four lanes: those of a (0 … 3) and b (4 … 7) that are asked for.
+template <int A, int B, int C, int D, int... I>
+WEFT_INLINE Wide quarters(Wide a, Wide b, std::integer_sequence<int, I...>) {
+  constexpr int lane[] = {A, B, C, D};
+  return __builtin_shufflevector(a, b, (lane[I % 4] % 4 + I / 4 * 4 + lane[I % 4] / 4 * kLanes)...);
+}
+
+// Every quarter of four values as rows of a square, turned.
+WEFT_INLINE void turn(Wide (&r)[4]) {
+  constexpr auto lanes = std::make_integer_sequence<int, kLanes>{};
+  const Wide a = quarters<0, 4, 1, 5>(r[0], r[1], lanes),
+             b = quarters<0, 4, 1, 5>(r[2], r[3], lanes);
+  const Wide c = quarters<2, 6, 3, 7>(r[0], r[1], lanes),
+             d = quarters<2, 6, 3, 7>(r[2], r[3], lanes);
+  r[0] = quarters<0, 1, 4, 5>(a, b, lanes);
+  r[1] = quarters<2, 3, 6, 7>(a, b, lanes);
+  r[2] = quarters<0, 1, 4, 5>(c, d, lanes);
+  r[3] = quarters<2, 3, 6, 7>(c, d, lanes);
 }
 #endif
 
 // Record k has its four floats at records + stride * number[k].
 WEFT_INLINE Wide4 records_at(const float* records, int stride, const std::int32_t* number) {
 #if WEFT_LANES >= 4
-  Four q[kLanes / 4][4];
-  for (int l = 0; l < kLanes / 4; ++l) turn(records, stride, number + 4 * l, q[l]);
-  const auto together = [&](int k) {
+  const auto at = [&](int k) { return four_at(records + std::ptrdiff_t(stride) * number[k]); };
+  Wide r[4];
+  for (int k = 0; k < 4; ++k) {
 #if WEFT_LANES == 4
-    return (Wide)q[0][k];
+    r[k] = (Wide)at(k);
 #else
     typedef float Eight __attribute__((vector_size(32)));
-    const Eight low = __builtin_shufflevector(q[0][k], q[1][k], 0, 1, 2, 3, 4, 5, 6, 7);
+    const auto eight = [&](int first) -> Eight {
+      return __builtin_shufflevector(at(first), at(first + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+    };
 #if WEFT_LANES == 8
-    return (Wide)low;
+    r[k] = (Wide)eight(k);
 #else
-    const Eight high = __builtin_shufflevector(q[2][k], q[3][k], 0, 1, 2, 3, 4, 5, 6, 7);
-    return (Wide)__builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
-                                         14, 15);
+    r[k] = (Wide)__builtin_shufflevector(eight(k), eight(k + 8), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10,
+                                         11, 12, 13, 14, 15);
 #endif
 #endif
-  };
-  return {{together(0), together(1), together(2)}, together(3)};
+  }
+  turn(r);
+  return {{r[0], r[1], r[2]}, r[3]};
 #else
   const float* r = records + std::ptrdiff_t(stride) * *number;
   return {wide3(r[0], r[1], r[2]), wide(r[3])};
+#endif
+}
+
+// Record k goes to records + stride * k.
+WEFT_INLINE void put_records(float* records, [[maybe_unused]] int stride, Wide4 v) {
+#if WEFT_LANES >= 4
+  Wide r[4] = {v.xyz.x, v.xyz.y, v.xyz.z, v.last};
+  turn(r);
+  const auto put = [&](auto quarter) {
+    constexpr int l = 4 * decltype(quarter)::value;
+    for (int k = 0; k < 4; ++k)
+      *reinterpret_cast<FourLoose*>(records + std::ptrdiff_t(stride) * (l + k)) =
+          (Four)__builtin_shufflevector(r[k], r[k], l, l + 1, l + 2, l + 3);
+  };
+  const auto put_all = [&]<int... Q>(std::integer_sequence<int, Q...>) {
+    (put(std::integral_constant<int, Q>{}), ...);
+  };
+  put_all(std::make_integer_sequence<int, kLanes / 4>{});
+#else
+  *reinterpret_cast<FourLoose*>(records) = Four{v.xyz.x[0], v.xyz.y[0], v.xyz.z[0], v.last[0]};
 #endif
 }
 

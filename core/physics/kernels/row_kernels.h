@@ -94,7 +94,8 @@ void wind(const physics::WindRow&);
 void push(const AdvanceRow&);
 void block_bounds(const physics::BlockRows&);
 physics::NearFound near_pairs(const physics::NearSearch&);
-float separate(const physics::SeparateGroup&);
+int pairs_within(const physics::PairsWithin&);
+float separate(const physics::SeparateOwners&);
 void surface_square(const physics::SurfaceSquare&);
 
 // A collider's kernels: its own file in colliders/ defines them by WEFT_COLLIDER (collide.h).

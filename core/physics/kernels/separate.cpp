@@ -1,5 +1,6 @@
 // Self-collision: how pairs that are too near are pushed apart (Jacobi: every owner looks at the same
-// state), 16 owners at a time.
+// state). The pairs that touch are brought together first, kLanes of them say what they ask for, and
+// each owner sums up what its own ask, in their order.
 //
 //   stiff:   Δx_a = n (t - d) w_a/(w_a + w_b); the velocity into the other is lost, and the tangential
 //            velocity loses up to μ times as much as was pressed (Coulomb); averaged over the pairs,
@@ -14,97 +15,125 @@ namespace weft::WEFT_KERNELS {
 
 namespace {
 
+using physics::Asked;
 using physics::Body;
-using physics::SeparateGroup;
+using physics::PairsWithin;
+using physics::SeparateOwners;
 
 // Of the thickness, at once: what starts intersecting comes apart slowly.
 constexpr float kMostPush = 0.5f;
 constexpr float kTiny = 1e-12f;
 constexpr int kStride = sizeof(Body) / sizeof(float);
 
-// What all pairs of an owner ask for.
-struct Sum {
-  Wide3 push = wide3(0, 0, 0), gain = wide3(0, 0, 0);
-  Wide weight{};
-  Wide speed{};  // greatest squared relative speed [m²/s²]
-};
+WEFT_INLINE Wide friction_of(const float* friction, const std::int32_t* owner) {
+  Wide r{};
+  for (int l = 0; l < kLanes; ++l) r[l] = friction[owner[l]];
+  return r;
+}
 
-struct Owner {
-  Wide3 x, v;
-  Wide thickness, w, friction, held;
-  WideInt number, course;
-};
-
-WEFT_INLINE void add_pair(const Owner& p, const Body* bodies, const std::int32_t* number,
-                          Sum& sum) {
-  const Wide4 q = records_at(bodies->x, kStride, number);
-  const Wide held = 0.5f * (p.thickness + q.last) * p.held;
-  Wide3 d = p.x - q.xyz;
+// What kLanes pairs of the room from `at` on ask for; returns their greatest squared relative speed.
+WEFT_INLINE Wide ask(const SeparateOwners& s, int at) {
+  const std::int32_t *const owner = s.room.owner + at, *const neighbour = s.room.neighbour + at;
+  const Wide4 p = records_at(s.bodies->x, kStride, owner);
+  const Wide4 q = records_at(s.bodies->x, kStride, neighbour);
+  const Wide held = 0.5f * (p.last + q.last);
+  Wide3 d = p.xyz - q.xyz;
   const Wide square = dot(d, d);
-  const WideInt touch = square < held * held;
-  if (!any(touch)) return;
-  const Wide4 motion = records_at(bodies->v, kStride, number);
   // In one place: apart along y, by their order.
   const WideInt together = square < kTiny * kTiny;
   const Wide distance = select(together, Wide{}, sqrt(square));
   if (any(together)) {
-    const WideInt later = lanes_at(number) > p.number;
+    const WideInt later = lanes_at(neighbour) > lanes_at(owner);
     d = select(together, {Wide{}, select(later, wide(1), wide(-1)), Wide{}}, d);
   }
   const Wide3 n = d * (1.0f / select(together, wide(1), distance));
   const Wide depth = held - distance;
-  const Wide share = p.w / (p.w + motion.last);
-  const Wide weight = select(p.course, wide(1), depth);
-  const Wide lift = select(p.course, depth, min(depth, kMostPush * held) * share) * weight;
-  const Wide3 u = p.v - motion.xyz;
+  const Wide4 own = records_at(s.bodies->v, kStride, owner);
+  const Wide4 other = records_at(s.bodies->v, kStride, neighbour);
+  const Wide friction = friction_of(s.friction, owner);
+  const WideInt course = friction < 0.0f;
+  const Wide share = own.last / (own.last + other.last);
+  const Wide weight = select(course, wide(1), depth);
+  const Wide lift = select(course, depth, min(depth, kMostPush * held) * share) * weight;
+  const Wide3 u = own.xyz - other.xyz;
   const Wide into = dot(u, n);
   const Wide3 slide = u - n * into;
   const Wide lost = max(Wide{}, -into);
   Wide rubbed{};
-  if (any(touch & (lost * p.friction > 0.0f))) {
+  if (any(lost * friction > 0.0f)) {
     const Wide sliding = sqrt(dot(slide, slide));
-    rubbed = select(sliding > kTiny, min(wide(1), p.friction * lost / sliding), Wide{});
+    rubbed = select(sliding > kTiny, min(wide(1), friction * lost / sliding), Wide{});
   }
-  const Wide3 nothing = wide3(0, 0, 0);
-  sum.push = sum.push + select(touch, n * lift, nothing);
-  sum.gain = sum.gain + select(touch, (n * lost - slide * rubbed) * (share * weight), nothing);
-  sum.weight = sum.weight + select(touch, weight, Wide{});
-  sum.speed = max(sum.speed, select(touch, dot(u, u), Wide{}));
+  put_records(s.room.asked[at].push, kStride, {n * lift, weight});
+  put_records(s.room.asked[at].gain, kStride,
+              {(n * lost - slide * rubbed) * (share * weight), Wide{}});
+  return dot(u, u);
+}
+
+// Sums up what the owners of `count` pairs are asked, owner after owner, in place. Returns how many
+// owners, whose numbers then stand one after another in the room. Without branches: how many pairs an
+// owner has cannot be foretold.
+WEFT_INLINE int sum_up(const SeparateOwners& s, int count) {
+  typedef std::int32_t FourInt __attribute__((vector_size(16)));
+  Four push{}, gain{};
+  std::int32_t last = -1;
+  int owners = -1;
+  for (int i = 0; i < count; ++i) {
+    const std::int32_t owner = s.room.owner[i];
+    const int goes_on = -int(owner == last);
+    const FourInt kept = FourInt{} + goes_on;
+    push = (Four)((FourInt)push & kept) + four_at(s.room.asked[i].push);
+    gain = (Four)((FourInt)gain & kept) + four_at(s.room.asked[i].gain);
+    owners += 1 + goes_on;
+    s.room.owner[owners] = last = owner;
+    *reinterpret_cast<Four*>(s.room.asked[owners].push) = push;
+    *reinterpret_cast<Four*>(s.room.asked[owners].gain) = gain;
+  }
+  return owners + 1;
+}
+
+// Moves an owner by the mean of what it is asked.
+WEFT_INLINE void move(const SeparateOwners& s, std::int32_t owner, const Asked& asked) {
+  Body& b = s.out[owner];
+  const Four push = four_at(asked.push), gain = four_at(asked.gain);
+  const float weight = push[3];
+  if (b.v[3] <= 0 || !(weight > 0)) return;
+  const bool course = s.friction[owner] < 0;
+  const float mean = 1 / weight, of_push = mean * (course ? s.course_share : 1);
+  const Four pushed = push * Four{of_push, of_push, of_push, 0};
+  *reinterpret_cast<Four*>(b.x) += pushed;
+  *reinterpret_cast<Four*>(b.v) += course ? pushed * s.inverse_dt : gain * mean;
 }
 
 }  // namespace
 
-float separate(const SeparateGroup& g) {
-  float fastest = 0;
-  alignas(64) std::int32_t own[16];
-  for (int l = 0; l < 16; ++l) own[l] = g.first + l;
-  for (int i = 0; i < 16; i += kLanes) {
-    const Wide4 place = records_at(g.bodies->x, kStride, own + i);
-    const Wide4 motion = records_at(g.bodies->v, kStride, own + i);
-    Owner p{place.xyz,
-            motion.xyz,
-            place.last,
-            motion.last,
-            load(g.friction + i),
-            Wide{},
-            lanes_at(own + i),
-            lanes_at(g.course + i)};
-    p.held = select(p.course, wide(1), wide(physics::kHeld));
-    Sum sum;
-    for (int k = 0; k < g.slots; ++k) add_pair(p, g.bodies, g.neighbour + 16 * k + i, sum);
-    const WideInt moves = (sum.weight > 0.0f) & (p.w > 0.0f);
-    const Wide mean = 1.0f / sum.weight;
-    const Wide3 pushed = sum.push * (mean * select(p.course, wide(g.course_share), wide(1)));
-    const Wide3 faster{select(p.course, pushed.x * g.inverse_dt, sum.gain.x * mean),
-                       select(p.course, pushed.y * g.inverse_dt, sum.gain.y * mean),
-                       select(p.course, pushed.z * g.inverse_dt, sum.gain.z * mean)};
-    const Wide3 x = select(moves, p.x + pushed, p.x), v = select(moves, p.v + faster, p.v);
-    for (int l = 0; l < kLanes; ++l)
-      g.out[i + l] = {{x.x[l], x.y[l], x.z[l], p.thickness[l]}, {v.x[l], v.y[l], v.z[l], p.w[l]}};
-    const float speed = greatest(sum.speed);
-    fastest = fastest < speed ? speed : fastest;
+int pairs_within(const PairsWithin& given) {
+  const PairsWithin s = given;
+  int count = 0;
+  for (int k = 0; k < s.pairs; k += kLanes) {
+    const Wide4 p = records_at(s.bodies->x, kStride, s.owner + k);
+    const Wide4 q = records_at(s.bodies->x, kStride, s.neighbour + k);
+    const Wide distance = (0.5f * s.reach) * (p.last + q.last);
+    const Wide3 d = p.xyz - q.xyz;
+    const WideInt within = (dot(d, d) < distance * distance) & lanes_below(s.pairs - k);
+    store_lanes(s.within_owner + count, within, lanes_at(s.owner + k));
+    count += store_lanes(s.within_neighbour + count, within, lanes_at(s.neighbour + k));
   }
-  return fastest;
+  for (int l = 0; l < kLanes; ++l) s.within_owner[count + l] = s.within_neighbour[count + l] = 0;
+  return count;
+}
+
+float separate(const SeparateOwners& given) {
+  const SeparateOwners s = given;
+  const int count =
+      pairs_within({s.bodies, s.pairs, s.owner, s.neighbour, 1, s.room.owner, s.room.neighbour});
+  Wide fastest{};
+  for (int i = 0; i < count; i += kLanes)
+    fastest = max(fastest, select(lanes_below(count - i), ask(s, i), Wide{}));
+  for (int a = s.begin; a < s.end; ++a) s.out[a] = s.bodies[a];
+  const int owners = sum_up(s, count);
+  for (int i = 0; i < owners; ++i) move(s, s.room.owner[i], s.room.asked[i]);
+  return greatest(fastest);
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -36,6 +36,7 @@ const physics::KernelTable& table() {
       push,
       block_bounds,
       near_pairs,
+      pairs_within,
       separate,
       surface_square,
   };

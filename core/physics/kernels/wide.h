@@ -102,6 +102,12 @@ WEFT_INLINE WideInt lanes_at(const std::int32_t* p) {
   return *reinterpret_cast<const Loose*>(p);
 }
 
+// The same number in kLanes places of memory.
+WEFT_INLINE void fill_lanes(std::int32_t* p, std::int32_t number) {
+  typedef WideInt Loose __attribute__((aligned(4), may_alias));
+  *reinterpret_cast<Loose*>(p) = WideInt{} + number;
+}
+
 // All ones in the lanes whose number is below `count`.
 WEFT_INLINE WideInt lanes_below(int count) {
   return lane_numbers() < count;

@@ -8,7 +8,7 @@ namespace weft::physics {
 namespace {
 
 constexpr float kHair = 1.001f;            // cells are wider than the range, for rounding
-constexpr std::size_t kHitsReserved = 16;  // per point
+constexpr std::size_t kPairsReserved = 8;  // per point
 constexpr std::size_t kCandidates = 512;   // of one cell, room at first
 
 }  // namespace
@@ -17,7 +17,7 @@ constexpr std::size_t kCandidates = 512;   // of one cell, room at first
 // stay exact for a rectangular sheet.
 PairSearch::PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics,
                        const KernelTable& kernels)
-    : kernels_(kernels), chunks_(kChunks) {
+    : kernels_(kernels) {
   double begin = 0;
   for (const RestMetric& m : metrics) {
     const double shear = double(m.uv) / m.uu;
@@ -31,21 +31,22 @@ PairSearch::PairSearch(std::size_t most_points, const std::vector<RestMetric>& m
   for (AlignedArray<float>* a : {&x_, &y_, &z_, &u_, &w_, &apart_squared_})
     *a = AlignedArray<float>(n + 16);
   grid_.reserve(n);
+  sorted_sites_.resize(n);
   counts_.resize(n);
+  chunks_.resize((n + kChunk - 1) / kChunk);
   for (Chunk& c : chunks_) {
-    c.hits.resize(kHitsReserved * n / kChunks + kCandidates);
-    c.number.resize(kCandidates);
-    c.farther.resize(kCandidates);
-    c.room.resize(5 * kCandidates);
+    c.owner.resize(kPairsReserved * kChunk + kCandidates);
+    c.neighbour.resize(c.owner.size());
   }
 }
 
 void PairSearch::sort(std::size_t count, const Spread& box, float range, Threads& threads) {
   count_ = count;
   grid_.build({x_.data(), y_.data(), z_.data()}, count, box, range * kHair, threads);
-  threads.share(kChunks, few(), [&](std::size_t k) {
+  threads.share(chunks(), few(), [&](std::size_t k) {
     for (std::size_t p = begin(k); p < begin(k + 1); ++p) {
       const Site& s = sites_[std::size_t(grid_.numbers()[p])];
+      sorted_sites_[p] = s;
       const FlatSheet& flat = flat_[s.cloth];
       u_[p] = flat.begin + float(s.column) + flat.shear * float(s.row);
       w_[p] = flat.height * float(s.row);
@@ -54,11 +55,15 @@ void PairSearch::sort(std::size_t count, const Spread& box, float range, Threads
   });
 }
 
-void PairSearch::find(float range, float soon, Threads& threads) {
-  threads.share(kChunks, few(), [&](std::size_t k) { find_chunk(k, range, soon); });
+void PairSearch::find(float range, Threads& threads) {
+  const bool alone = few() || threads.count() == 1;
+  rooms_.resize(std::size_t(threads.count()));
+  threads.share(chunks(), alone, [&](std::size_t k) {
+    find_chunk(k, range, rooms_[alone ? 0 : std::size_t(Threads::index())]);
+  });
 }
 
-void PairSearch::find_chunk(std::size_t k, float range, float soon) {
+void PairSearch::find_chunk(std::size_t k, float range, Room& room) {
   Chunk& c = chunks_[k];
   c.found = 0;
   NearSearch s{};
@@ -71,38 +76,43 @@ void PairSearch::find_chunk(std::size_t k, float range, float soon) {
   s.table = grid_.table();
   std::copy_n(grid_.offsets(), 9, s.offset);
   s.range_squared = range * range;
-  s.near_squared = soon * soon;
   s.begin = int(begin(k));
   s.end = int(begin(k + 1));
   s.counts = counts_.data();
-  for (int needed = 0; s.begin < s.end;) {
-    if (c.number.size() < std::size_t(needed)) {
-      c.number.resize(2 * std::size_t(needed));
-      c.farther.resize(c.number.size());
-      c.room.resize(5 * c.number.size());
+  for (std::size_t needed = kCandidates; s.begin < s.end;) {
+    if (room.number.size() < needed) {
+      room.number.resize(2 * needed);
+      room.place.resize(5 * room.number.size());
     }
-    if (c.hits.size() < c.found + std::size_t(needed))
-      c.hits.resize(2 * (c.found + std::size_t(needed)));
-    const std::size_t size = c.number.size();
-    float* const room = c.room.data();
-    s.room = {{room, room + size, room + 2 * size},
-              room + 3 * size,
-              room + 4 * size,
-              c.number.data(),
-              c.farther.data(),
+    if (c.owner.size() < c.found + needed) {
+      c.owner.resize(2 * (c.found + needed));
+      c.neighbour.resize(c.owner.size());
+    }
+    const std::size_t size = room.number.size();
+    float* const place = room.place.data();
+    s.room = {{place, place + size, place + 2 * size},
+              place + 3 * size,
+              place + 4 * size,
+              room.number.data(),
               int(size)};
-    s.hits = c.hits.data() + c.found;
-    s.hits_room = int(c.hits.size() - c.found);
+    s.owner = c.owner.data() + c.found;
+    s.neighbour = c.neighbour.data() + c.found;
+    s.pairs_room = int(c.owner.size() - c.found);
     const NearFound found = kernels_.near_pairs(s);
     s.begin = found.next;
-    c.found += std::size_t(found.hits);
-    needed = found.needed;
+    c.found += std::size_t(found.pairs);
+    needed = std::size_t(found.needed);
   }
+  // What kernels may read beyond the last.
+  const auto begin = std::ptrdiff_t(c.found);
+  std::fill_n(c.owner.begin() + begin, kNearPadding / 2, 0);
+  std::fill_n(c.neighbour.begin() + begin, kNearPadding / 2, 0);
 }
 
 std::size_t PairSearch::bytes() const {
-  std::size_t bytes = sites_.size() * (sizeof(Site) + 4) + 6 * x_.size() * 4 + grid_.bytes();
-  for (const Chunk& c : chunks_) bytes += (c.hits.capacity() + 7 * c.number.capacity()) * 4;
+  std::size_t bytes = sites_.size() * (2 * sizeof(Site) + 4) + 6 * x_.size() * 4 + grid_.bytes();
+  for (const Chunk& c : chunks_) bytes += 2 * c.owner.capacity() * 4;
+  for (const Room& r : rooms_) bytes += 6 * r.number.capacity() * 4;
   return bytes;
 }
 

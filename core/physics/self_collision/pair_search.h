@@ -3,6 +3,7 @@
 // that are neighbours there are no pairs.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "physics/self_collision/cell_grid.h"
@@ -23,8 +24,6 @@ struct RestMetric {
 
 class PairSearch {
  public:
-  static constexpr std::size_t kChunks = 64;
-
   // `metrics`: of every sheet.
   PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics,
              const KernelTable& kernels);
@@ -35,28 +34,40 @@ class PairSearch {
 
   // Sorts the first `count` points, all in the box, for searches within `range` [m].
   void sort(std::size_t count, const Spread& box, float range, Threads& threads);
-  // Finds the pairs within a range [m]; those nearer than `soon` [m] come first.
-  void find(float range, float soon, Threads& threads);
+  // Finds the pairs within a range [m].
+  void find(float range, Threads& threads);
 
-  // Sorted points are cut into kChunks: chunk k has those from begin(k) to begin(k + 1), and its hits
-  // are those of one point after another.
+  // Sorted points are cut into chunks: chunk k has those from begin(k) to begin(k + 1), and the pairs
+  // in which they are the first of the two, one point's after another's.
   std::size_t count() const { return count_; }
-  std::size_t begin(std::size_t k) const { return k * count_ / kChunks; }
-  const std::vector<std::int32_t>& hits(std::size_t k) const { return chunks_[k].hits; }
-  std::size_t found(std::size_t k) const { return chunks_[k].found; }
-  const std::int32_t* counts() const { return counts_.data(); }  // of every sorted point
+  std::size_t chunks() const { return (count_ + kChunk - 1) / kChunk; }
+  std::size_t begin(std::size_t k) const { return std::min(k * kChunk, count_); }
+  struct Pairs {
+    const std::int32_t *owner, *neighbour;  // numbers of sorted points, and 16 more of any
+    std::size_t count;
+  };
+  Pairs pairs(std::size_t k) const {
+    const Chunk& c = chunks_[k];
+    return {c.owner.data(), c.neighbour.data(), c.found};
+  }
+  const std::int32_t* counts() const { return counts_.data(); }  // pairs of every sorted point
+  const Site& site(std::size_t sorted) const { return sorted_sites_[sorted]; }
   std::int32_t number(std::size_t sorted) const { return grid_.numbers()[sorted]; }
   // Whether one thread is faster.
   bool few() const { return count_ < 4096; }
   std::size_t bytes() const;
 
  private:
-  struct Chunk {  // what one share of the sorted points finds, and its room
-    std::vector<std::int32_t> hits, number, farther;
-    std::vector<float> room;  // five arrays as long as `number`
+  static constexpr std::size_t kChunk = 128;
+  struct Chunk {
+    std::vector<std::int32_t> owner, neighbour;  // as long as each other
     std::size_t found = 0;
   };
-  void find_chunk(std::size_t k, float range, float soon);
+  struct Room {  // of one thread, for the candidates of a cell
+    std::vector<std::int32_t> number;
+    std::vector<float> place;  // five arrays as long as `number`
+  };
+  void find_chunk(std::size_t k, float range, Room& room);
 
   // Where a particle lies on its flat sheet: u = column + shear row, w = height row, in spacings of
   // its columns; and below which distance squared two of them are no pair.
@@ -67,12 +78,13 @@ class PairSearch {
   const KernelTable& kernels_;
   std::size_t count_ = 0;
   std::vector<FlatSheet> flat_;
-  std::vector<Site> sites_;
+  std::vector<Site> sites_, sorted_sites_;
   AlignedArray<float> x_, y_, z_;
   CellGrid grid_;
   AlignedArray<float> u_, w_, apart_squared_;  // as sorted
   std::vector<std::int32_t> counts_;
   std::vector<Chunk> chunks_;
+  std::vector<Room> rooms_;
 };
 
 }  // namespace weft::physics

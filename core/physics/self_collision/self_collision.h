@@ -21,13 +21,6 @@ namespace weft::physics {
 
 class ClothStep;
 
-// Pairs of particles in range of each other, each listed with both its ends.
-struct NearPairs {
-  std::vector<Site> site;               // of every particle with a pair
-  std::vector<std::int32_t> first;      // of its neighbours, one more than particles
-  std::vector<std::int32_t> neighbour;  // numbers into site; filled by SelfContact::search
-};
-
 class SelfContact {
  public:
   // Null when no cloth asks for it.
@@ -48,7 +41,17 @@ class SelfContact {
   Overlaps overlaps();
 
   // Searches now for all pairs nearer than the greatest thickness and `margin` [m].
-  const NearPairs& search(double margin, Threads& threads);
+  void search(double margin, Threads& threads);
+  // Calls visit(site, other site) for each pair that was found, with either of the two first.
+  template <class Visit>
+  void for_each_pair(Visit&& visit) const {
+    for (std::size_t k = 0; k < search_.chunks(); ++k) {
+      const PairSearch::Pairs pairs = search_.pairs(k);
+      for (std::size_t i = 0; i < pairs.count; ++i)
+        visit(search_.site(std::size_t(pairs.owner[i])),
+              search_.site(std::size_t(pairs.neighbour[i])));
+    }
+  }
 
   // One part of a run by itself, for measuring: the sort of what was searched last, its pairs
   // within the thickness and a margin, and pushing them apart.
@@ -69,15 +72,10 @@ class SelfContact {
  private:
   SelfContact(const Scene& scene, std::vector<Sheet> sheets, const KernelTable& kernels);
   void list_sites(Threads& threads);
-  void join_chunks(Threads& threads);
-  void order_owners(Threads& threads);
-  template <class Visit>
-  void for_each_owner(std::size_t chunk, Visit&& visit) const;
-  void group_owners(Threads& threads);
-  void list_neighbours();
-  void gather(std::size_t group);
-  void scatter(std::size_t group);
-  std::size_t groups() const { return (pairs_.site.size() + 15) / 16; }
+  void begin_response(Threads& threads);
+  void gather(std::size_t chunk);
+  void list_close(std::size_t chunk);
+  void scatter(std::size_t chunk);
 
   const Scene& scene_;
   std::vector<Sheet> sheets_;
@@ -87,19 +85,22 @@ class SelfContact {
   PairSearch search_;                    // among the particles of active blocks
   std::vector<std::size_t> first_site_;  // of every block
   std::size_t count_ = 0;                // particles of active blocks
-  std::vector<std::int32_t> listed_;     // sorted particle -> number into pairs_.site
-  std::vector<std::int32_t> place_;      // where each owner has come to when owners were ordered
-  NearPairs pairs_;
-  struct {                                // of pairs_, 16 owners at a time
-    std::vector<std::size_t> first;       // of a group's slots, one more than groups
-    std::vector<std::int32_t> neighbour;  // slots x 16
-    std::vector<float> friction;          // of every owner
-    std::vector<std::int32_t> course;
-  } slots_;
-  std::vector<float> speeds_;             // of a group's pairs that touch, squared, at most
-  std::vector<Body> bodies_, separated_;  // of pairs_.site, up to whole groups, and 16 far away
-  float thickness_ = 0;                   // greatest of the sheets [m]
-  bool course_ = false;                   // whether any sheet has the course's rule
+  struct Close {                         // pairs of a chunk that may touch in this run
+    std::vector<std::int32_t> owner, neighbour;
+    int count = 0;
+  };
+  std::vector<Close> close_;
+  struct Room {  // of one thread, for the pairs of a chunk that touch
+    std::vector<std::int32_t> owner, neighbour;
+    std::vector<Asked> asked;
+  };
+  std::vector<Room> rooms_;
+  // Of every sorted particle with pairs; friction or kCourseRule.
+  std::vector<Body> bodies_, separated_;
+  std::vector<float> friction_;
+  std::vector<float> speeds_;  // of a chunk's pairs that touch, squared, at most
+  float thickness_ = 0;        // greatest of the sheets [m]
+  bool course_ = false;        // whether any sheet has the course's rule
   bool valid_ = false;
   std::int64_t runs_ = 0, searches_ = 0, passed_over_ = 0;
 };

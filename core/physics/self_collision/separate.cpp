@@ -1,4 +1,4 @@
-// Self-collision (self_collision.h): pairs pushed apart, group by group (kernels/separate.cpp).
+// Self-collision (self_collision.h): pairs pushed apart, chunk by chunk (kernels/separate.cpp).
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,73 +8,100 @@
 namespace weft::physics {
 namespace {
 
-constexpr int kIterations = 3;                                    // of pushing apart, in one run
-constexpr std::size_t kGroups = 32;                               // of a task
-constexpr std::size_t kFewGroups = 64;                            // that one thread does faster
-constexpr Body kFarAway{{1e18f, 1e18f, 1e18f, 0}, {0, 0, 0, 0}};  // its square is still finite
+constexpr int kIterations = 3;           // of pushing apart, in one run
+constexpr float kClose = 1.15f;          // distances at which two are held: may touch in this run
+constexpr std::size_t kFewPairs = 8192;  // that one thread does faster
+constexpr std::size_t kPadding = 32;     // that kernels may write
 
 }  // namespace
 
-void SelfContact::gather(std::size_t group) {
-  for (std::size_t a = 16 * group; a < 16 * group + 16; ++a) {
-    Body& b = bodies_[a];
-    if (a >= pairs_.site.size()) {
-      b = kFarAway;
-      continue;
-    }
-    const Site& s = pairs_.site[a];
+void SelfContact::gather(std::size_t chunk) {
+  for (std::size_t a = search_.begin(chunk); a < search_.begin(chunk + 1); ++a) {
+    if (search_.counts()[a] == 0) continue;
+    const Site s = search_.site(a);
     const Sheet& sheet = sheets_[s.cloth];
-    const Lattice& l = *sheet.lattice;
-    for (int k = 0; k < 3; ++k) {
-      b.x[k] = l.x.at(k, s.row, s.column);
-      b.v[k] = l.v.at(k, s.row, s.column);
-    }
-    b.v[3] = l.w(s.row, s.column);
-    b.x[3] = sheet.thickness;
+    Lattice& l = *sheet.lattice;
+    const Row3 x = l.x.row(s.row), v = l.v.row(s.row);
+    const float held = sheet.course ? sheet.thickness : sheet.thickness * kHeld;
+    bodies_[a] = {{x.x[s.column], x.y[s.column], x.z[s.column], held},
+                  {v.x[s.column], v.y[s.column], v.z[s.column], l.w(s.row, s.column)}};
+    friction_[a] = sheet.course ? kCourseRule : sheet.friction;
   }
 }
 
-void SelfContact::scatter(std::size_t group) {
-  for (std::size_t a = 16 * group; a < std::min(16 * group + 16, pairs_.site.size()); ++a) {
-    const Body& b = bodies_[a];
-    if (b.v[3] <= 0) continue;
-    const Site& s = pairs_.site[a];
+void SelfContact::scatter(std::size_t chunk) {
+  for (std::size_t a = search_.begin(chunk); a < search_.begin(chunk + 1); ++a) {
+    const Body b = bodies_[a];
+    if (search_.counts()[a] == 0 || b.v[3] <= 0) continue;
+    const Site s = search_.site(a);
     Lattice& l = *sheets_[s.cloth].lattice;
-    for (int k = 0; k < 3; ++k) {
-      l.x.at(k, s.row, s.column) = b.x[k];
-      l.v.at(k, s.row, s.column) = b.v[k];
-    }
+    const Row3 x = l.x.row(s.row), v = l.v.row(s.row);
+    x.x[s.column] = b.x[0], x.y[s.column] = b.x[1], x.z[s.column] = b.x[2];
+    v.x[s.column] = b.v[0], v.y[s.column] = b.v[1], v.z[s.column] = b.v[2];
   }
+}
+
+// The pairs that are pushed apart now, or that others may push into each other.
+void SelfContact::list_close(std::size_t chunk) {
+  const PairSearch::Pairs pairs = search_.pairs(chunk);
+  Close& close = close_[chunk];
+  close.count =
+      kernels_.pairs_within({bodies_.data(), int(pairs.count), pairs.owner, pairs.neighbour, kClose,
+                             close.owner.data(), close.neighbour.data()});
+}
+
+// Makes room.
+void SelfContact::begin_response(Threads& threads) {
+  const auto grown = [](auto& list, std::size_t count) {
+    if (list.owner.size() >= count + kPadding) return false;
+    list.owner.resize(2 * count + kPadding);
+    list.neighbour.resize(list.owner.size());
+    return true;
+  };
+  speeds_.resize(search_.chunks());
+  if (close_.size() < search_.chunks()) close_.resize(search_.chunks());
+  std::size_t most = 0;
+  for (std::size_t k = 0; k < search_.chunks(); ++k) {
+    grown(close_[k], search_.pairs(k).count);
+    most = std::max(most, search_.pairs(k).count);
+  }
+  rooms_.resize(std::size_t(threads.count()));
+  for (Room& r : rooms_)
+    if (grown(r, most)) r.asked.resize(r.owner.size());
 }
 
 double SelfContact::respond(double dt, int since, Threads& threads) {
-  if (pairs_.site.empty()) return 0;
-  const std::size_t n = groups();
-  bodies_.resize(16 * n + 16, kFarAway);
-  separated_.resize(16 * n + 16, kFarAway);
-  for (std::size_t a = 16 * n; a < 16 * n + 16; ++a) bodies_[a] = separated_[a] = kFarAway;
-  speeds_.resize(n);
-  const auto each = [&](auto&& work) {
-    threads.share((n + kGroups - 1) / kGroups, n < kFewGroups, [&](std::size_t k) {
-      for (std::size_t g = k * kGroups; g < std::min(n, (k + 1) * kGroups); ++g) work(g);
-    });
-  };
-  each([&](std::size_t g) { gather(g); });
+  std::size_t pairs = 0;
+  for (std::size_t k = 0; k < search_.chunks(); ++k) pairs += search_.pairs(k).count;
+  if (pairs == 0) return 0;
+  begin_response(threads);
+  const bool alone = pairs < kFewPairs || threads.count() == 1;
+  const auto each = [&](auto&& work) { threads.share(search_.chunks(), alone, work); };
+  each([&](std::size_t k) { gather(k); });
   // The course's push for as many substeps as have passed.
   const double steps = scene_.time.substeps > 0 ? scene_.time.substeps : scene_.time.frame / dt;
   const int iterations = course_ ? 1 : kIterations;
   for (int i = 0; i < iterations; ++i) {
-    each([&](std::size_t g) {
-      const auto first = int(16 * g);
-      speeds_[g] =
-          kernels_.separate({bodies_.data(), first, int(slots_.first[g + 1] - slots_.first[g]),
-                             slots_.neighbour.data() + 16 * slots_.first[g],
-                             slots_.friction.data() + first, slots_.course.data() + first,
-                             float(since / steps), float(1 / dt), separated_.data() + first});
+    each([&](std::size_t k) {
+      if (i == 0) list_close(k);
+      Room& room = rooms_[alone ? 0 : std::size_t(Threads::index())];
+      const Close& close = close_[k];
+      speeds_[k] =
+          kernels_.separate({bodies_.data(),
+                             int(search_.begin(k)),
+                             int(search_.begin(k + 1)),
+                             close.count,
+                             close.owner.data(),
+                             close.neighbour.data(),
+                             friction_.data(),
+                             float(since / steps),
+                             float(1 / dt),
+                             separated_.data(),
+                             {room.owner.data(), room.neighbour.data(), room.asked.data()}});
     });
     std::swap(bodies_, separated_);
   }
-  each([&](std::size_t g) { scatter(g); });
+  each([&](std::size_t k) { scatter(k); });
   return std::sqrt(*std::max_element(speeds_.begin(), speeds_.end()));
 }
 

@@ -55,8 +55,7 @@ std::unique_ptr<SurfaceContact> SurfaceContact::make(const Scene& scene,
 SurfaceContact::SurfaceContact(std::vector<Sheet> sheets, const KernelTable& kernels)
     : sheets_(std::move(sheets)),
       kernels_(kernels),
-      search_(count_particles(sheets_), metrics_of(sheets_), kernels),
-      others_(PairSearch::kChunks) {
+      search_(count_particles(sheets_), metrics_of(sheets_), kernels) {
   std::size_t n = 0;
   float spacing = 0, thickness = 0;
   close_ = floor_ = std::numeric_limits<float>::max();
@@ -157,13 +156,13 @@ float SurfaceContact::list_squares(Threads& threads, Spread& box) {
 }
 
 void SurfaceContact::compare(std::size_t chunk, std::vector<std::int32_t>& others) {
-  const std::int32_t* hit = search_.hits(chunk).data();
+  const std::int32_t* near = search_.pairs(chunk).neighbour;
   for (std::size_t p = search_.begin(chunk); p < search_.begin(chunk + 1); ++p) {
     const auto count = std::size_t(search_.counts()[p]);
     if (others.size() < count + 16) others.resize(2 * count + 16);
     for (std::size_t i = 0; i < count; ++i)
-      others[i] = listed_[std::size_t(search_.number(std::size_t(hit[i])))];
-    hit += count;
+      others[i] = listed_[std::size_t(search_.number(std::size_t(near[i])))];
+    near += count;
     const std::int32_t owner = listed_[std::size_t(search_.number(p))];
     kernels_.surface_square({squares_.data(), boxes_.data(), owner, others.data(), int(count),
                              std::int32_t(squares_.size() - 1), reach_, close_,
@@ -174,9 +173,12 @@ void SurfaceContact::compare(std::size_t chunk, std::vector<std::int32_t>& other
 void SurfaceContact::measure(Threads& threads) {
   Spread box;
   const float widest = list_squares(threads, box);
-  search_.find(reach_ + 2 * widest, 0, threads);
-  threads.share(PairSearch::kChunks, search_.few() && threads.count() == 1,
-                [&](std::size_t k) { compare(k, others_[k]); });
+  search_.find(reach_ + 2 * widest, threads);
+  const bool alone = threads.count() == 1;
+  others_.resize(std::size_t(threads.count()));
+  threads.share(search_.chunks(), alone, [&](std::size_t k) {
+    compare(k, others_[alone ? 0 : std::size_t(Threads::index())]);
+  });
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     const Lattice& l = *sheets_[s].lattice;
     threads.share(std::size_t(l.rows), l.rows * l.columns < 4096,

@@ -71,7 +71,7 @@ class SurfaceContact {
   PairSearch search_;                              // among squares
   std::vector<Square> squares_;                    // one for each particle, and one far away
   std::vector<std::int32_t> listed_;               // point of the search -> square
-  std::vector<std::vector<std::int32_t>> others_;  // of one square, a room for each chunk
+  std::vector<std::vector<std::int32_t>> others_;  // of one square, a room for each thread
   std::vector<SquareBox> boxes_;
   std::vector<SquareSum> sums_;
   std::vector<Place> places_;
