@@ -53,6 +53,7 @@ struct NearSearch {
   std::int64_t offset[9];     // from a bucket to the first of each run, modulo the table
   float range_squared;        // m²
   int begin, end;             // sorted particles to search about
+  bool once;                  // pairs are listed by the first of the two alone, else by both
   std::int32_t* counts;       // out, per particle: how many are in range and no neighbours
   std::int32_t* neighbour;    // out, particle after particle: their numbers in sorted order
   std::int32_t* owner;        // out, for each of them, the number of the particle

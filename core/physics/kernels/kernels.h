@@ -207,7 +207,8 @@ struct NearSearch;
 struct NearFound;
 struct PairsWithin;
 struct SeparateOwners;
-struct SurfaceSquare;  // kernels/surface.h
+struct SquaresWithin;
+struct SurfacePairs;  // kernels/surface.h
 struct TransposeRows;
 struct SecondOrderRow;  // kernels/second_order.h
 struct TetherRow;
@@ -248,7 +249,8 @@ struct KernelTable {
   int (*pairs_within)(const PairsWithin&);     // returns how many are
   // Pushes pairs apart; returns the greatest squared relative speed of two that touch [m²/s²].
   float (*separate)(const SeparateOwners&);
-  void (*surface_square)(const SurfaceSquare&);  // a square against those near it
+  int (*squares_within)(const SquaresWithin&);  // returns how many are
+  int (*surface_pairs)(const SurfacePairs&);    // measures them; returns how many touch
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

@@ -21,13 +21,15 @@ struct Runs {
   int count = 0, candidates = 0;
 };
 
-WEFT_INLINE Runs runs_about(const NearSearch& s, std::int64_t bucket) {
+// Of those from number `begin` on.
+WEFT_INLINE Runs runs_about(const NearSearch& s, std::int64_t bucket, int begin) {
   Runs r;
   const auto add = [&](std::int64_t from, std::int64_t to) {
-    const Run run{s.start[from], s.start[to]};
+    const int first = s.start[from];
+    const Run run{first > begin ? first : begin, s.start[to]};
     r.run[r.count] = run;
     r.count += run.first < run.last;
-    r.candidates += run.last - run.first;
+    r.candidates += run.first < run.last ? run.last - run.first : 0;
   };
   for (const std::int64_t offset : s.offset) {
     std::int64_t from = bucket + offset;
@@ -85,56 +87,61 @@ WEFT_INLINE int bring_together(const NearSearch& s, const Runs& runs, int begin,
 struct Seeker {
   Wide3 p;
   Wide u, w, apart;
+  std::int32_t m;
   std::int32_t* near;
   int found = 0;
 
-  WEFT_INLINE Seeker(const NearSearch& s, int m, std::int32_t* to)
-      : p(wide3(s.x.x[m], s.x.y[m], s.x.z[m])),
-        u(wide(s.u[m])),
-        w(wide(s.w[m])),
-        apart(wide(s.apart_squared[m])),
+  WEFT_INLINE Seeker(const NearSearch& s, int number, std::int32_t* to)
+      : p(wide3(s.x.x[number], s.x.y[number], s.x.z[number])),
+        u(wide(s.u[number])),
+        w(wide(s.w[number])),
+        apart(wide(s.apart_squared[number])),
+        m(number),
         near(to) {}
 
   // Of kLanes candidates, those `asked`.
+  template <bool kOnce>
   WEFT_INLINE void test(const NearSearch& s, Wide3 x, Wide at_u, Wide at_w, WideInt number,
                         WideInt asked) {
     const Wide3 d = x - p;
     const Wide a = at_u - u, b = at_w - w;
-    const WideInt pair = (dot(d, d) < s.range_squared) & (a * a + b * b >= apart) & asked;
+    WideInt pair = (dot(d, d) < s.range_squared) & (a * a + b * b >= apart) & asked;
+    if constexpr (kOnce) pair &= number > m;
     found += store_lanes(near + found, pair, number);
   }
 };
 
 // The numbers of those near particle m among what was brought together; returns how many.
+template <bool kOnce>
 WEFT_INLINE int near_one(const NearSearch& s, int candidates, int m, std::int32_t* near) {
   Seeker seeker(s, m, near);
   const NearRoom& room = s.room;
   for (int i = 0; i < candidates; i += kLanes)
-    seeker.test(s, load3(room.x, i), load(room.u + i), load(room.w + i), lanes_at(room.number + i),
-                WideInt{} - 1);
+    seeker.test<kOnce>(s, load3(room.x, i), load(room.u + i), load(room.w + i),
+                       lanes_at(room.number + i), WideInt{} - 1);
   return seeker.found;
 }
 
 // The same among the runs themselves.
+template <bool kOnce>
 WEFT_INLINE int near_one(const NearSearch& s, const Runs& runs, int m, std::int32_t* near) {
   Seeker seeker(s, m, near);
   for (int r = 0; r < runs.count; ++r) {
     const int last = runs.run[r].last;
     for (int i = runs.run[r].first; i < last; i += kLanes)
-      seeker.test(s, load3(s.x, i), load(s.u + i), load(s.w + i), lane_numbers() + i,
-                  lanes_below(last - i));
+      seeker.test<kOnce>(s, load3(s.x, i), load(s.u + i), load(s.w + i), lane_numbers() + i,
+                         lanes_below(last - i));
   }
   return seeker.found;
 }
 
-}  // namespace
-
-NearFound near_pairs(const NearSearch& given) {
+template <bool kOnce>
+WEFT_INLINE NearFound search(const NearSearch& given) {
   const NearSearch s = given;
   int found = 0;
   for (int m = s.begin; m < s.end;) {
     const std::int32_t bucket = s.bucket[m];
-    const Runs runs = runs_about(s, bucket);
+    const Runs runs = runs_about(s, bucket, kOnce ? m : 0);
     const int needed = runs.candidates + kNearPadding;
     if (s.room.size < needed) return {m, found, needed};
     int end = m + 1;
@@ -147,13 +154,19 @@ NearFound near_pairs(const NearSearch& given) {
       if (near <= 1)
         count = 0;
       else
-        count = together ? near_one(s, near, m, s.neighbour + found)
-                         : near_one(s, runs, m, s.neighbour + found);
+        count = together ? near_one<kOnce>(s, near, m, s.neighbour + found)
+                         : near_one<kOnce>(s, runs, m, s.neighbour + found);
       for (int i = 0; i < count; i += kLanes) fill_lanes(s.owner + found + i, m);
       found += count;
     }
   }
   return {s.end, found, 0};
+}
+
+}  // namespace
+
+NearFound near_pairs(const NearSearch& given) {
+  return given.once ? search<true>(given) : search<false>(given);
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -96,7 +96,8 @@ void block_bounds(const physics::BlockRows&);
 physics::NearFound near_pairs(const physics::NearSearch&);
 int pairs_within(const physics::PairsWithin&);
 float separate(const physics::SeparateOwners&);
-void surface_square(const physics::SurfaceSquare&);
+int squares_within(const physics::SquaresWithin&);
+int surface_pairs(const physics::SurfacePairs&);
 
 // A collider's kernels: its own file in colliders/ defines them by WEFT_COLLIDER (collide.h).
 struct ColliderKernels {

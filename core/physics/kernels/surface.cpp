@@ -1,5 +1,5 @@
-// Self-collision among surfaces: vertices against triangles and edges against edges, of one square
-// and 16 others at a time.
+// Self-collision among surfaces: vertices against triangles and edges against edges, of kLanes pairs
+// of squares at a time.
 //
 // With the closest points Σ a_i x_i and Σ b_k y_k (a, b >= 0, each summing to 1), n from the other's
 // to the own, and d their distance: what is nearer than h is pushed apart by
@@ -8,8 +8,7 @@
 //
 // and the velocity into the other is lost in the same shares, and of the velocity along it up to μ
 // times as much; of several pairs their mean, each weighing (h - d) h/d, so that between two layers
-// the nearer one has its way. Every square sums up what concerns its own corners: nothing is
-// written twice.
+// the nearer one has its way.
 #include "physics/kernels/surface.h"
 
 #include "physics/kernels/records.h"
@@ -20,8 +19,10 @@ namespace weft::WEFT_KERNELS {
 namespace {
 
 using physics::Square;
-using physics::SquareSum;
-using physics::SurfaceSquare;
+using physics::SquareChange;
+using physics::SquaresTouching;
+using physics::SquaresWithin;
+using physics::SurfacePairs;
 
 constexpr float kTiny = 1e-20f;
 // Of the thickness: weights of pairs nearer than that grow no further.
@@ -32,11 +33,12 @@ constexpr float kApart = 2.5f;
 constexpr int kEdges[3][2] = {{0, 1}, {0, 2}, {1, 2}}, kFaces[2][3] = {{0, 1, 2}, {1, 3, 2}};
 constexpr int kStride = sizeof(Square) / sizeof(float);
 
-struct Sums {
-  Wide nearest;
-  Wide3 push[4], gain[4];
-  Wide weight[4];
+// SquareChange of kLanes pairs.
+struct Change {
+  Wide push[4][3], gain[4][3], weight[4];
 };
+constexpr int kFloats = sizeof(SquareChange) / sizeof(float);
+static_assert(sizeof(Change) == kFloats * sizeof(Wide));
 
 struct Edge {
   Wide3 along;
@@ -50,16 +52,16 @@ struct Face {
   Wide area, inverse;  // twice the area, squared [m⁴, 1/m⁴]
 };
 
-// What squares are made of, relative to the owner's A.
+// What squares are made of, relative to the A of the first of the two.
 struct Shape {
   Wide3 x[4];
   Edge edge[3];
   Face face[2];
 };
 
-// The closest points of two squares, as shares of the corners A, B, C, D.
+// The closest points of two squares, as shares of the corners A, B, C, D of each.
 struct Closest {
-  Wide own[4], other[4];
+  Wide at[2][4];
 };
 
 WEFT_INLINE Wide clamp01(Wide s) {
@@ -126,46 +128,45 @@ WEFT_INLINE Wide edge_edge(Wide3 p, const Edge& e, Wide3 q, const Edge& f, Wide&
   return dot(off, off);
 }
 
-// What one group of 16 others, or a part of it, is to the owner.
-class Group {
+// kLanes pairs of squares.
+class Pairs {
  public:
-  WEFT_INLINE Group(const SurfaceSquare& given, const Shape& own, const std::int32_t* others,
-                    Sums& sums)
-      : given_(given), p_(given.squares[given.owner]), own_(own), others_(others), sums_(sums) {
-    corners_of(&Square::x, other_.x);
-    for (Wide3& x : other_.x) x = x - wide3(p_.x[0][0], p_.x[0][1], p_.x[0][2]);
-    fill_shape(other_);
-    const Wide4 rest = records_at(given.squares->place, kStride, others);
-    const WideInt beside =
-        (abs(rest.xyz.x - p_.place[0]) < kApart) & (abs(rest.xyz.y - p_.place[1]) < kApart);
-    const Wide thickness = 0.5f * (rest.xyz.z + p_.place[2]);
-    const Wide held = select(beside, min(thickness, wide(given.close)), thickness);
-    held_ = held;
-    held_squared_ = held * held;
-    const Wide4 corner =
-        records_at(reinterpret_cast<const float*>(given.squares->corner), kStride, others);
-    corner_[0] = (WideInt)corner.xyz.x;
-    corner_[1] = (WideInt)corner.xyz.y;
-    corner_[2] = (WideInt)corner.xyz.z;
-    corner_[3] = (WideInt)corner.last;
+  WEFT_INLINE Pairs(const SurfacePairs& given, int at)
+      : given_(given), number_{given.owner + at, given.neighbour + at} {
+    for (int n = 0; n < 2; ++n) corners_of(n, &Square::x, shape_[n].x);
+    const Wide3 origin = shape_[0].x[0];
+    for (int n = 0; n < 2; ++n) {
+      for (Wide3& x : shape_[n].x) x = x - origin;
+      fill_shape(shape_[n]);
+      const Wide4 corner = records_at((const float*)given.squares->corner, kStride, number_[n]);
+      corner_[n][0] = (WideInt)corner.xyz.x;
+      corner_[n][1] = (WideInt)corner.xyz.y;
+      corner_[n][2] = (WideInt)corner.xyz.z;
+      corner_[n][3] = (WideInt)corner.last;
+    }
+    const Wide4 p = records_at(given.squares->place, kStride, number_[0]);
+    const Wide4 q = records_at(given.squares->place, kStride, number_[1]);
+    const WideInt beside = (abs(q.xyz.x - p.xyz.x) < kApart) & (abs(q.xyz.y - p.xyz.y) < kApart);
+    const Wide thickness = 0.5f * (q.xyz.z + p.xyz.z);
+    held_ = select(beside, min(thickness, wide(given.close)), thickness);
+    held_squared_ = held_ * held_;
+    friction_ = 0.5f * (q.last + p.last);
+    near_squared_ = wide(given.range * given.range);
+    valid_ = lanes_below(given.pairs - at);
   }
 
-  // The own vertex against a triangle of the others, and the other way round.
+  // The vertex of each against a triangle of the other.
   WEFT_INLINE void vertex(int n) {
-    const auto [i, j, k] = kFaces[n];
-    Wide share[3];
-    const Wide square = vertex_face(own_.x[0], other_.face[n], share);
-    if (const WideInt touch = met(square, same(0, i) | same(0, j) | same(0, k)); any(touch)) {
+    for (int own = 0; own < 2; ++own) {
+      const auto [i, j, k] = kFaces[n];
+      const auto joined = same(own, 0, i) | same(own, 0, j) | same(own, 0, k);
+      Wide share[3];
+      const Wide square = vertex_face(shape_[own].x[0], shape_[1 - own].face[n], share);
+      const WideInt touch = met(square, joined);
+      if (!any(touch)) continue;
       Closest c{};
-      c.own[0] = wide(1);
-      c.other[i] = share[0], c.other[j] = share[1], c.other[k] = share[2];
-      push(c, touch);
-    }
-    const Wide back = vertex_face(other_.x[0], own_.face[n], share);
-    if (const WideInt touch = met(back, same(i, 0) | same(j, 0) | same(k, 0)); any(touch)) {
-      Closest c{};
-      c.other[0] = wide(1);
-      c.own[i] = share[0], c.own[j] = share[1], c.own[k] = share[2];
+      c.at[own][0] = wide(1);
+      c.at[1 - own][i] = share[0], c.at[1 - own][j] = share[1], c.at[1 - own][k] = share[2];
       push(c, touch);
     }
   }
@@ -174,24 +175,45 @@ class Group {
     const auto [i, j] = kEdges[n];
     const auto [k, l] = kEdges[m];
     Wide s, t;
-    const Wide square = edge_edge(own_.x[i], own_.edge[n], other_.x[k], other_.edge[m], s, t);
-    const WideInt touch = met(square, same(i, k) | same(i, l) | same(j, k) | same(j, l));
+    const Wide square =
+        edge_edge(shape_[0].x[i], shape_[0].edge[n], shape_[1].x[k], shape_[1].edge[m], s, t);
+    const WideInt touch =
+        met(square, same(0, i, k) | same(0, i, l) | same(0, j, k) | same(0, j, l));
     if (!any(touch)) return;
     Closest c{};
-    c.own[i] = 1.0f - s, c.own[j] = s;
-    c.other[k] = 1.0f - t, c.other[l] = t;
+    c.at[0][i] = 1.0f - s, c.at[0][j] = s;
+    c.at[1][k] = 1.0f - t, c.at[1][l] = t;
     push(c, touch);
   }
 
- private:
-  // Whether a corner of the own is the same particle as a corner of the others.
-  WEFT_INLINE WideInt same(int own, int other) const { return corner_[other] == p_.corner[own]; }
+  WEFT_INLINE Wide near_squared() const { return near_squared_; }
 
-  // Three floats of each of the others' corners.
-  WEFT_INLINE void corners_of(float (Square::*part)[4][3], Wide3 (&out)[4]) const {
+  // Writes what those that touch want, `at` being the number of the first; returns how many.
+  WEFT_INLINE int put_touching(int at, SquaresTouching* to) const {
+    int count = 0;
+    if (!any(touched_)) return count;
+    for (unsigned set = bits(touched_); set != 0; set &= set - 1) {
+      const int lane = __builtin_ctz(set);
+      SquaresTouching& one = to[count++];
+      one.pair = at + lane;
+      float* const out = &one.change[0].push[0][0];
+      const float* const from = (const float*)change_ + lane;
+      for (int f = 0; f < 2 * kFloats; ++f) out[f] = from[f * kLanes];
+    }
+    return count;
+  }
+
+ private:
+  // Whether a corner of one is the same particle as a corner of the other.
+  WEFT_INLINE WideInt same(int n, int corner, int other) const {
+    return corner_[n][corner] == corner_[1 - n][other];
+  }
+
+  // Three floats of each corner.
+  WEFT_INLINE void corners_of(int n, float (Square::*part)[4][3], Wide3 (&out)[4]) const {
     Wide f[12];
     for (int q = 0; q < 3; ++q) {
-      const Wide4 four = records_at(&(given_.squares->*part)[0][0] + 4 * q, kStride, others_);
+      const Wide4 four = records_at(&(given_.squares->*part)[0][0] + 4 * q, kStride, number_[n]);
       f[4 * q] = four.xyz.x, f[4 * q + 1] = four.xyz.y, f[4 * q + 2] = four.xyz.z,
             f[4 * q + 3] = four.last;
     }
@@ -201,114 +223,97 @@ class Group {
   // Takes a distance squared into account; returns where it is less than the thickness.
   WEFT_INLINE WideInt met(Wide square, WideInt joined) {
     const Wide apart = select(joined, wide(1e18f), square);
-    sums_.nearest = min(sums_.nearest, apart);
-    return apart < held_squared_;
+    near_squared_ = min(near_squared_, apart);
+    return (apart < held_squared_) & valid_;
   }
 
   // Not inlined: few pairs touch, and there are thirteen kinds.
   __attribute__((noinline)) void push(const Closest& c, WideInt touch) {
-    Wide3 off = wide3(0, 0, 0), u = wide3(0, 0, 0), v[4];
-    corners_of(&Square::v, v);
-    const Wide4 w = records_at(given_.squares->w, kStride, others_);
-    const Wide weights[4] = {w.xyz.x, w.xyz.y, w.xyz.z, w.last};
-    Wide mass{};
-    for (int k = 0; k < 4; ++k) {
-      off = off + own_.x[k] * c.own[k] - other_.x[k] * c.other[k];
-      u = u + wide3(p_.v[k][0], p_.v[k][1], p_.v[k][2]) * c.own[k] - v[k] * c.other[k];
-      mass = mass + p_.w[k] * (c.own[k] * c.own[k]) + weights[k] * (c.other[k] * c.other[k]);
+    if (!any(touched_))
+      for (Change& change : change_) change = Change{};
+    touched_ = touched_ | touch;
+    Wide3 off = wide3(0, 0, 0), u = wide3(0, 0, 0);
+    Wide mass{}, w[2][4];
+    for (int n = 0; n < 2; ++n) {
+      Wide3 v[4];
+      corners_of(n, &Square::v, v);
+      const Wide4 four = records_at(given_.squares->w, kStride, number_[n]);
+      w[n][0] = four.xyz.x, w[n][1] = four.xyz.y, w[n][2] = four.xyz.z, w[n][3] = four.last;
+      const float sign = n == 0 ? 1 : -1;
+      for (int k = 0; k < 4; ++k) {
+        const Wide share = c.at[n][k] * sign;
+        off = off + shape_[n].x[k] * share;
+        u = u + v[k] * share;
+        mass = mass + w[n][k] * (share * share);
+      }
     }
     // Nothing is pushed where the distance or all inverse masses are 0.
     const Wide distance = sqrt(dot(off, off));
-    const Wide3 n = off * (1.0f / max(distance, wide(kTiny)));
+    const Wide3 normal = off * (1.0f / max(distance, wide(kTiny)));
     const Wide depth = held_ - distance;
     const Wide closeness = held_ / max(distance, held_ * kClosest);
-    const Wide into = dot(u, n), lost = max(Wide{}, -into);
-    const Wide3 slide = u - n * into;
+    const Wide into = dot(u, normal), lost = max(Wide{}, -into);
+    const Wide3 slide = u - normal * into;
     const Wide sliding = sqrt(dot(slide, slide));
-    const Wide rubbed =
-        select(sliding > 1e-12f, min(wide(1), p_.friction * lost / sliding), Wide{});
-    const Wide3 gain = n * lost - slide * rubbed;
+    const Wide rubbed = select(sliding > 1e-12f, min(wide(1), friction_ * lost / sliding), Wide{});
+    const Wide3 gain = normal * lost - slide * rubbed, moved = normal * depth;
     const Wide3 nothing = wide3(0, 0, 0);
-    for (int k = 0; k < 4; ++k) {
-      const Wide weight = depth * closeness * c.own[k];
-      const Wide part = weight * (p_.w[k] * c.own[k] / max(mass, wide(kTiny)));
-      sums_.push[k] = sums_.push[k] + select(touch, n * (part * depth), nothing);
-      sums_.gain[k] = sums_.gain[k] + select(touch, gain * part, nothing);
-      sums_.weight[k] = sums_.weight[k] + select(touch, weight, Wide{});
-    }
+    const Wide per_mass = 1.0f / max(mass, wide(kTiny));
+    for (int n = 0; n < 2; ++n)
+      for (int k = 0; k < 4; ++k) {
+        const Wide weight = depth * closeness * c.at[n][k];
+        const Wide part = weight * (w[n][k] * c.at[n][k] * per_mass) * (n == 0 ? 1.0f : -1.0f);
+        add(change_[n].push[k], select(touch, moved * part, nothing));
+        add(change_[n].gain[k], select(touch, gain * part, nothing));
+        change_[n].weight[k] = change_[n].weight[k] + select(touch, weight, Wide{});
+      }
   }
 
-  const SurfaceSquare& given_;
-  const Square& p_;
-  const Shape& own_;
-  const std::int32_t* const others_;
-  Sums& sums_;
-  Shape other_;
-  WideInt corner_[4];
-  Wide held_, held_squared_;
+  WEFT_INLINE static void add(Wide (&sum)[3], Wide3 more) {
+    sum[0] = sum[0] + more.x, sum[1] = sum[1] + more.y, sum[2] = sum[2] + more.z;
+  }
+
+  const SurfacePairs& given_;
+  const std::int32_t* const number_[2];
+  Shape shape_[2];
+  WideInt corner_[2][4], valid_, touched_{};
+  Wide held_, held_squared_, friction_, near_squared_;
+  Change change_[2];  // filled where any has touched
 };
-
-WEFT_INLINE void compare(const SurfaceSquare& given, const Shape& own, const std::int32_t* others,
-                         Sums& sums) {
-  Group group(given, own, others, sums);
-  for (int n = 0; n < 2; ++n) group.vertex(n);
-  for (int n = 0; n < 3; ++n)
-    for (int m = 0; m < 3; ++m) group.edge(n, m);
-}
-
-// Leaves those of the others whose boxes are within the range; returns how many.
-WEFT_INLINE int keep_near(const SurfaceSquare& given) {
-  const physics::SquareBox& own = given.boxes[given.owner];
-  constexpr int kBoxStride = sizeof(own) / sizeof(float);
-  const Wide3 low = wide3(own.low[0], own.low[1], own.low[2]);
-  const Wide3 high = wide3(own.high[0], own.high[1], own.high[2]);
-  int near = 0;
-  for (int i = 0; i < given.count; i += kLanes) {
-    for (int l = given.count; l < i + kLanes; ++l) given.others[l] = given.far_away;
-    const WideInt number = lanes_at(given.others + i);
-    const Wide3 a = low - records_at(given.boxes->high, kBoxStride, given.others + i).xyz;
-    const Wide3 b = records_at(given.boxes->low, kBoxStride, given.others + i).xyz - high;
-    const Wide3 gap{max(max(a.x, b.x), Wide{}), max(max(a.y, b.y), Wide{}),
-                    max(max(a.z, b.z), Wide{})};
-    near += store_lanes(given.others + near, dot(gap, gap) < given.range * given.range, number);
-  }
-  for (int l = near; l < padded(near); ++l) given.others[l] = given.far_away;
-  return near;
-}
-
-// Lane by lane from 0 to 15, whatever the width.
-WEFT_INLINE void add_up(Wide v, float& sum) {
-  for (int l = 0; l < kLanes; ++l) sum += v[l];
-}
 
 }  // namespace
 
-void surface_square(const SurfaceSquare& given) {
-  SquareSum& out = *given.out;
-  out = {};
-  const int near = keep_near(given);
-  float nearest = given.range * given.range;
-  const Square& p = given.squares[given.owner];
-  Shape own;
-  for (int c = 0; c < 4; ++c)
-    own.x[c] = wide3(p.x[c][0] - p.x[0][0], p.x[c][1] - p.x[0][1], p.x[c][2] - p.x[0][2]);
-  fill_shape(own);
-  for (int part = 0; part < 16; part += kLanes) {
-    Sums sums{};
-    sums.nearest = wide(nearest);
-    for (int i = part; i < near; i += 16) compare(given, own, given.others + i, sums);
-    nearest = least(sums.nearest);
-    for (int k = 0; k < 4; ++k) {
-      add_up(sums.push[k].x, out.push[k][0]);
-      add_up(sums.push[k].y, out.push[k][1]);
-      add_up(sums.push[k].z, out.push[k][2]);
-      add_up(sums.gain[k].x, out.gain[k][0]);
-      add_up(sums.gain[k].y, out.gain[k][1]);
-      add_up(sums.gain[k].z, out.gain[k][2]);
-      add_up(sums.weight[k], out.weight[k]);
-    }
+int squares_within(const SquaresWithin& given) {
+  const SquaresWithin s = given;
+  constexpr int kBoxStride = sizeof(physics::SquareBox) / sizeof(float);
+  const auto outside = [&](int k, const std::int32_t* low, const std::int32_t* high) {
+    return records_at(s.boxes->low, kBoxStride, low + k).xyz -
+           records_at(s.boxes->high, kBoxStride, high + k).xyz;
+  };
+  int count = 0;
+  for (int k = 0; k < s.pairs; k += kLanes) {
+    const Wide3 a = outside(k, s.owner, s.neighbour), b = outside(k, s.neighbour, s.owner);
+    const Wide3 gap{max(max(a.x, b.x), Wide{}), max(max(a.y, b.y), Wide{}),
+                    max(max(a.z, b.z), Wide{})};
+    const WideInt within = (dot(gap, gap) < s.range * s.range) & lanes_below(s.pairs - k);
+    store_lanes(s.within_owner + count, within, lanes_at(s.owner + k));
+    count += store_lanes(s.within_neighbour + count, within, lanes_at(s.neighbour + k));
   }
-  out.nearest = __builtin_sqrtf(nearest);
+  for (int l = 0; l < kLanes; ++l) s.within_owner[count + l] = s.within_neighbour[count + l] = 0;
+  return count;
+}
+
+int surface_pairs(const SurfacePairs& given) {
+  int touching = 0;
+  for (int k = 0; k < given.pairs; k += kLanes) {
+    Pairs pairs(given, k);
+    for (int n = 0; n < 2; ++n) pairs.vertex(n);
+    for (int n = 0; n < 3; ++n)
+      for (int m = 0; m < 3; ++m) pairs.edge(n, m);
+    store(given.near_squared + k, pairs.near_squared());
+    touching += pairs.put_touching(k, given.touching + touching);
+  }
+  return touching;
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -1,4 +1,4 @@
-// What the kernel of self-collision among surfaces takes (surface.cpp).
+// What the kernels of self-collision among surfaces take (surface.cpp).
 #pragma once
 
 #include "physics/kernels/kernels.h"
@@ -17,29 +17,43 @@ struct alignas(64) Square {
   std::int32_t corner[4];  // numbers of the particles, over all sheets
 };
 
-// What others want of a square's corners.
-struct SquareSum {
-  float nearest;  // distance of what it owns from what others own, at most the range [m]
-  // Sums of weights times displacements [m] and velocities [m/s], and of weights.
-  float push[4][3], gain[4][3], weight[4];
-};
-
 // Box about a square; the fourth values are 0.
 struct SquareBox {
   float low[4], high[4];  // m
 };
 
-// One square against those that may be in range of it.
-struct SurfaceSquare {
-  const Square* squares;
+// Pairs of squares, and where those of them go whose boxes are within a range.
+struct SquaresWithin {
   const SquareBox* boxes;
-  int owner;
-  std::int32_t* others;   // gone over: those whose boxes are in range come first
-  int count;              // of them; there is room for 16 more
-  std::int32_t far_away;  // a square out of reach of all
-  float range;            // m
+  int pairs;
+  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
+  float range;                            // m
+  // out, and 16 lanes of padding
+  std::int32_t *within_owner, *within_neighbour;
+};
+
+// Sums of weights times displacements [m] and velocities [m/s], and of weights, of four corners.
+struct SquareChange {
+  float push[4][3], gain[4][3], weight[4];
+};
+
+// A pair that touches, and what it wants of the corners of its owner and of its neighbour.
+struct SquaresTouching {
+  std::int32_t pair;
+  SquareChange change[2];
+};
+
+// Pairs of squares to be measured, each against each.
+struct SurfacePairs {
+  const Square* squares;
+  int pairs;
+  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
+  float range;                            // m
   float close;  // m: pairs of one sheet that are next to each other are kept only so far apart
-  SquareSum* out;
+  // Out: squared distance of what one owns from what the other does, range² at most [m²]; and 16
+  // lanes of padding.
+  float* near_squared;
+  SquaresTouching* touching;  // out; there is room for all
 };
 
 }  // namespace weft::physics

@@ -38,7 +38,8 @@ const physics::KernelTable& table() {
       near_pairs,
       pairs_within,
       separate,
-      surface_square,
+      squares_within,
+      surface_pairs,
   };
   return table;
 }

@@ -17,11 +17,6 @@ int block_columns(const Lattice& l) {
   return longest <= 160 ? 16 : longest <= 640 ? 32 : 64;
 }
 
-Spread nothing() {
-  constexpr float far = std::numeric_limits<float>::max();
-  return {{far, far, far}, {-far, -far, -far}};
-}
-
 Spread both(const Spread& a, const Spread& b) {
   Spread s;
   for (int k = 0; k < 3; ++k) {

@@ -13,6 +13,7 @@
 // normals to the same end.)
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "physics/kernels/contact.h"
@@ -28,6 +29,12 @@ struct Sheet {
   float uu, uv, vv;  // rest metric: |di u + dj v|² [m²]
   bool course;
 };
+
+// Of no values.
+inline Spread nothing() {
+  constexpr float far = std::numeric_limits<float>::max();
+  return {{far, far, far}, {-far, -far, -far}};
+}
 
 struct Block {
   int sheet, row, column, rows, columns;

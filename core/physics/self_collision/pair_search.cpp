@@ -15,9 +15,9 @@ constexpr std::size_t kCandidates = 512;   // of one cell, room at first
 
 // Sheets follow each other along u, further apart than each is wide: whole numbers of columns, which
 // stay exact for a rectangular sheet.
-PairSearch::PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics,
+PairSearch::PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics, bool once,
                        const KernelTable& kernels)
-    : kernels_(kernels) {
+    : kernels_(kernels), once_(once) {
   double begin = 0;
   for (const RestMetric& m : metrics) {
     const double shear = double(m.uv) / m.uu;
@@ -78,6 +78,7 @@ void PairSearch::find_chunk(std::size_t k, float range, Room& room) {
   s.range_squared = range * range;
   s.begin = int(begin(k));
   s.end = int(begin(k + 1));
+  s.once = once_;
   s.counts = counts_.data();
   for (std::size_t needed = kCandidates; s.begin < s.end;) {
     if (room.number.size() < needed) {

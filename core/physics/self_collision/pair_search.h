@@ -24,8 +24,8 @@ struct RestMetric {
 
 class PairSearch {
  public:
-  // `metrics`: of every sheet.
-  PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics,
+  // `metrics`: of every sheet; `once`: each pair is listed by the first of the two alone, else by both.
+  PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics, bool once,
              const KernelTable& kernels);
 
   // Where to put the points, and what they are.
@@ -38,7 +38,7 @@ class PairSearch {
   void find(float range, Threads& threads);
 
   // Sorted points are cut into chunks: chunk k has those from begin(k) to begin(k + 1), and the pairs
-  // in which they are the first of the two, one point's after another's.
+  // that they list, one point's after another's.
   std::size_t count() const { return count_; }
   std::size_t chunks() const { return (count_ + kChunk - 1) / kChunk; }
   std::size_t begin(std::size_t k) const { return std::min(k * kChunk, count_); }
@@ -52,9 +52,8 @@ class PairSearch {
   }
   const std::int32_t* counts() const { return counts_.data(); }  // pairs of every sorted point
   const Site& site(std::size_t sorted) const { return sorted_sites_[sorted]; }
-  std::int32_t number(std::size_t sorted) const { return grid_.numbers()[sorted]; }
   // Whether one thread is faster.
-  bool few() const { return count_ < 4096; }
+  bool few() const { return count_ < 2048; }
   std::size_t bytes() const;
 
  private:
@@ -76,6 +75,7 @@ class PairSearch {
   };
 
   const KernelTable& kernels_;
+  const bool once_;
   std::size_t count_ = 0;
   std::vector<FlatSheet> flat_;
   std::vector<Site> sites_, sorted_sites_;

@@ -69,7 +69,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
       kernels_(kernels),
       particles_(count_particles(sheets_)),
       blocks_(sheets_, float(kNeighbour)),
-      search_(particles_, rest_metrics(sheets_), kernels) {
+      search_(particles_, rest_metrics(sheets_), false, kernels) {
   for (const Sheet& s : sheets_) {
     thickness_ = std::max(thickness_, s.thickness);
     course_ |= s.course;
@@ -113,6 +113,8 @@ void SelfContact::sort(double margin, Threads& threads) {
 
 void SelfContact::find(double margin, Threads& threads) {
   search_.find(thickness_ + float(margin), threads);
+  found_ = 0;
+  for (std::size_t k = 0; k < search_.chunks(); ++k) found_ += search_.pairs(k).count;
 }
 
 void SelfContact::search(double margin, Threads& threads) {

@@ -72,6 +72,7 @@ class SelfContact {
  private:
   SelfContact(const Scene& scene, std::vector<Sheet> sheets, const KernelTable& kernels);
   void list_sites(Threads& threads);
+  bool few_pairs() const { return found_ < 8192; }  // one thread pushes them apart faster
   void begin_response(Threads& threads);
   void gather(std::size_t chunk);
   void list_close(std::size_t chunk);
@@ -84,6 +85,7 @@ class SelfContact {
   Blocks blocks_;
   PairSearch search_;                    // among the particles of active blocks
   std::vector<std::size_t> first_site_;  // of every block
+  std::size_t found_ = 0;                // pairs
   std::size_t count_ = 0;                // particles of active blocks
   struct Close {                         // pairs of a chunk that may touch in this run
     std::vector<std::int32_t> owner, neighbour;

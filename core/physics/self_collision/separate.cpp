@@ -8,10 +8,9 @@
 namespace weft::physics {
 namespace {
 
-constexpr int kIterations = 3;           // of pushing apart, in one run
-constexpr float kClose = 1.15f;          // distances at which two are held: may touch in this run
-constexpr std::size_t kFewPairs = 8192;  // that one thread does faster
-constexpr std::size_t kPadding = 32;     // that kernels may write
+constexpr int kIterations = 3;        // of pushing apart, in one run
+constexpr float kClose = 1.15f;       // distances at which two are held: may touch in this run
+constexpr std::size_t kPadding = 32;  // that kernels may write
 
 }  // namespace
 
@@ -71,11 +70,9 @@ void SelfContact::begin_response(Threads& threads) {
 }
 
 double SelfContact::respond(double dt, int since, Threads& threads) {
-  std::size_t pairs = 0;
-  for (std::size_t k = 0; k < search_.chunks(); ++k) pairs += search_.pairs(k).count;
-  if (pairs == 0) return 0;
+  if (found_ == 0) return 0;
   begin_response(threads);
-  const bool alone = pairs < kFewPairs || threads.count() == 1;
+  const bool alone = few_pairs() || threads.count() == 1;
   const auto each = [&](auto&& work) { threads.share(search_.chunks(), alone, work); };
   each([&](std::size_t k) { gather(k); });
   // The course's push for as many substeps as have passed.

@@ -11,7 +11,8 @@
 // of all motion is left out of account. (Conservative bounds on motion, as in Chen et al. 2025,
 // Offset Geometric Contact; distances as in Bridson et al. 2002.)
 //
-// Squares of the sheets are found by the same search as particles (pair_search.h).
+// Pairs of squares of the sheets are found by the same search as particles (pair_search.h), and each
+// is measured once.
 #pragma once
 
 #include <memory>
@@ -55,9 +56,10 @@ class SurfaceContact {
 
   SurfaceContact(std::vector<Sheet> sheets, const KernelTable& kernels);
   void measure(Threads& threads);
-  float list_squares(Threads& threads, Spread& box);
-  void fill_square(std::size_t sheet, int row, int column);
-  void compare(std::size_t chunk, std::vector<std::int32_t>& others);
+  float list_squares(Spread& box, std::size_t& count);
+  void fill_square(std::size_t sorted);
+  void measure_chunk(std::size_t chunk);
+  void sum_up(std::size_t begin, std::size_t end);
   void set_places_and_push(std::size_t sheet, int row);
   Motion hold(double seconds);
   std::size_t number(std::size_t sheet, int row, int column) const {
@@ -67,13 +69,21 @@ class SurfaceContact {
 
   const std::vector<Sheet> sheets_;
   const KernelTable& kernels_;
-  std::vector<std::size_t> first_;                 // number of every sheet's first particle
-  PairSearch search_;                              // among squares
-  std::vector<Square> squares_;                    // one for each particle, and one far away
-  std::vector<std::int32_t> listed_;               // point of the search -> square
-  std::vector<std::vector<std::int32_t>> others_;  // of one square, a room for each thread
+  std::vector<std::size_t> first_;  // number of every sheet's first particle
+  PairSearch search_;               // among squares
+  // Squares as sorted by the search; those of torn ones are not among them.
+  std::vector<std::int32_t> sorted_;  // of every particle, the number of its square, or -1
+  std::vector<Square> squares_;
   std::vector<SquareBox> boxes_;
-  std::vector<SquareSum> sums_;
+  struct Measured {  // pairs of a chunk whose boxes are in range, and those that touch
+    std::vector<std::int32_t> owner, neighbour;
+    std::vector<float> near_squared;
+    std::vector<SquaresTouching> touching;
+    std::size_t count = 0, touches = 0;
+  };
+  std::vector<Measured> chunks_;
+  std::vector<SquareChange> sums_;   // of every square
+  std::vector<float> near_squared_;  // and its distance from others, squared [m²]
   std::vector<Place> places_;
   float reach_ = 0, close_ = 0, floor_ = 0;  // m; floor_: a distance that motion does not go below
   bool valid_ = false;
