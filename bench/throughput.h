@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "weft/read_scene.h"
 #include "weft/simulation.h"
 
 namespace bench {
@@ -18,7 +19,7 @@ namespace bench {
 void register_steps(bool quick);           // whole steps: method x size x instruction set x threads
 void register_stages(bool quick);          // every stage of the plan by itself
 void register_features(bool quick);        // what a feature adds to a step
-void register_self_collision(bool quick);  // its parts: sort, search, response
+void register_self_collision(bool quick);  // its parts: sort, search, response; scenes
 void register_scenes(bool quick);          // the seeds' scenes in frames a second; setup; memory
 
 // Registers a benchmark of which the smallest values over all repetitions count.
@@ -28,6 +29,10 @@ benchmark::internal::Benchmark* add_benchmark(const std::string& name,
 // The sheet of `swing` with n x n particles whose frame is `substeps` substeps inside the stability
 // limit of springs.
 weft::Scene stepping_scene(int n, int substeps);
+
+// A scene from its start for `seconds`, several times; every frame's fastest time counts. Counters:
+// the mean of the frames and the slowest one.
+void run_frames(benchmark::State& state, const weft::SceneFile& file, double seconds, int threads);
 
 // The widest instruction set of this machine.
 weft::Simd widest();

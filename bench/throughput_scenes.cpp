@@ -1,13 +1,32 @@
 // The seeds' scenes in frames a second, and what it costs to set a simulation up.
 #include "throughput.h"
-#include "weft/read_scene.h"
 
 namespace bench {
 namespace {
 
-// The scene from its start for `seconds`, several times; every frame's fastest time counts.
-void run_scene(benchmark::State& state, const std::string& name, double seconds, int threads) {
-  const weft::SceneFile file = weft::read_scene(name);
+void add_scene(const std::string& name, double seconds, int threads) {
+  const std::string full = "scene/" + name + "/threads:" + std::to_string(threads);
+  add_benchmark(
+      full, [=](benchmark::State& s) { run_frames(s, weft::read_scene(name), seconds, threads); })
+      ->Iterations(1)
+      ->Repetitions(2);
+}
+
+void set_up(benchmark::State& state, int n, weft::Method method) {
+  weft::Scene scene = stepping_scene(n, 32);
+  scene.solver.method = method;
+  double bytes = 0;
+  fastest_ns(state, [&] {
+    weft::Simulation simulation(scene, {});
+    simulation.advance_frame();  // makes the room a run needs
+    bytes = simulation.bytes_per_particle();
+  });
+  state.counters["bytes/particle"] = bytes;
+}
+
+}  // namespace
+
+void run_frames(benchmark::State& state, const weft::SceneFile& file, double seconds, int threads) {
   if (!file.faults.empty()) {
     state.SkipWithError("the scene cannot be read");
     return;
@@ -34,27 +53,6 @@ void run_scene(benchmark::State& state, const std::string& name, double seconds,
   state.counters["ms/frame"] = sum / double(fastest.size());
   state.counters["slowest ms"] = *std::max_element(fastest.begin() + 1, fastest.end());
 }
-
-void add_scene(const std::string& name, double seconds, int threads) {
-  const std::string full = "scene/" + name + "/threads:" + std::to_string(threads);
-  add_benchmark(full, [=](benchmark::State& s) { run_scene(s, name, seconds, threads); })
-      ->Iterations(1)
-      ->Repetitions(2);
-}
-
-void set_up(benchmark::State& state, int n, weft::Method method) {
-  weft::Scene scene = stepping_scene(n, 32);
-  scene.solver.method = method;
-  double bytes = 0;
-  fastest_ns(state, [&] {
-    weft::Simulation simulation(scene, {});
-    simulation.advance_frame();  // makes the room a run needs
-    bytes = simulation.bytes_per_particle();
-  });
-  state.counters["bytes/particle"] = bytes;
-}
-
-}  // namespace
 
 void register_scenes(bool quick) {
   for (const char* scene : {"seed1", "seed2", "seed3"})

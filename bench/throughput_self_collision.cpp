@@ -93,9 +93,27 @@ void add_part(const std::string& part, int n, int threads, bool folded,
   });
 }
 
+// A scene to its rest with its own mode of self-collision, a plainer one, or without.
+void add_scene(const std::string& name, double seconds, weft::SelfCollisionMode mode) {
+  constexpr const char* kModes[] = {"off", "particles", "surface"};
+  add_benchmark("self_collision/scene/" + name + "/" + kModes[int(mode)],
+                [=](benchmark::State& s) {
+                  weft::SceneFile file = weft::read_scene(name);
+                  for (weft::Cloth& cloth : file.scene.cloths) cloth.self_collision.mode = mode;
+                  run_frames(s, file, seconds, 1);
+                })
+      ->Iterations(1)
+      ->Repetitions(2);
+}
+
 }  // namespace
 
 void register_self_collision(bool quick) {
+  using weft::SelfCollisionMode;
+  for (const auto mode : {SelfCollisionMode::off, SelfCollisionMode::particles})
+    add_scene("selfCollision", 4, mode);
+  for (const auto mode : {SelfCollisionMode::off, SelfCollisionMode::surface})
+    add_scene("crumple", quick ? 1 : 4, mode);
   constexpr double dt = 1e-4;
   for (int n : quick ? std::vector<int>{100} : std::vector<int>{100, 316, 1000})
     for (int threads : {1, 2}) {
