@@ -209,6 +209,14 @@ struct PairsWithin;
 struct SeparateOwners;
 struct SquaresWithin;
 struct SurfacePairs;  // kernels/surface.h
+// Constraints of one family in one row: number a joins near + a and far + a. What is longer ends.
+struct TearRow {
+  int count;
+  ConstRow3 near, far;
+  std::int32_t* alive;  // -1 for constraints, 0 for torn ones and beyond the last
+  float longest;        // m
+};
+
 struct TransposeRows;
 struct SecondOrderRow;  // kernels/second_order.h
 struct TetherRow;
@@ -220,7 +228,7 @@ struct KernelTable {
   void (*spring_rows)(const SpringRows&);
   void (*spring_family)(const FamilyRow&);         // f += spring force
   void (*damped_spring_family)(const FamilyRow&);  // f += spring force and damping along it
-  int (*tear)(const FamilyRow&, float longest);    // ends what is longer; returns how many
+  int (*tear)(const TearRow&);                     // returns how many have ended
   void (*integrate)(const AdvanceRow&);            // leapfrog step from f, then f <- 0
   void (*predict)(const AdvanceRow&);              // previous <- x, v and x advanced by gravity
   void (*velocity)(const AdvanceRow&);             // v <- (x - previous)/dt

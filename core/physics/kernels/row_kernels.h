@@ -72,7 +72,7 @@ WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const 
 void spring_rows(const SpringRows&);
 void spring_family(const FamilyRow&);
 void damped_spring_family(const FamilyRow&);
-int tear(const FamilyRow&, float longest);
+int tear(const physics::TearRow&);
 void integrate(const AdvanceRow&);
 void predict(const AdvanceRow&);
 void velocity(const AdvanceRow&);

@@ -87,20 +87,6 @@ void damped_spring_family(const FamilyRow& r) {
   add_family<true, false>(r);
 }
 
-int tear(const FamilyRow& r, float longest) {
-  int torn = 0;
-  for (int a = 0; a < padded(r.count); a += kLanes) {
-    const Wide3 e = load3(r.x_far, a + r.far) - load3(r.x, a + r.near);
-    const WideInt alive = lanes_at(r.alive + a);
-    const WideInt over = alive & (dot(e, e) > longest * longest);
-    if (!any(over)) continue;
-    typedef WideInt Loose __attribute__((aligned(4), may_alias));
-    *reinterpret_cast<Loose*>(r.alive + a) = alive & ~over;
-    torn += __builtin_popcount(bits(over));
-  }
-  return torn;
-}
-
 void integrate(const AdvanceRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     move(r.x, r.v, r.w, load3(r.f, i), r.advance, i);

@@ -22,11 +22,17 @@ class TearStage final : public RowStage {
         parts_(parts),
         topology_(topology) {}
   void run(int j, const Substep&) override {
+    Lattice& l = parts_.lattice;
+    const auto from = [&](int row, int column) {
+      const Row3 r = l.x.row(row);
+      return ConstRow3{r.x + column, r.y + column, r.z + column};
+    };
     for (const Family& f : parts_.families) {
-      if (j + f.dj >= parts_.lattice.rows) continue;
-      const auto longest = float(f.rest * (1 + parts_.cloth.tear_strain));
-      if (const int torn = parts_.kernels.tear(family_row(parts_.lattice, f, j), longest); torn > 0)
-        topology_.died(j, torn);
+      if (j + f.dj >= l.rows) continue;
+      const int torn =
+          parts_.kernels.tear({f.per_row(l.columns), from(j, f.near()), from(j + f.dj, f.far()),
+                               f.links->row(j), float(f.rest * (1 + parts_.cloth.tear_strain))});
+      if (torn > 0) topology_.died(j, torn);
     }
   }
 
