@@ -166,6 +166,19 @@ WEFT_INLINE unsigned bits(WideInt mask) {
 #endif
 }
 
+#if WEFT_LANES == 8
+// For each mask of eight lanes, the numbers of those that are set, a byte each.
+struct SetLanes {
+  std::uint64_t numbers[256] = {};
+  constexpr SetLanes() {
+    for (unsigned mask = 0; mask < 256; ++mask)
+      for (unsigned lane = 0, at = 0; lane < 8; ++lane)
+        if (mask >> lane & 1) numbers[mask] |= std::uint64_t(lane) << 8 * at++;
+  }
+};
+inline constexpr SetLanes kSetLanes;
+#endif
+
 // The lanes of a mask next to each other in memory; the lanes after those may be overwritten, whole
 // groups of them. Returns how many.
 template <class Lane, class Lanes>
@@ -173,6 +186,12 @@ WEFT_INLINE int store_lanes(Lane* p, WideInt mask, Lanes v) {
 #if WEFT_LANES == 16
   const __mmask16 m = _mm512_movepi32_mask((__m512i)mask);
   _mm512_storeu_si512(p, _mm512_maskz_compress_epi32(m, (__m512i)v));
+  return __builtin_popcount(m);
+#elif WEFT_LANES == 8
+  const unsigned m = bits(mask);
+  const __m128i bytes = _mm_cvtsi64_si128(std::int64_t(kSetLanes.numbers[m]));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(p),
+                      _mm256_permutevar8x32_epi32((__m256i)v, _mm256_cvtepu8_epi32(bytes)));
   return __builtin_popcount(m);
 #else
   int count = 0;
