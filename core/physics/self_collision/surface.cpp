@@ -9,7 +9,7 @@
 namespace weft::physics {
 namespace {
 
-constexpr float kBound = 0.2f;      // of the least distance beyond the floor
+constexpr float kBound = 0.45f;     // of the least distance beyond the floor, the push included
 constexpr float kMostPush = 0.25f;  // of the least distance, at once
 constexpr float kFloor = 0.05f;     // of the thickness: what is nearer is only pushed apart
 constexpr float kMeasureAt = 0.7f;  // of a bound, moved: all is measured anew
@@ -256,15 +256,17 @@ void SurfaceContact::set_places_and_push(std::size_t sheet, int row) {
       }
     }
     const float nearest = std::sqrt(near_squared);
-    place.bound = kBound * std::max(0.0f, nearest - floor_);
+    float pushed = 0;
     if (weight > 0 && l.w(row, i) > 0) {
       const float far = length(push) / weight, most = kMostPush * nearest;
       const float share = (far > most ? most / far : 1) / weight;
+      pushed = std::min(far, most);
       for (int k = 0; k < 3; ++k) {
         l.x.at(k, row, i) += push[k] * share;
         l.v.at(k, row, i) += gain[k] / weight;
       }
     }
+    place.bound = std::max(0.0f, kBound * (nearest - floor_) - pushed);
     for (int k = 0; k < 3; ++k) place.x[k] = l.x.at(k, row, i);
   }
 }

@@ -2,9 +2,9 @@
 //
 // From time to time the least distance d of anything that a vertex belongs to from anything else that
 // shares no corner with it is measured. What is nearer than the thickness is pushed apart then
-// (kernels/surface.cpp), by a quarter of d at most, and the vertex has its place there, and a bound: a
-// fifth of d. While no vertex is farther from its place than its bound, whatever two things were d
-// apart are at least (1 - 2 · (0.25 + 0.2)) d apart, on the whole way from there: nothing can have
+// (kernels/surface.cpp), by a quarter of d at most, and the vertex has its place there, and a bound:
+// what is left of 0.45 d. While no vertex is farther from its place than its bound, whatever two things
+// were d apart are at least (1 - 2 · 0.45) d apart, on the whole way from there: nothing can have
 // passed. So what has moved too far is put back to its bound, and all is measured anew before
 // bounds matter much. Below a floor bounds are nothing: however a collider or a pull presses, only
 // pushing apart goes on, so that no distance dwindles to what rounding could cross. The common part
