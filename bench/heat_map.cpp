@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kAcross = 4;               // panels
 constexpr double kLeft = 62, kTop = 96;  // of the first panel's cells [px]
+constexpr double kRight = 16;            // for names longer than their panel
 constexpr double kCell = 15, kGap = 38, kHead = 30;
 constexpr double kLeastPitch = 178;  // from panel to panel: room for their names
 const char* const kColours[kFates] = {"#2f9e6e", "#8cc7e8", "#c8cdd6", "#f2a03d", "#c2352b"};
@@ -85,7 +86,7 @@ void legend(std::ostream& out, const HeatMap& map, double y) {
 std::string to_svg(const HeatMap& map) {
   const Layout at{map.across.ticks.size(), map.up.ticks.size()};
   const std::size_t last = map.panels.size() - 1;
-  const double width = kLeft + kAcross * at.pitch();
+  const double width = kLeft + kAcross * at.pitch() + kRight;
   const double bottom = at.y(last) + at.height() + 58;
   const double height = bottom + 40 + 17 * double(map.marks.size());
   std::ostringstream out;
