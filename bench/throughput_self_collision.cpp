@@ -115,7 +115,7 @@ void register_self_collision(bool quick) {
   for (const auto mode : {SelfCollisionMode::off, SelfCollisionMode::surface})
     add_scene("crumple", quick ? 1 : 4, mode);
   constexpr double dt = 1e-4;
-  for (int n : quick ? std::vector<int>{100} : std::vector<int>{100, 316, 1000})
+  for (int n : quick ? std::vector<int>{100, 316} : std::vector<int>{100, 316, 1000})
     for (int threads : {1, 2}) {
       add_part("sort", n, threads, true, [](Sheet& s) { s.self->sort(s.margin(), s.threads); });
       add_part("search", n, threads, true, [](Sheet& s) { s.self->find(s.margin(), s.threads); });
