@@ -48,11 +48,6 @@ WEFT_INLINE Wide3 load3_at(Row3 r, std::ptrdiff_t at) {
   return {load(r.x + at), load(r.y + at), load(r.z + at)};
 }
 
-WEFT_INLINE WideInt load_int(const std::int32_t* p) {
-  typedef WideInt Loose __attribute__((aligned(4), may_alias));
-  return *reinterpret_cast<const Loose*>(p);
-}
-
 // Which of the lanes lane … lane+kLanes-1 are columns of the sheet.
 WEFT_INLINE WideInt on_sheet(const LineStrip& p, int lane) {
   const WideInt lanes = lane_numbers() + lane;
@@ -124,7 +119,7 @@ struct Block {
   }
   // e_c where the constraint is not cut, else 0.
   WEFT_INLINE Wide3 holding(Wide3 e, int m) const {
-    return p.alive ? select(load_int(p.alive + at(m)), e, Wide3{}) : e;
+    return p.alive ? select(lanes_at(p.alive + at(m)), e, Wide3{}) : e;
   }
 
   template <bool kWhole>

@@ -156,7 +156,7 @@ WEFT_INLINE NearFound search(const NearSearch& given) {
       else
         count = together ? near_one<kOnce>(s, near, m, s.neighbour + found)
                          : near_one<kOnce>(s, runs, m, s.neighbour + found);
-      for (int i = 0; i < count; i += kLanes) fill_lanes(s.owner + found + i, m);
+      for (int i = 0; i < count; i += kLanes) put_lanes(s.owner + found + i, WideInt{} + m);
       found += count;
     }
   }

@@ -82,8 +82,8 @@ WEFT_INLINE int sum_up(const SeparateOwners& s, int count) {
     const std::int32_t owner = s.room.owner[i];
     const int goes_on = -int(owner == last);
     const FourInt kept = FourInt{} + goes_on;
-    push = (Four)((FourInt)push & kept) + four_at(s.room.asked[i].push);
-    gain = (Four)((FourInt)gain & kept) + four_at(s.room.asked[i].gain);
+    push = (Four)((FourInt)push & kept) + load_four(s.room.asked[i].push);
+    gain = (Four)((FourInt)gain & kept) + load_four(s.room.asked[i].gain);
     owners += 1 + goes_on;
     s.room.owner[owners] = last = owner;
     *reinterpret_cast<Four*>(s.room.asked[owners].push) = push;
@@ -95,7 +95,7 @@ WEFT_INLINE int sum_up(const SeparateOwners& s, int count) {
 // Moves an owner by the mean of what it is asked.
 WEFT_INLINE void move(const SeparateOwners& s, std::int32_t owner, const Asked& asked) {
   Body& b = s.out[owner];
-  const Four push = four_at(asked.push), gain = four_at(asked.gain);
+  const Four push = load_four(asked.push), gain = load_four(asked.gain);
   const float weight = push[3];
   if (b.v[3] <= 0 || !(weight > 0)) return;
   const bool course = s.friction[owner] < 0;

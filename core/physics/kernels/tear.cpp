@@ -21,8 +21,7 @@ int tear(const physics::TearRow& given) {
   int torn = 0;
   for (int a = 0; a < padded(r.count); a += kLanes) {
     const WideInt over = too_long(r, a);
-    typedef WideInt Loose __attribute__((aligned(4), may_alias));
-    *reinterpret_cast<Loose*>(r.alive + a) = lanes_at(r.alive + a) & ~over;
+    put_lanes(r.alive + a, lanes_at(r.alive + a) & ~over);
     torn += __builtin_popcount(bits(over));
   }
   return torn;

@@ -28,6 +28,7 @@ inline constexpr int kLanes = WEFT_LANES;
 typedef float Wide __attribute__((vector_size(4 * kLanes)));
 typedef std::int32_t WideInt __attribute__((vector_size(4 * kLanes)));
 typedef Wide WideLoose __attribute__((aligned(4), may_alias));
+typedef WideInt WideIntLoose __attribute__((aligned(4), may_alias));
 
 WEFT_INLINE Wide load(const float* p) {
   return *reinterpret_cast<const WideLoose*>(p);
@@ -96,16 +97,13 @@ WEFT_INLINE WideInt lane_numbers() {
   return r;
 }
 
-// Lanes of a mask in memory.
+// Whole numbers or masks in memory.
 WEFT_INLINE WideInt lanes_at(const std::int32_t* p) {
-  typedef WideInt Loose __attribute__((aligned(4), may_alias));
-  return *reinterpret_cast<const Loose*>(p);
+  return *reinterpret_cast<const WideIntLoose*>(p);
 }
 
-// The same number in kLanes places of memory.
-WEFT_INLINE void fill_lanes(std::int32_t* p, std::int32_t number) {
-  typedef WideInt Loose __attribute__((aligned(4), may_alias));
-  *reinterpret_cast<Loose*>(p) = WideInt{} + number;
+WEFT_INLINE void put_lanes(std::int32_t* p, WideInt v) {
+  *reinterpret_cast<WideIntLoose*>(p) = v;
 }
 
 // All ones in the lanes whose number is below `count`.
