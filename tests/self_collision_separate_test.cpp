@@ -74,7 +74,9 @@ Body plainly(const Crowd& crowd, int a, double course_share, double inverse_dt) 
     sliding = std::sqrt(sliding);
     const double held = 0.5 * (double(p.x[3]) + q.x[3]), depth = held - distance;
     const double lost = std::max(0.0, -into), share = double(p.v[3]) / (double(p.v[3]) + q.v[3]);
-    const double rubbed = std::min(1.0, crowd.friction[std::size_t(a)] * lost / sliding);
+    const double friction =
+        0.5 * (double(crowd.friction[std::size_t(a)]) + crowd.friction[std::size_t(b)]);
+    const double rubbed = std::min(1.0, friction * lost / sliding);
     const double w = course ? 1 : depth;
     weight += w;
     for (int k = 0; k < 3; ++k) {

@@ -60,7 +60,7 @@ enum class SelfCollisionResponse { stiff, course };
 struct SelfCollision {
   SelfCollisionMode mode = SelfCollisionMode::off;
   double thickness = 0.01;  // m; the least distance between two layers
-  double friction = 0.3;    // Coulomb coefficient between layers (response stiff)
+  double friction = 0.3;    // Coulomb, between layers (stiff); of two cloths the mean counts
   SelfCollisionResponse response = SelfCollisionResponse::stiff;
   friend bool operator==(const SelfCollision&, const SelfCollision&) = default;
 };

@@ -3,8 +3,8 @@
 // each owner sums up what its own ask, in their order.
 //
 //   stiff:   Δx_a = n (t - d) w_a/(w_a + w_b); the velocity into the other is lost, and the tangential
-//            velocity loses up to μ times as much as was pressed (Coulomb); averaged over the pairs,
-//            each weighing as much as it is deep
+//            velocity loses up to μ times as much as was pressed (Coulomb; μ the mean of both);
+//            averaged over the pairs, each weighing as much as it is deep
 //   course:  Δx_a = n (t - d), averaged over the pairs and divided by the substeps, velocity included
 //            (seeds 001 and 004: the position before stays)
 #include "physics/kernels/contact.h"
@@ -50,8 +50,9 @@ WEFT_INLINE Wide ask(const SeparateOwners& s, int at) {
   const Wide depth = held - distance;
   const Wide4 own = records_at(s.bodies->v, kStride, owner);
   const Wide4 other = records_at(s.bodies->v, kStride, neighbour);
-  const Wide friction = friction_of(s.friction, owner);
-  const WideInt course = friction < 0.0f;
+  const Wide mine = friction_of(s.friction, owner), theirs = friction_of(s.friction, neighbour);
+  const WideInt course = mine < 0.0f;
+  const Wide friction = select(theirs < 0.0f, mine, 0.5f * (mine + theirs));
   const Wide share = own.last / (own.last + other.last);
   const Wide weight = select(course, wide(1), depth);
   const Wide lift = select(course, depth, min(depth, kMostPush * held) * share) * weight;
