@@ -17,7 +17,7 @@ foreach(simd scalar sse2 avx2 avx512)
   target_compile_definitions(weft_kernels_${simd} PRIVATE WEFT_SIMD=${simd})
   # -Wno-psabi: wide values are passed inside one instruction set only, never across.
   target_compile_options(weft_kernels_${simd} PRIVATE ${flags_${simd}} -fno-math-errno
-    -fno-trapping-math -Wno-psabi)
+    -fno-trapping-math -falign-functions=64 -Wno-psabi)
   target_link_libraries(weft_kernels_${simd} PRIVATE weft_options)
   target_sources(weft_core PRIVATE $<TARGET_OBJECTS:weft_kernels_${simd}>)
 endforeach()

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kernel_patch.h"
@@ -308,6 +310,43 @@ TEST_P(WideKernels, EqualTheScalarOnesBitForBit) {
       ASSERT_TRUE(numbers && scalar_numbers) << test.name << ", " << columns << " columns";
       ASSERT_EQ(wide, scalar) << test.name << ", " << columns << " columns";
     }
+}
+
+// Every lane and every place counts, the sign does not, and what is no number is infinite.
+TEST_P(WideKernels, FindTheGreatestSize) {
+  if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
+  const auto greatest = kernel_table(GetParam()).greatest;
+  EXPECT_EQ(greatest(nullptr, 0), 0.0f);
+  for (const int count : {16, 48, 64, 208}) {
+    AlignedArray<float> values(static_cast<std::size_t>(count));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.5f - float(i % 3) * 0.4f;
+    EXPECT_EQ(greatest(values.data(), count), 0.5f);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      for (const float odd : {3.0f, -1e30f, std::numeric_limits<float>::infinity(),
+                              std::numeric_limits<float>::quiet_NaN()}) {
+        const float before = std::exchange(values[i], odd);
+        const float expected = std::isnan(odd) ? std::numeric_limits<float>::infinity() : odd;
+        EXPECT_EQ(greatest(values.data(), count), std::fabs(expected)) << i << " of " << count;
+        values[i] = before;
+      }
+  }
+}
+
+TEST_P(WideKernels, AddUpSquares) {
+  if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
+  const auto sum = kernel_table(GetParam()).sum_of_squares;
+  for (const int count : {0, 16, 48, 208, 4096}) {
+    AlignedArray<float> values(static_cast<std::size_t>(count));
+    Random random(7, std::uint64_t(count));
+    double expected = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = float(random.symmetric());
+      expected += double(values[i]) * values[i];
+    }
+    const float got = sum(values.data(), count);
+    EXPECT_EQ(got, kernel_table(Simd::scalar).sum_of_squares(values.data(), count));
+    EXPECT_NEAR(got, expected, 1e-5 * expected);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(, WideKernels, testing::Values(Simd::sse2, Simd::avx2, Simd::avx512),

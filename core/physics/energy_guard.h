@@ -44,7 +44,7 @@ class EnergyGuard {
  private:
   double bound() const;
 
-  double mass_ = 0;          // kg, of all that is free
+  std::vector<double> heaviest_;  // kg; free particle of each cloth
   double put_in_ = 0;        // J; of the start
   double driven_floor_ = 0;  // J; motion that is nothing special where something does work
   double highest_ = 0;       // J; potential of gravity
@@ -52,6 +52,7 @@ class EnergyGuard {
   // J; of the frame last looked at: motion (or more than it), potential, what gravity has released.
   double kinetic_ = 0, potential_ = 0, fall_ = 0;
   bool driven_ = false;
+  int looks_ = 0;
 };
 
 }  // namespace weft::physics

@@ -65,23 +65,13 @@ class Rows {
   void scale(float factor) {
     for (std::size_t i = 0; i < data_.size(); ++i) data_[i] *= factor;
   }
-  // The greatest size of a value, padding included; lane by lane, so that no comparison waits for
-  // another.
-  float greatest() const {
-    constexpr std::size_t kLanes = 16;  // rows are multiples
-    float most[kLanes] = {};
-    for (std::size_t i = 0; i + kLanes <= data_.size(); i += kLanes)
-      for (std::size_t k = 0; k < kLanes; ++k) {
-        const float size = std::fabs(data_[i + k]);
-        most[k] = size > most[k] ? size : most[k];
-      }
-    return *std::max_element(most, most + kLanes);
+  // The greatest size of a value, padding included; infinite if one is not a number.
+  float greatest(const KernelTable& kernels) const {
+    return kernels.greatest(data_.data(), static_cast<std::ptrdiff_t>(data_.size()));
   }
-  // Whether every value is a number of size below `bound`.
-  bool all_within(float bound) const {
-    bool within = true;
-    for (std::size_t i = 0; i < data_.size(); ++i) within &= std::fabs(data_[i]) < bound;
-    return within;
+  // Of all values, padding included.
+  float sum_of_squares(const KernelTable& kernels) const {
+    return kernels.sum_of_squares(data_.data(), static_cast<std::ptrdiff_t>(data_.size()));
   }
 
  private:

@@ -170,7 +170,7 @@ bool Simulation::State::too_coarse() {
 // Whether something was so fast at the frame's start that it leaves all bounds by any method.
 bool Simulation::State::flies_away() const {
   return std::any_of(backups_.begin(), backups_.end(), [&](const Backup& b) {
-    return !(b.v.greatest() * scene.time.frame < kFarAway);
+    return !(b.v.greatest(kernel_table(simd)) * scene.time.frame < kFarAway);
   });
 }
 

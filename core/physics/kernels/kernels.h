@@ -7,6 +7,7 @@
 // and may overwrite with values of no meaning.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "weft/simulation.h"
@@ -259,6 +260,9 @@ struct KernelTable {
   float (*separate)(const SeparateOwners&);
   int (*squares_within)(const SquaresWithin&);  // returns how many are
   int (*surface_pairs)(const SurfacePairs&);    // measures them; returns how many touch
+  // The greatest size of `count` values, a multiple of 16; infinite if one is not a number.
+  float (*greatest)(const float* values, std::ptrdiff_t count);
+  float (*sum_of_squares)(const float* values, std::ptrdiff_t count);
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

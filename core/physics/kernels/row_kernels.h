@@ -90,6 +90,8 @@ void bend_row(const physics::BendRow&);
 void bend_line(const physics::BendLine&);
 void bend_twist(const physics::TwistRow&);
 
+float greatest(const float* values, std::ptrdiff_t count);
+float sum_of_squares(const float* values, std::ptrdiff_t count);
 void wind(const physics::WindRow&);
 void push(const AdvanceRow&);
 void block_bounds(const physics::BlockRows&);

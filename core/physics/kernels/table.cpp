@@ -40,6 +40,8 @@ const physics::KernelTable& table() {
       separate,
       squares_within,
       surface_pairs,
+      greatest,
+      sum_of_squares,
   };
   return table;
 }
