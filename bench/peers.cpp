@@ -31,7 +31,8 @@ struct Solver {
 
 const std::vector<Solver>& solvers() {
   static const std::vector<Solver> all{
-      {"course-style C++", bench::make_course_peer, {64, 128, 256}},
+      // 48 is as near to its stability limit as whole steps of 16 come.
+      {"course-style C++", bench::make_course_peer, {48, 64, 128, 256}},
       {"Bullet 3.24, classical", bench::make_bullet_peer, {8, 32, 128}},
   };
   return all;
@@ -98,14 +99,27 @@ void print_ratios(const Problem& problem, const std::vector<Trial>& trials) {
   }
 }
 
+// Springs as in bench/accuracy, and line sweeps in steps fine enough for errors in between.
+std::vector<bench::Setting> our_settings(const Problem& problem, bool quick) {
+  std::vector<bench::Setting> ours;
+  bool lines = false;
+  for (bench::Setting s : bench::settings_for(problem, quick)) {
+    if (s.method == "spring" && s.substeps <= 256) ours.push_back(s);
+    if (s.method != kLine || s.solver.iterations != 1 || std::exchange(lines, true)) continue;
+    for (const int substeps : {4, 8, 10, 12, 16, 20, 24, 28, 32, 64}) {
+      s.substeps = substeps;
+      ours.push_back(s);
+    }
+  }
+  return ours;
+}
+
 void run_size(const Problem& problem, bool quick, std::vector<Trial>& trials) {
   const bench::Reference r = bench::reference(problem.question, WEFT_REFERENCE_CACHE);
-  for (const bench::Setting& s : bench::settings_for(problem, quick))
-    if ((s.method == "spring" && s.substeps <= 256) ||
-        (s.method == kLine && s.substeps >= 4 && s.solver.iterations == 1))
-      for (const int threads : {1, 2})
-        trials.push_back(
-            bench::run_trial(problem, s, weft::Simd::best, threads, r.positions, {0.3, 3, 20}));
+  for (const bench::Setting& s : our_settings(problem, quick))
+    for (const int threads : {1, 2})
+      trials.push_back(
+          bench::run_trial(problem, s, weft::Simd::best, threads, r.positions, {0.3, 3, 20}));
   for (const Solver& solver : solvers())
     for (int substeps : solver.substeps) {
       Trial t;

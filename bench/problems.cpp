@@ -174,8 +174,11 @@ std::vector<std::string> problem_names() {
 std::vector<Setting> settings_for(const Problem& problem, bool quick) {
   std::vector<Setting> all;
   if (problem.measure == Measure::strain) {
-    for (const Projection& p : kInextensible)
+    for (const Projection& p : kInextensible) {
       for (int substeps : {8, 16, 32, 48, 64}) add(all, p, substeps, 1);
+      if (!p.tethers) continue;  // the others come to as little only later
+      for (int substeps : {10, 12, 14}) add(all, p, substeps, 1);
+    }
     return all;
   }
   if (problem.size > 200) {  // the settings that are worth their minutes

@@ -14,10 +14,10 @@ namespace {
 
 using Cloths = std::vector<std::unique_ptr<ClothStep>>;
 
-constexpr double kRounding = 4e-7;   // of positions in single precision, of the scene's size
-constexpr double kStillness = 0.01;  // m/s; motion that is never looked into
+constexpr double kRounding = 4e-7;      // of positions in single precision, of the scene's size
+constexpr double kStillness = 0.01;     // m/s; motion that is never looked into
 constexpr double kSumsRounding = 1.01;  // room for what single precision loses of long sums
-constexpr int kCountedEvery = 16;  // looks
+constexpr int kCountedEvery = 16;       // looks
 constexpr double kDrivenSpeed = 10;  // m/s; what wind, paths and hands may give besides their own
 
 // Visits all free particles: row, column, mass.

@@ -45,10 +45,10 @@ class EnergyGuard {
   double bound() const;
 
   std::vector<double> heaviest_;  // kg; free particle of each cloth
-  double put_in_ = 0;        // J; of the start
-  double driven_floor_ = 0;  // J; motion that is nothing special where something does work
-  double highest_ = 0;       // J; potential of gravity
-  double released_ = 0;      // J; by gravity so far
+  double put_in_ = 0;             // J; of the start
+  double driven_floor_ = 0;       // J; motion that is nothing special where something does work
+  double highest_ = 0;            // J; potential of gravity
+  double released_ = 0;           // J; by gravity so far
   // J; of the frame last looked at: motion (or more than it), potential, what gravity has released.
   double kinetic_ = 0, potential_ = 0, fall_ = 0;
   bool driven_ = false;
