@@ -52,7 +52,7 @@ class EnergyGuard {
   // J; of the frame last looked at: motion (or more than it), potential, what gravity has released.
   double kinetic_ = 0, potential_ = 0, fall_ = 0;
   bool driven_ = false;
-  int looks_ = 0;
+  int looks_ = 0;  // so far; every so many one counts in full
 };
 
 }  // namespace weft::physics
