@@ -195,8 +195,10 @@ std::vector<Setting> settings_for(const Problem& problem, bool quick) {
       for (int iterations : {4, 16})
         if (substeps <= 32 && !quick) add(all, p, substeps, iterations);
   }
-  if (problem.name == "stiff")
+  if (problem.name == "stiff") {
+    add(all, kTethered, 3, 1);
     for (int substeps : ladder) add(all, kTethered, substeps, 1);
+  }
   return all;
 }
 

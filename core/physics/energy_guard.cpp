@@ -14,10 +14,9 @@ namespace {
 
 using Cloths = std::vector<std::unique_ptr<ClothStep>>;
 
-constexpr double kRounding = 4e-7;      // of positions in single precision, of the scene's size
-constexpr double kStillness = 0.01;     // m/s; motion that is never looked into
-constexpr double kSumsRounding = 1.01;  // room for what single precision loses of long sums
-constexpr int kCountedEvery = 16;       // looks
+constexpr double kRounding = 4e-7;   // of positions in single precision, of the scene's size
+constexpr double kHalfUnit = 6e-8;   // of their last place, likewise
+constexpr double kStillness = 0.01;  // m/s; motion that is never looked into
 constexpr double kDrivenSpeed = 10;  // m/s; what wind, paths and hands may give besides their own
 
 // Visits all free particles: row, column, mass.
@@ -45,11 +44,16 @@ void push_out(const Scene& scene, double time, const Lattice& l, std::vector<Vec
   }
 }
 
-// Elastic energy as the method feels it, with what rounding of the positions puts in.
-double elastic(const Scene& scene, Method method, const ClothStep& step, const std::vector<Vec3>& x,
-               double dt) {
+// Elastic energy as the method feels it, with what rounding of the positions puts in at once, and
+// what rounding them anew in every substep adds.
+struct Elastic {
+  double energy = 0;       // J
+  double per_substep = 0;  // J
+};
+Elastic elastic(const Scene& scene, Method method, const ClothStep& step,
+                const std::vector<Vec3>& x, double dt) {
   const Lattice& l = step.lattice();
-  double size = 1;
+  double size = 1, stiffness = 0;
   for (const Vec3& p : x) size = std::max(size, std::sqrt(dot(p, p)));
   const auto inverse_mass = [&](int p) { return double(l.w(p / l.columns, p % l.columns)); };
   double sum = bending_energy(step.cloth(), x);
@@ -62,6 +66,7 @@ double elastic(const Scene& scene, Method method, const ClothStep& step, const s
       const Vec3 e = minus(x[std::size_t(b)], x[std::size_t(a)]);
       const double c = std::abs(std::sqrt(dot(e, e)) - f.rest) + kRounding * size;
       sum += 0.5 * k * c * c;
+      stiffness += k;
       const double over = c - step.cloth().strain_limit * f.rest;
       if (step.cloth().strain_limit > 0 && over > 0) sum += 0.5 * rigid * over * over;
     });
@@ -79,7 +84,7 @@ double elastic(const Scene& scene, Method method, const ClothStep& step, const s
       sum += 0.5 * mass * over * over / (dt * dt);
     });
   }
-  return sum;
+  return {sum, stiffness * std::pow(kHalfUnit * size, 2)};
 }
 
 }  // namespace
@@ -88,7 +93,7 @@ Holding holding_of(const Scene& scene, Method method, const ClothStep& step, con
                    const Rows& v, double dt) {
   const Lattice& l = step.lattice();
   Holding h;
-  h.inner = elastic(scene, method, step, gather(l, x), dt);
+  h.inner = elastic(scene, method, step, gather(l, x), dt).energy;
   for_each_free(l, [&](int j, int i, double m) {
     for (int k = 0; k < 3; ++k) {
       h.inner += 0.5 * m * double(v.at(k, j, i)) * v.at(k, j, i);
@@ -120,50 +125,45 @@ void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, 
   double mass = 0;
   for (const auto& step : cloths) {
     const Lattice& l = step->lattice();
-    double heaviest = 0;
-    for_each_free(l, [&](int, int, double m) {
-      mass += m;
-      heaviest = std::max(heaviest, m);
-    });
-    heaviest_.push_back(heaviest);
+    for_each_free(l, [&](int, int, double m) { mass += m; });
     std::vector<Vec3> x = gather(l, l.x);
-    const double as_set = elastic(scene, method, *step, x, dt);
+    const Elastic as_set = elastic(scene, method, *step, x, dt);
     push_out(scene, time, l, x);
-    put_in_ += std::max(as_set, elastic(scene, method, *step, x, dt));
+    put_in_ += std::max(as_set.energy, elastic(scene, method, *step, x, dt).energy);
+    rounding_ += as_set.per_substep;
   }
   look(scene, cloths, false);
   highest_ = potential_;
+  fall_ = 0;
   const double driven = kDrivenSpeed + fastest_drive(scene);
   put_in_ += kinetic_ + 0.5 * mass * kStillness * kStillness;
   driven_floor_ = 0.5 * mass * driven * driven;
 }
 
-// A bound of the motion, as if all were as heavy as the heaviest, tells that most frames hold; now and
-// then one is counted all the same, that the greatest height is not missed.
 void EnergyGuard::look(const Scene& scene, const Cloths& cloths, bool driven) {
   driven_ = driven;
-  kinetic_ = 0;
-  for (std::size_t c = 0; c < heaviest_.size(); ++c)
-    kinetic_ += 0.5 * kSumsRounding * heaviest_[c] *
-                double(cloths[c]->lattice().v.sum_of_squares(cloths[c]->parts().kernels));
-  if (looks_++ % kCountedEvery != 0 && holds()) return;
   kinetic_ = potential_ = 0;
   for (const auto& step : cloths) {
     const Lattice& l = step->lattice();
-    for_each_free(l, [&](int j, int i, double m) {
-      for (int k = 0; k < 3; ++k) {
-        const double v = l.v.at(k, j, i);
-        kinetic_ += 0.5 * m * v * v;
-        potential_ -= m * scene.gravity[k] * l.x.at(k, j, i);
-      }
-    });
+    EnergyRow r{};
+    r.columns = l.columns;
+    for (int k = 0; k < 3; ++k) r.g[k] = scene.gravity[k];
+    for (int j = 0; j < l.rows; ++j) {
+      r.x = l.x.row(j);
+      r.v = l.v.row(j);
+      r.w = l.w(j);
+      const RowEnergy e = step->parts().kernels.row_energy(r);
+      kinetic_ += e.kinetic;
+      potential_ += e.potential;
+    }
   }
   fall_ = std::max(released_, highest_ - potential_);
 }
 
-void EnergyGuard::accept() {
+void EnergyGuard::accept(int substeps) {
   highest_ = std::max(highest_, potential_);
   released_ = fall_;
+  put_in_ += substeps * rounding_;
 }
 
 double EnergyGuard::reduction() const {

@@ -3,6 +3,7 @@
 //
 //   ½ Σ m v² <= kBound (elastic energy and motion of the start + what gravity has released)
 //
+// Stiff springs turn the rounding of positions into motion, substep by substep: that is allowed for.
 // A projected constraint counts as a spring of at most the inertia of its ends over dt², all that a
 // sweep makes of it. Where something else does work (pins and colliders on paths, wind, a hand,
 // contact of the sheet with itself), the motion may also come to kBound times that of a sheet that is
@@ -36,23 +37,22 @@ class EnergyGuard {
   void look(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths, bool driven);
   // Whether the motion last looked at is within the bound.
   bool holds() const { return kinetic_ <= bound(); }
-  // Takes the frame last looked at for good.
-  void accept();
+  // Takes the frame last looked at, of so many substeps, for good.
+  void accept(int substeps);
   // What velocities must be multiplied with to be within the bound.
   double reduction() const;
 
  private:
   double bound() const;
 
-  std::vector<double> heaviest_;  // kg; free particle of each cloth
-  double put_in_ = 0;             // J; of the start
-  double driven_floor_ = 0;       // J; motion that is nothing special where something does work
-  double highest_ = 0;            // J; potential of gravity
-  double released_ = 0;           // J; by gravity so far
-  // J; of the frame last looked at: motion (or more than it), potential, what gravity has released.
+  double put_in_ = 0;        // J; of the start, and by rounding since
+  double rounding_ = 0;      // J; what stiff springs make of the rounding of positions in a substep
+  double driven_floor_ = 0;  // J; motion that is nothing special where something does work
+  double highest_ = 0;       // J; potential of gravity
+  double released_ = 0;      // J; by gravity so far
+  // J; of the frame last looked at: motion, potential, what gravity has released.
   double kinetic_ = 0, potential_ = 0, fall_ = 0;
   bool driven_ = false;
-  int looks_ = 0;  // so far; every so many one counts in full
 };
 
 }  // namespace weft::physics

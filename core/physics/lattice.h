@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -49,6 +48,10 @@ class Rows {
     float* base = data_.data() + static_cast<std::size_t>(j) * stride_;
     return {base, base + plane_, base + 2 * plane_};
   }
+  ConstRow3 row(int j) const {
+    const float* base = data_.data() + static_cast<std::size_t>(j) * stride_;
+    return {base, base + plane_, base + 2 * plane_};
+  }
   std::span<const float> component(int axis) const {
     return {data_.data() + axis * plane_, static_cast<std::size_t>(rows_) * stride_};
   }
@@ -68,10 +71,6 @@ class Rows {
   // The greatest size of a value, padding included; infinite if one is not a number.
   float greatest(const KernelTable& kernels) const {
     return kernels.greatest(data_.data(), static_cast<std::ptrdiff_t>(data_.size()));
-  }
-  // Of all values, padding included.
-  float sum_of_squares(const KernelTable& kernels) const {
-    return kernels.sum_of_squares(data_.data(), static_cast<std::ptrdiff_t>(data_.size()));
   }
 
  private:
@@ -98,6 +97,7 @@ struct Lattice {
   // To be called after the inverse masses of row j were changed through w().
   void weigh_row(int j);
   float* w(int j) { return inverse_mass.data() + static_cast<std::size_t>(j) * stride; }
+  const float* w(int j) const { return inverse_mass.data() + static_cast<std::size_t>(j) * stride; }
   float w(int j, int i) const { return inverse_mass[static_cast<std::size_t>(j) * stride + i]; }
   std::size_t bytes() const {
     return x.bytes() + v.bytes() + previous.bytes() + inverse_mass.size() * sizeof(float);

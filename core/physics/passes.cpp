@@ -1,6 +1,7 @@
 // The passes over a cloth's stages (passes.h).
 #include "physics/passes.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "physics/threads.h"
@@ -24,7 +25,7 @@ double row_nanoseconds(const std::vector<RowStage*>& stages, int rows) {
 
 }  // namespace
 
-Passes::Passes(const Stages& stages, int rows, std::size_t row_bytes) {
+Passes::Passes(const Stages& stages, int rows, std::size_t row_bytes) : stages_(stages) {
   std::vector<RowStage*> together;
   const auto close = [&](std::size_t end) {
     if (together.empty()) return;
@@ -51,32 +52,40 @@ bool Passes::worth_sharing(int particles, int substeps) const {
   return rows_only() ? double(particles) * substeps >= kSharedRun : particles >= kSharedSubstep;
 }
 
-void Passes::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake) {
-  if (rows_only()) {
-    threads.together([&] {
-      for (Pass& p : passes_) p.wavefront->run(substeps, threads, awake);
-    });
-    return;
-  }
-  for (Pass& p : passes_)
-    if (p.whole && substeps.dt != prepared_dt_) p.whole->prepare(substeps.dt);
-  prepared_dt_ = substeps.dt;
+void Passes::run(const Substeps& given, Threads& threads, std::span<const RowSpan> awake) {
+  if (given.dt != prepared_dt_) prepare(given.dt);
+  Substeps substeps = given;
+  substeps.velocities_between = velocities_between_;
   threads.together([&] {
-    for (int s = 0; s < substeps.count; ++s) run_substep(substeps, s, threads, awake);
+    if (rows_only())
+      for (Pass& p : passes_) p.wavefront->run(substeps, threads, awake);
+    else
+      for (int s = 0; s < substeps.count; ++s) run_substep(substeps, s, threads, awake);
   });
+}
+
+// Velocities that are made of positions at the end of a substep, and used by nobody but what
+// predicts the next, need not be written: it can make them itself.
+void Passes::prepare(double dt) {
+  prepared_dt_ = dt;
+  for (Pass& p : passes_)
+    if (p.whole) p.whole->prepare(dt);
+  velocities_between_ =
+      stages_.empty() || stages_.back()->velocities(dt) != Velocities::from_positions ||
+      !std::all_of(stages_.begin(), stages_.end() - 1, [&](const std::unique_ptr<Stage>& s) {
+        return s->velocities(dt) == Velocities::left_alone;
+      });
 }
 
 void Passes::run_substep(const Substeps& substeps, int s, Threads& threads,
                          std::span<const RowSpan> awake) {
-  const Substep substep = substeps.at(s);
   for (Pass& p : passes_) {
     if (p.wavefront) {
-      p.wavefront->run({substeps.time + s * substeps.dt, substeps.dt, 1, substep.kick}, threads,
-                       awake);
+      p.wavefront->run(substeps.only(s), threads, awake);
       continue;
     }
     const auto before = std::chrono::steady_clock::now();
-    p.whole->run(substep, threads);
+    p.whole->run(substeps.at(s), threads);
     if (profile_.empty()) continue;
     const auto spent = std::chrono::steady_clock::now() - before;
     profile_[p.first] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();

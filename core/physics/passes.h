@@ -37,10 +37,13 @@ class Passes {
     std::unique_ptr<Wavefront> wavefront;
     std::size_t count = 1;  // stages
   };
+  void prepare(double dt);
   void run_substep(const Substeps& substeps, int s, Threads& threads,
                    std::span<const RowSpan> awake);
 
+  const Stages& stages_;
   std::vector<Pass> passes_;
+  bool velocities_between_ = true;  // substeps
   std::size_t whole_stages_ = 0;
   double prepared_dt_ = 0;
   std::span<std::atomic<std::int64_t>> profile_;

@@ -18,6 +18,9 @@ struct Substep {
   double time = 0;  // s, at the end of the substep
   double kick = 0;  // s; for how long forces act on velocities (explicit springs)
   int slot = 0;     // which of a stage's carried buffers this substep uses
+  // Whether velocities are right at the start, or only positions and those of the substep before;
+  // and whether they are to be right at the end.
+  bool velocities_known = true, velocities_wanted = true;
 };
 
 // Substeps of one length, one after the other. Velocities of explicit springs lie behind the
@@ -28,11 +31,27 @@ struct Substeps {
   double dt = 0;    // s
   int count = 0;
   double first_kick = 0;  // s; dt where the substep before was as long
+  bool velocities_known = true, velocities_wanted = true;  // at the start and at the end
+  bool velocities_between = true;                          // or nobody looks at them in between
 
   Substep at(int n, int slot = 0) const {
-    return {dt, time + (n + 1) * dt, n == 0 ? first_kick : dt, slot};
+    return {dt,
+            time + (n + 1) * dt,
+            n == 0 ? first_kick : dt,
+            slot,
+            n == 0 ? velocities_known : velocities_between,
+            n + 1 == count ? velocities_wanted : velocities_between};
+  }
+  // Substep n by itself.
+  Substeps only(int n) const {
+    const Substep s = at(n);
+    return {time + n * dt, dt, 1, s.kick, s.velocities_known, s.velocities_wanted, true};
   }
 };
+
+// What a stage has to do with the velocities of particles: it reads or changes them as it moves
+// particles; it leaves them alone; or it makes them anew from where the substep began and ended.
+enum class Velocities { used, left_alone, from_positions };
 
 // Rows begin … end-1.
 struct RowSpan {
@@ -54,6 +73,7 @@ class Stage {
 
   // Called before substeps of a new length.
   virtual void prepare(double dt) { (void)dt; }
+  virtual Velocities velocities(double dt) const { return (void)dt, Velocities::used; }
   // The whole stage at once, for those who look between two stages.
   virtual void run_alone(int rows, const Substep& substep, Threads& threads) = 0;
   // Forgets what it keeps from one substep to the next: the state was set from outside.

@@ -37,16 +37,11 @@ float greatest_stretch(const ClothStep& step, const Rows& x) {
   float most = 0;
   for (const Family& f : step.families()) {
     if (f.kind != Kind::structural) continue;
-    for (int j = 0; j + f.dj < l.rows; j += 4)
-      for (int n = 0; n < f.per_row(l.columns); ++n) {
-        if (!f.alive(j, n)) continue;
-        float squared = 0;
-        for (int k = 0; k < 3; ++k) {
-          const float e = x.at(k, j + f.dj, n + f.far()) - x.at(k, j, n + f.near());
-          squared += e * e;
-        }
-        most = std::max(most, squared / float(f.rest * f.rest));
-      }
+    for (int j = 0; j + f.dj < l.rows; j += 4) {
+      const FarRows rows{f.per_row(l.columns), x.row(j).from(f.near()),
+                         x.row(j + f.dj).from(f.far()), f.links ? f.links->row(j) : nullptr};
+      most = std::max(most, step.parts().kernels.greatest_square(rows) / float(f.rest * f.rest));
+    }
   }
   return most;
 }
@@ -235,7 +230,7 @@ void Simulation::State::calm() {
     fall_back("frame " + std::to_string(frame + 1) +
               " gained energy from nowhere; velocities were reduced to what is left without it");
   }
-  guard_.accept();
+  guard_.accept(substeps);
 }
 
 bool Simulation::State::driven() const {

@@ -28,6 +28,7 @@ struct ConstRow3 {
   ConstRow3() = default;
   ConstRow3(const float* ax, const float* ay, const float* az) : x(ax), y(ay), z(az) {}
   ConstRow3(Row3 r) : x(r.x), y(r.y), z(r.z) {}
+  ConstRow3 from(int i) const { return {x + i, y + i, z + i}; }  // particle i on
 };
 
 // Constants of one spring family in one row: force on the near end = e (k - kl/|e|), e = far - near.
@@ -131,7 +132,27 @@ struct AdvanceRow {
   Row3 f;         // force [N], negated never; unused by predict
   Row3 previous;  // predict: receives the positions before, if given
   Advance advance;
+  // 1/s; predict: > 0 where velocities are how far particles are from `previous`, times this. They
+  // are then neither read nor written.
   float inverse_dt;
+};
+
+// One row, and what its free particles have: ½ Σ m v² and -Σ m g·x.
+struct EnergyRow {
+  int columns;
+  ConstRow3 x, v;
+  const float* w;  // inverse mass [1/kg]
+  double g[3];     // m/s²
+};
+struct RowEnergy {
+  double kinetic, potential;  // J
+};
+
+// The constraints of one family and row: ends next to each other, and which are left.
+struct FarRows {
+  int count;
+  ConstRow3 near, far;
+  const std::int32_t* alive;  // -1 or 0 each; null: all
 };
 
 // Constants of a collider's shape, about its place (colliders/).
@@ -262,7 +283,8 @@ struct KernelTable {
   int (*surface_pairs)(const SurfacePairs&);    // measures them; returns how many touch
   // The greatest size of `count` values, a multiple of 16; infinite if one is not a number.
   float (*greatest)(const float* values, std::ptrdiff_t count);
-  float (*sum_of_squares)(const float* values, std::ptrdiff_t count);
+  RowEnergy (*row_energy)(const EnergyRow&);
+  float (*greatest_square)(const FarRows&);  // of a constraint's length
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

@@ -5,13 +5,19 @@
 // of c written as μ_c |e_c| (which frees the equations of every division but the pivot's):
 //
 //   (w_c + w_{c+1} + α̃) |e_c|² μ_c - w_c e_{c-1}·e_c μ_{c-1} - w_{c+1} e_c·e_{c+1} μ_{c+1}
-//       = |e_c| (|e_c| - l + α̃ λ_c),            α̃ = 1/(k dt²)
+//       = |e_c| (|e_c| - l + α̃ λ_c) = r_c,      α̃ = 1/(k dt²)
 //   x_c <- x_c + w_c (μ_c e_c - μ_{c-1} e_{c-1}),  λ_c <- λ_c - μ_c |e_c|
 //
 // the Newton step of the compliant constraints of one line together (Macklin, Müller, Chentanez
 // 2016, with the whole of a line in place of one constraint), by the Thomas algorithm: elimination
-// walks the lines forwards, substitution backwards. A constraint that does not exist or is cut has
-// a pivot's reciprocal of zero: its multiplier is zero and the line falls into two.
+// walks the lines forwards and substitution backwards, where
+//
+//   f_c = w_c e_{c-1}·e_c / p_{c-1},   p_c = (w_c + w_{c+1} + α̃) |e_c|² - f_c w_c e_{c-1}·e_c,
+//   r_c <- r_c + f_c r_{c-1},          μ_c = r_c / p_c + f_{c+1} μ_{c+1}.
+//
+// A constraint that does not exist or is cut has an edge and a pivot's reciprocal of zero: its
+// multiplier is zero and the line falls into two. So a diagonal that leaves the sheet at one side
+// goes on at the other, where the next begins, and all lines are equally long.
 #include "physics/kernels/line.h"
 
 #include "physics/kernels/row_kernels.h"
@@ -32,31 +38,213 @@ constexpr int kForesight = 8;  // rows
 WEFT_INLINE void store_where(float* p, WideInt mask, Wide v) {
 #if WEFT_LANES == 16
   _mm512_mask_storeu_ps(p, _mm512_movepi32_mask((__m512i)mask), (__m512)v);
+#elif WEFT_LANES == 8
+  _mm256_maskstore_ps(p, (__m256i)mask, (__m256)v);
 #else
   for (int i = 0; i < kLanes; ++i)
     if (mask[i] != 0) p[i] = v[i];
 #endif
 }
 
-WEFT_INLINE void store3_where(Row3 r, std::ptrdiff_t at, WideInt mask, Wide3 v) {
-  store_where(r.x + at, mask, v.x);
-  store_where(r.y + at, mask, v.y);
-  store_where(r.z + at, mask, v.z);
+// Where a block of kLanes neighbouring lines lies in a row: in lanes next to each other,
+struct Whole {
+  std::ptrdiff_t at;
+};
+// or partly beyond the side of the sheet, where those lines come in again at the other side.
+struct Split {
+  std::ptrdiff_t at, again;
+  WideInt inside, beyond;  // which lanes are lines at all, and on this side or the other
+};
+
+WEFT_INLINE Wide load_at(const float* p, Whole s) {
+  return load(p + s.at);
+}
+WEFT_INLINE Wide load_at(const float* p, Split s) {
+  const Wide here = load(p + s.at);
+  return s.again == s.at ? here : select(s.beyond, load(p + s.again), here);
+}
+WEFT_INLINE void store_at(float* p, Whole s, Wide v) {
+  store(p + s.at, v);
+}
+WEFT_INLINE void store_at(float* p, Split s, Wide v) {
+  store_where(p + s.at, s.inside, v);
+  if (s.again != s.at) store_where(p + s.again, s.beyond, v);
+}
+template <class Place>
+WEFT_INLINE Wide3 load3_at(Row3 r, Place s) {
+  return {load_at(r.x, s), load_at(r.y, s), load_at(r.z, s)};
+}
+template <class Place>
+WEFT_INLINE void store3_at(Row3 r, Place s, Wide3 v) {
+  store_at(r.x, s, v.x);
+  store_at(r.y, s, v.y);
+  store_at(r.z, s, v.z);
 }
 
-WEFT_INLINE Wide3 load3_at(Row3 r, std::ptrdiff_t at) {
-  return {load(r.x + at), load(r.y + at), load(r.z + at)};
-}
+// A block of kLanes lines on its way along the sheet.
+template <bool kLambda, bool kVelocity>
+class Block {
+ public:
+  Block(const LineStrip& strip, int offset)
+      : p(strip), offset_(offset), line_(strip.first + offset) {
+    const int left = strip.columns - line_;
+    lines_ = left < kLanes ? left : kLanes;
+    if (p.lean == 0)  // nothing leaves the sheet, and beyond its side is padding without mass
+      last_whole_ = line_;
+    else if (lines_ == kLanes)
+      first_whole_ = p.lean < 0 ? -p.lean : 0,
+      last_whole_ = p.columns - kLanes - (p.lean > 0 ? p.lean : 0);
+  }
 
-// Which of the lanes lane … lane+kLanes-1 are columns of the sheet.
-WEFT_INLINE WideInt on_sheet(const LineStrip& p, int lane) {
-  const WideInt lanes = lane_numbers() + lane;
-  return (lanes >= 0) & (lanes < p.columns);
-}
+  // Whether constraint m of all lines goes from lanes to lanes next to each other; and if it does,
+  // how many in a row do, m and those after it, or m and those before it.
+  WEFT_INLINE bool whole(int m) const { return lane(m) >= first_whole_ && lane(m) <= last_whole_; }
+  WEFT_INLINE int whole_from(int m) const {
+    if (p.lean == 0) return p.particles;
+    return p.lean > 0 ? (last_whole_ - lane(m)) / p.lean + 1
+                      : (first_whole_ - lane(m)) / p.lean + 1;
+  }
+  WEFT_INLINE int whole_back_from(int m) const {
+    if (p.lean == 0) return p.particles;
+    return p.lean > 0 ? (lane(m) - first_whole_) / p.lean + 1
+                      : (lane(m) - last_whole_) / p.lean + 1;
+  }
 
-int quotient_up(int a, int b) {
-  return a <= 0 ? 0 : (a + b - 1) / b;
-}
+  // Elimination: begin(), then every constraint in turn.
+  WEFT_INLINE void begin() {
+    const Split here = split(0);
+    x_ = load3_at(p.x, here);
+    w_ = load_at(p.w, here);
+  }
+  template <bool kWhole>
+  WEFT_INLINE void eliminate(int m) {
+    if constexpr (kWhole) {
+      foresee(p.x, m + kForesight);
+      eliminate(m, at(m), at(m + 1), [](WideInt pivots) { return pivots; });
+    } else {
+      const Split here = split(m);
+      const WideInt there = lane_numbers() + (lane(m) + p.lean) - (here.beyond & p.columns);
+      const WideInt exists = (here.inside | here.beyond) & (there >= 0) & (there < p.columns);
+      wrap(m + 1);
+      eliminate(m, here, split(m + 1), [&](WideInt pivots) { return pivots & exists; });
+    }
+  }
+
+  // Substitution: every constraint from the last to the first, then end().
+  template <bool kWhole>
+  WEFT_INLINE void substitute(int m) {
+    if constexpr (kWhole) {
+      if constexpr (kVelocity) foresee(p.v, m - kForesight);
+      substitute(m, at(m), at(m + 1));
+    } else {
+      const Split there = split(m + 1);
+      wrap(m);
+      substitute(m, split(m), there);
+    }
+  }
+  WEFT_INLINE void end() { shift(split(0), pull_); }
+
+ private:
+  WEFT_INLINE int lane(int m) const { return line_ + m * p.lean; }
+  WEFT_INLINE Whole at(int m) const { return {line_ + m * p.step}; }
+  // The block's first line is to be on the sheet in row m, be it come in again.
+  WEFT_INLINE void wrap(int m) {
+    if (lane(m) >= p.columns) line_ -= p.columns;
+    if (lane(m) < 0) line_ += p.columns;
+  }
+  WEFT_INLINE Split split(int m) const {
+    const std::ptrdiff_t here = line_ + m * p.step;
+    const WideInt lanes = lane_numbers() + lane(m), lines = lanes_below(lines_);
+    return {here, lane(m) + lines_ > p.columns ? here - p.columns : here,
+            lines & (lanes < p.columns), lines & (lanes >= p.columns)};
+  }
+  WEFT_INLINE float* scratch(int m) const {
+    return p.scratch + static_cast<std::ptrdiff_t>(m) * kStripScratch + offset_;
+  }
+  // Asks for a row that will be written: rows are too far apart for the processor to foresee them, and
+  // another core may hold them. Any address will do, past the last row, too.
+  WEFT_INLINE void foresee(Row3 r, int m) const {
+#if WEFT_LANES > 1
+    for (const float* row : {r.x, r.y, r.z}) asm volatile("prefetchw %0" : : "m"(row[at(m).at]));
+#else
+    (void)r, (void)m;
+#endif
+  }
+  // Which of the constraints from here are not cut.
+  WEFT_INLINE WideInt alive(Whole s) const {
+    return lanes_at(p.alive + s.at);
+  }
+  WEFT_INLINE WideInt alive(Split s) const {
+    return s.beyond ? lanes_at(p.alive + s.again) : lanes_at(p.alive + s.at);
+  }
+
+  template <class Place, class Existing>
+  WEFT_INLINE void eliminate(int m, Place here, Place there, const Existing& existing) {
+    const Wide3 far = load3_at(p.x, there);
+    const Wide w_far = load_at(p.w, there);
+    const Wide3 e = far - x_;
+    const Wide alpha = load(p.compliance + m * p.compliance_step + offset_);
+    const Wide squared = dot(e, e);
+    const Wide length = sqrt(squared);
+    const Wide coupling = w_ * dot(edge_, e);
+    const Wide factor = coupling * reciprocal_;
+    const Wide pivot = (w_ + w_far + alpha) * squared - factor * coupling;
+    Wide violation = length - p.rest;
+    if constexpr (kLambda)
+      if (!p.fresh) violation = violation + alpha * load_at(p.lambda, here);
+    right_ = length * violation + factor * right_;
+    WideInt solved = existing(pivot > kTinyPivot);
+    if (p.alive) solved = solved & alive(here);
+    reciprocal_ = select(solved, 1.0f / pivot, Wide{});
+    store(scratch(m), right_ * reciprocal_);
+    store(scratch(m) + kStripLines, factor);
+    if constexpr (kLambda) store(scratch(m) + 2 * kStripLines, length);
+    edge_ = e;
+    x_ = far;
+    w_ = w_far;
+  }
+
+  template <class Place>
+  WEFT_INLINE void substitute(int m, Place here, Place there) {
+    const Wide3 near = load3_at(p.x, here);
+    mu_ = load(scratch(m)) + factor_ * mu_;
+    factor_ = load(scratch(m) + kStripLines);
+    if constexpr (kLambda) {
+      const Wide before = p.fresh ? Wide{} : load_at(p.lambda, here);
+      store_at(p.lambda, here, before - mu_ * load(scratch(m) + 2 * kStripLines));
+    }
+    // No multiplier where there is no constraint, whatever lies between the lanes.
+    const Wide3 own = (x_ - near) * mu_;
+    shift(there, pull_ - own);
+    pull_ = own;
+    x_ = near;
+    w_ = load_at(p.w, here);
+  }
+
+  // Moves a particle by the pulls of the constraints before and after it.
+  template <class Place>
+  WEFT_INLINE void shift(Place s, Wide3 by) const {
+    const Wide3 change = by * (w_ * p.share);
+    store3_at(p.x, s, x_ + change);
+    // As computed: the difference of rounded positions over dt would be mostly rounding.
+    if constexpr (kVelocity) store3_at(p.v, s, load3_at(p.v, s) + change * wide(p.inverse_dt));
+  }
+
+  const LineStrip& p;
+  int offset_;  // of the block in the strip
+  int lines_;   // that exist
+  int line_;    // of lane 0 if it went on straight to where it is now
+  int first_whole_ = 0, last_whole_ = -1;
+  Wide3 x_{};  // of the particle that the last constraint has led to
+  Wide w_{};
+  // Elimination: of the constraint before.
+  Wide3 edge_{};
+  Wide reciprocal_{}, right_{};
+  // Substitution: of the constraint after.
+  Wide mu_{}, factor_{};
+  Wide3 pull_{};
+};
+
 int least(int a, int b) {
   return a < b ? a : b;
 }
@@ -64,199 +252,46 @@ int greatest(int a, int b) {
   return a > b ? a : b;
 }
 
-// A block of kLanes lines: constraints begin … end-1 have a lane on the sheet at both their ends,
-// and of those whole_begin … whole_end-1 have all lanes at both ends.
-struct Range {
-  int begin, end, whole_begin, whole_end;
-};
-Range range_of(const LineStrip& p, int line) {
-  const int last = p.particles - 1;
-  if (p.lean == 0) {
-    const int end = line < p.columns ? last : 0;
-    return {0, end, 0, line + kLanes <= p.columns ? end : 0};
-  }
-  const int lean = p.lean > 0 ? p.lean : -p.lean;
-  // Lanes move right by `lean` a row; for lines that lean left seen in the mirror.
-  const int left = p.lean > 0 ? line : p.columns - line - kLanes, right = left + kLanes - 1;
-  // The rightmost lane is the first to come in at the left border, the first to go at the right.
-  Range r{quotient_up(-right, lean), quotient_up(p.columns - lean - left, lean),
-          quotient_up(-left, lean), quotient_up(p.columns - lean - right, lean)};
-  for (int* c : {&r.begin, &r.end, &r.whole_begin, &r.whole_end}) *c = least(*c, last);
-  r.whole_end = greatest(r.whole_begin, r.whole_end);
-  return r;
-}
-
-// One block of lanes on its way along the lines.
-template <bool kLambda, bool kVelocity>
-struct Block {
-  const LineStrip& p;
-  int line;    // of lane 0
-  int offset;  // of the block in the strip
-  Range range;
-  Wide3 edge{};  // of the constraint before (elimination) or after (substitution)
-  Wide3 x{};     // of the particle where the next constraint starts
-  Wide w{};
-  Wide reciprocal{}, right{}, mu{};
-  Wide3 pull{};
-
-  WEFT_INLINE std::ptrdiff_t at(int m) const { return line + m * p.step; }
-  WEFT_INLINE float* scratch(int m) const {
-    return p.scratch + static_cast<std::ptrdiff_t>(m) * kStripScratch + offset;
-  }
-  // Asks for a row that will be written: rows are too far apart for the processor to foresee them, and
-  // another core may hold them. Any address will do, past the last row, too.
-  WEFT_INLINE void foresee(Row3 r, int m) const {
-#if WEFT_LANES > 1
-    for (const float* row : {r.x, r.y, r.z}) asm volatile("prefetchw %0" : : "m"(row[at(m)]));
-#else
-    (void)r, (void)m;
-#endif
-  }
-  // e_c where the constraint exists, else 0.
-  WEFT_INLINE Wide3 existing(Wide3 e, int m) const {
-    const int lane = line + m * p.lean;
-    return select(on_sheet(p, lane) & on_sheet(p, lane + p.lean), e, Wide3{});
-  }
-  // e_c where the constraint is not cut, else 0.
-  WEFT_INLINE Wide3 holding(Wide3 e, int m) const {
-    return p.alive ? select(lanes_at(p.alive + at(m)), e, Wide3{}) : e;
-  }
-
-  template <bool kWhole>
-  WEFT_INLINE void eliminate(int m) {
-    if constexpr (kWhole) foresee(p.x, m + kForesight);
-    const Wide3 far = load3_at(p.x, at(m + 1));
-    const Wide w_far = load(p.w + at(m + 1));
-    Wide3 e = holding(far - x, m);
-    if constexpr (!kWhole) e = existing(e, m);
-    const Wide alpha = load(p.compliance + m * p.compliance_step + offset);
-    const Wide squared = dot(e, e);
-    const Wide length = sqrt(squared);
-    const Wide coupling = w * dot(edge, e);
-    const Wide factor = coupling * reciprocal;
-    const Wide pivot = (w + w_far + alpha) * squared - factor * coupling;
-    Wide violation = length - p.rest;
-    if constexpr (kLambda)
-      if (!p.fresh) violation = violation + alpha * load(p.lambda + at(m));
-    right = length * violation + factor * right;
-    reciprocal = select(pivot > kTinyPivot, 1.0f / pivot, Wide{});
-    store(scratch(m), reciprocal);
-    store(scratch(m) + kStripLines, right);
-    if constexpr (kLambda) store(scratch(m) + 2 * kStripLines, length);
-    edge = e;
-    x = far;
-    w = w_far;
-  }
-  // The same where the block may be partly or wholly off the sheet.
-  WEFT_INLINE void eliminate_at_border(int m) {
-    if (m < range.begin || m >= range.end) return;
-    if (m == range.begin) {
-      x = load3_at(p.x, at(m));
-      w = load(p.w + at(m));
-    }
-    is_whole(m) ? eliminate<true>(m) : eliminate<false>(m);
-  }
-  WEFT_INLINE bool is_whole(int m) const {
-    return m >= range.whole_begin && m < range.whole_end;
-  }
-
-  // Moves particle m by the pulls of the constraints before and after it.
-  template <bool kWhole>
-  WEFT_INLINE void shift(int m, Wide3 position, Wide inverse_mass, Wide3 by) const {
-    const Wide3 change = by * (inverse_mass * p.share);
-    add_to<kWhole>(p.x, m, position, change);
-    // As computed: the difference of rounded positions over dt would be mostly rounding.
-    if constexpr (kVelocity)
-      add_to<kWhole>(p.v, m, load3_at(p.v, at(m)), change * wide(p.inverse_dt));
-  }
-  template <bool kWhole>
-  WEFT_INLINE void add_to(Row3 r, int m, Wide3 before, Wide3 change) const {
-    if constexpr (kWhole)
-      store3({r.x + at(m), r.y + at(m), r.z + at(m)}, 0, before + change);
-    else
-      store3_where(r, at(m), on_sheet(p, line + m * p.lean), before + change);
-  }
-
-  template <bool kWhole>
-  WEFT_INLINE void substitute(int m) {
-    if constexpr (kWhole && kVelocity) foresee(p.v, m - kForesight);
-    const Wide3 near = load3_at(p.x, at(m));
-    Wide3 e = holding(x - near, m);
-    if constexpr (!kWhole) e = existing(e, m);
-    const Wide coupling = w * dot(e, edge);
-    mu = load(scratch(m)) * (load(scratch(m) + kStripLines) + coupling * mu);
-    if constexpr (kLambda) keep_multiplier(m);
-    const Wide3 own = e * mu;
-    shift<kWhole>(m + 1, x, w, pull - own);
-    pull = own;
-    edge = e;
-    x = near;
-    w = load(p.w + at(m));
-  }
-  WEFT_INLINE void substitute_at_border(int m) {
-    if (m < range.begin || m >= range.end) return;
-    if (m == range.end - 1) {
-      x = load3_at(p.x, at(m + 1));
-      w = load(p.w + at(m + 1));
-      edge = Wide3{};
-    }
-    is_whole(m) ? substitute<true>(m) : substitute<false>(m);
-    if (m == range.begin) shift<false>(m, x, w, pull);
-  }
-
-  WEFT_INLINE void keep_multiplier(int m) const {
-    const Wide before = p.fresh ? Wide{} : load(p.lambda + at(m));
-    const Wide lambda = before - mu * load(scratch(m) + 2 * kStripLines);
-    store_where(p.lambda + at(m), on_sheet(p, line + m * p.lean), lambda);
-  }
-};
-
-// One or two blocks of lines side by side: whole constraints in a loop without a branch, the others
-// before and after it.
+// One or two blocks of lines side by side.
 template <bool kLambda, bool kVelocity, int kBlocks>
 void solve_blocks(const LineStrip& given, int first) {
   const LineStrip p = given;  // a copy that no store can alias
-  using B = Block<kLambda, kVelocity>;
-  B a{p, p.first + first, first, range_of(p, p.first + first)};
-  const int second = first + (kBlocks - 1) * kLanes;
-  B b{p, p.first + second, second, range_of(p, p.first + second)};
-  const int begin = least(a.range.begin, b.range.begin), end = greatest(a.range.end, b.range.end);
-  // The first and the last constraint of a line do more than the others.
-  int whole = greatest(a.range.whole_begin, b.range.whole_begin);
-  whole = greatest(whole, greatest(a.range.begin, b.range.begin) + 1);
-  int whole_end = least(a.range.whole_end, b.range.whole_end);
-  whole_end = least(whole_end, least(a.range.end, b.range.end) - 1);
-  if (whole_end <= whole) whole = whole_end = end;
-  int m = begin;
-  const auto eliminate = [&]<bool kWhole>(int to) __attribute__((always_inline)) {
-    for (; m < to; ++m) {
-      if constexpr (kWhole) {
+  Block<kLambda, kVelocity> a(p, first), b(p, first + (kBlocks - 1) * kLanes);
+  const int constraints = p.particles - 1;
+  a.begin();
+  if constexpr (kBlocks == 2) b.begin();
+  int m = 0;
+  while (m < constraints) {
+    if (a.whole(m) && b.whole(m)) {
+      const int together = least(a.whole_from(m), b.whole_from(m));
+      for (const int end = least(m + together, constraints); m < end; ++m) {
         a.template eliminate<true>(m);
         if constexpr (kBlocks == 2) b.template eliminate<true>(m);
-      } else {
-        a.eliminate_at_border(m);
-        if constexpr (kBlocks == 2) b.eliminate_at_border(m);
       }
+    } else {
+      a.whole(m) ? a.template eliminate<true>(m) : a.template eliminate<false>(m);
+      if constexpr (kBlocks == 2)
+        b.whole(m) ? b.template eliminate<true>(m) : b.template eliminate<false>(m);
+      ++m;
     }
-  };
-  eliminate.template operator()<false>(whole);
-  eliminate.template operator()<true>(whole_end);
-  eliminate.template operator()<false>(end);
-  const auto substitute = [&]<bool kWhole>(int from) __attribute__((always_inline)) {
-    while (m > from) {
-      --m;
-      if constexpr (kWhole) {
+  }
+  --m;
+  while (m >= 0) {
+    if (a.whole(m) && b.whole(m)) {
+      const int together = least(a.whole_back_from(m), b.whole_back_from(m));
+      for (const int end = greatest(m - together, -1); m > end; --m) {
         a.template substitute<true>(m);
         if constexpr (kBlocks == 2) b.template substitute<true>(m);
-      } else {
-        a.substitute_at_border(m);
-        if constexpr (kBlocks == 2) b.substitute_at_border(m);
       }
+    } else {
+      a.whole(m) ? a.template substitute<true>(m) : a.template substitute<false>(m);
+      if constexpr (kBlocks == 2)
+        b.whole(m) ? b.template substitute<true>(m) : b.template substitute<false>(m);
+      --m;
     }
-  };
-  substitute.template operator()<false>(whole_end);
-  substitute.template operator()<true>(whole);
-  substitute.template operator()<false>(begin);
+  }
+  a.end();
+  if constexpr (kBlocks == 2) b.end();
 }
 
 template <bool kLambda, bool kVelocity>

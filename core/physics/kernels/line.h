@@ -15,8 +15,9 @@ inline constexpr int kStripLines = 32;
 inline constexpr int kStripScratch = 3 * kStripLines;
 
 // A strip of neighbouring lines of one family, each a chain of particles. Particle m of line n lies
-// `n + m*step` floats behind lane 0 of the first row, in lane n + m*lean of its row; it exists
-// where that lane is one of 0 … columns-1. So a line may begin and end at the border in any row.
+// `n + m*step` floats behind lane 0 of the first row, in lane n + m*lean of its row. Where that is
+// beyond a side of the sheet, the line is cut and goes on at the other side, `columns` lanes from
+// there, and so every line passes through all rows.
 struct LineStrip {
   Row3 x;          // lane 0 of the row where lines start
   const float* w;  // inverse mass, laid out as x [1/kg]
@@ -25,7 +26,7 @@ struct LineStrip {
   int lean;
   int columns;
   int first;                       // number of the first line of the strip, a multiple of 16
-  int lines;                       // 16 or 32; further ones are not touched
+  int lines;                       // 16 or 32, of which those from `columns` on do not exist
   float rest;                      // m
   float share;                     // factor on the correction
   Row3 v;                          // velocities, laid out as x; gain corrections times inverse_dt

@@ -56,15 +56,19 @@ WEFT_INLINE int padded(int count) {
   return (count + 15) & ~15;
 }
 
-// v <- c v + kick (f/m + g), x <- x + dt v; a pinned particle's inverse mass of 0 keeps it in place.
-WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const Advance& a,
-                      std::ptrdiff_t i) {
-  const Wide w = load(inverse_mass + i);
+// c v + kick (f/m + g); nothing is added where the inverse mass w is 0, that of a pinned particle.
+WEFT_INLINE Wide3 moved(Wide3 v, Wide w, Wide3 f, const Advance& a) {
   const WideInt free = w > 0.0f;
   const Wide w_kick = w * a.kick;
   const Wide3 gained{select(free, wide(a.gx), Wide{}), select(free, wide(a.gy), Wide{}),
                      select(free, wide(a.gz), Wide{})};
-  const Wide3 velocity = load3(v, i) * wide(a.drag) + (f * w_kick + gained);
+  return v * wide(a.drag) + (f * w_kick + gained);
+}
+
+// v <- c v + kick (f/m + g), x <- x + dt v.
+WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const Advance& a,
+                      std::ptrdiff_t i) {
+  const Wide3 velocity = moved(load3(v, i), load(inverse_mass + i), f, a);
   store3(v, i, velocity);
   store3(x, i, load3(x, i) + velocity * wide(a.dt));
 }
@@ -91,7 +95,8 @@ void bend_line(const physics::BendLine&);
 void bend_twist(const physics::TwistRow&);
 
 float greatest(const float* values, std::ptrdiff_t count);
-float sum_of_squares(const float* values, std::ptrdiff_t count);
+physics::RowEnergy row_energy(const physics::EnergyRow&);
+float greatest_square(const physics::FarRows&);
 void wind(const physics::WindRow&);
 void push(const AdvanceRow&);
 void block_bounds(const physics::BlockRows&);

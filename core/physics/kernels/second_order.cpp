@@ -21,28 +21,50 @@ using physics::SecondOrderRow;
 
 namespace {
 
+constexpr float kThird = 1.0f / 3.0f, kTwoThirds = 2.0f / 3.0f;
+
 WEFT_INLINE WideInt equal(Wide3 a, Wide3 b) {
   return (a.x == b.x) & (a.y == b.y) & (a.z == b.z);
 }
 
-}  // namespace
+// What corrections are scaled by in a smooth step, and in one of implicit Euler.
+struct Slowed {
+  float smooth, euler;
+  explicit Slowed(const SecondOrderRow& r)
+      : smooth(1.0f / (1.0f + r.dt * kTwoThirds * r.drag)), euler(1.0f / (1.0f + r.dt * r.drag)) {}
+};
 
-void predict_second_order(const SecondOrderRow& given) {
+// v of the substep that has moved particles to x; which kind it was its inverse masses tell.
+WEFT_INLINE Wide3 velocity_from_star(const SecondOrderRow& r, Wide3 x, WideInt euler, int i) {
+  return (x - load3(r.star, i)) * select(euler, wide(1 / r.dt), wide(1.5f / r.dt));
+}
+
+// kKnown: v is in memory; else nobody has touched it since the substep before.
+template <bool kKnown>
+WEFT_INLINE void predict(const SecondOrderRow& given) {
   const SecondOrderRow r = given;
-  const float h = r.dt, h2 = h * (2.0f / 3.0f), third = 1.0f / 3.0f;
-  const float slow = 1.0f / (1.0f + h * r.drag), slow2 = 1.0f / (1.0f + h2 * r.drag);
+  const float h = r.dt, h2 = h * kTwoThirds;
+  const Slowed slowed(r);
   const Wide3 g{wide(r.gx), wide(r.gy), wide(r.gz)};
   const WideInt known = r.fresh ? WideInt{} : ~WideInt{};
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide3 x = load3(r.x, i), v = load3(r.v, i);
+    const Wide3 x = load3(r.x, i);
     const Wide mass = load(r.mass + i);
     const WideInt free = mass > 0.0f;
-    const WideInt smooth = known & free & equal(v, load3(r.v_end, i));
-    const Wide3 x_star = x + (x - load3(r.previous, i)) * wide(third);
-    const Wide3 v_star = v + (v - load3(r.v_before, i)) * wide(third);
+    Wide3 v;
+    WideInt smooth;
+    if constexpr (kKnown) {
+      v = load3(r.v, i);
+      smooth = known & free & equal(v, load3(r.v_end, i));
+    } else {
+      v = velocity_from_star(r, x, load(r.w + i) > mass * slowed.smooth, i);
+      smooth = free;
+    }
+    const Wide3 x_star = x + (x - load3(r.previous, i)) * wide(kThird);
+    const Wide3 v_star = v + (v - load3(r.v_before, i)) * wide(kThird);
     const Wide step = select(smooth, wide(h2), wide(h));
-    const Wide slowed = select(smooth, wide(slow2), wide(slow));
-    const Wide3 velocity = (select(smooth, v_star, v) + g * step) * slowed;
+    const Wide slow = select(smooth, wide(slowed.smooth), wide(slowed.euler));
+    const Wide3 velocity = (select(smooth, v_star, v) + g * step) * slow;
     store3(r.previous, i, x);
     store3(r.v_before, i, v);
     const Wide3 star = select(smooth, x_star, x);
@@ -51,21 +73,24 @@ void predict_second_order(const SecondOrderRow& given) {
     // Corrections will be added to v over ⅔h; an Euler step's belong over h.
     if (!r.from_star)
       store3(r.v, i, select(free, velocity * select(smooth, wide(1), wide(1.5f)), v));
-    store(r.w + i, mass * select(smooth, wide(slow2), wide(slow * 2.25f)));
+    store(r.w + i, mass * select(smooth, wide(slowed.smooth), wide(slowed.euler * 2.25f)));
   }
+}
+
+}  // namespace
+
+void predict_second_order(const SecondOrderRow& r) {
+  r.v_waits ? predict<false>(r) : predict<true>(r);
 }
 
 void velocity_second_order(const SecondOrderRow& given) {
   const SecondOrderRow r = given;
-  const float slow2 = 1.0f / (1.0f + r.dt * (2.0f / 3.0f) * r.drag);
+  const Slowed slowed(r);
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide mass = load(r.mass + i);
-    const WideInt euler = load(r.w + i) > mass * slow2;
-    Wide3 v;
-    if (!r.from_star)
-      v = load3(r.v, i) * select(euler, wide(2.0f / 3.0f), wide(1));
-    else
-      v = (load3(r.x, i) - load3(r.star, i)) * select(euler, wide(1 / r.dt), wide(1.5f / r.dt));
+    const WideInt euler = load(r.w + i) > mass * slowed.smooth;
+    const Wide3 v = r.from_star ? velocity_from_star(r, load3(r.x, i), euler, i)
+                                : load3(r.v, i) * select(euler, wide(kTwoThirds), wide(1));
     store3(r.v, i, v);
     store3(r.v_end, i, v);
     store(r.w + i, mass);

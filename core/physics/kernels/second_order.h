@@ -14,6 +14,7 @@ struct SecondOrderRow {
   Row3 v_before;      // v of the substep before; receives v [m/s]
   Row3 star;          // receives where the substep starts from, x* [m]
   bool from_star;     // the velocity is (x - x*) over the step, not v as it is
+  bool v_waits;       // predict: v is not known but by that
   Row3 v_end;         // v as the substep before left it [m/s]
   float* w;           // inverse mass, scaled while the constraints are solved [1/kg]
   const float* mass;  // inverse mass proper [1/kg]
@@ -23,14 +24,20 @@ struct SecondOrderRow {
   float gx, gy, gz;   // m/s²
 };
 
-// One row of particles and one tether each.
+// The most tethers a particle has.
+inline constexpr int kTethers = 4;
+
+// One row of particles and its tethers, which hold one after the other.
 struct TetherRow {
   int columns;
   Row3 x;
-  Row3 v;              // gains corrections times inverse_dt
-  float inverse_dt;    // 1/s; 0 = velocities are not touched
-  ConstRow3 pin;       // where each particle's pin is [m]
-  const float* reach;  // how far the particle may be from it [m]
+  Row3 v;            // gains corrections times inverse_dt
+  float inverse_dt;  // 1/s; 0 = velocities are not touched
+  int count;         // of tethers that a particle may have
+  struct Tether {
+    ConstRow3 pin;       // where each particle's pin is [m]
+    const float* reach;  // how far the particle may be from it [m]
+  } tethers[kTethers];
 };
 
 }  // namespace weft::physics

@@ -5,7 +5,12 @@ namespace weft::WEFT_KERNELS {
 
 namespace {
 constexpr int kBlocks = 16 / kLanes;  // of 16 values: in the same lanes at every width
+
+typedef double WideDouble __attribute__((vector_size(8 * kLanes)));
+WEFT_INLINE WideDouble twice(Wide v) {  // as precise
+  return __builtin_convertvector(v, WideDouble);
 }
+}  // namespace
 
 // As whole numbers the sizes of floats have the order of their bits, and what is not a number lies
 // above infinity.
@@ -23,17 +28,38 @@ float greatest(const float* values, std::ptrdiff_t count) {
   return ((Wide)(WideInt{} + (greatest > kInfinite ? kInfinite : greatest)))[0];
 }
 
-float sum_of_squares(const float* values, std::ptrdiff_t count) {
-  Wide sum[kBlocks] = {};
-  for (std::ptrdiff_t i = 0; i < count; i += 16)
+// In double: what a small swing releases is a millionth of the height it has.
+physics::RowEnergy row_energy(const physics::EnergyRow& r) {
+  WideDouble motion[kBlocks] = {}, height[kBlocks] = {};
+  for (int i = 0; i < padded(r.columns); i += 16)
     for (int b = 0; b < kBlocks; ++b) {
-      const Wide v = load(values + i + b * kLanes);
-      sum[b] = sum[b] + v * v;
+      const int at = i + b * kLanes;
+      const Wide w = load(r.w + at);
+      const WideDouble mass = twice(select(w > 0.0f, 1.0f / w, Wide{}));
+      const Wide3 v = load3(r.v, at), x = load3(r.x, at);
+      motion[b] = motion[b] + mass * twice(dot(v, v));
+      height[b] =
+          height[b] - mass * (twice(x.x) * r.g[0] + twice(x.y) * r.g[1] + twice(x.z) * r.g[2]);
     }
-  float all = 0;
-  for (const Wide& s : sum)
-    for (int lane = 0; lane < kLanes; ++lane) all += s[lane];
-  return all;
+  physics::RowEnergy e{0, 0};
+  for (int b = 0; b < kBlocks; ++b)
+    for (int lane = 0; lane < kLanes; ++lane) {
+      e.kinetic += 0.5 * motion[b][lane];
+      e.potential += height[b][lane];
+    }
+  return e;
+}
+
+float greatest_square(const physics::FarRows& r) {
+  Wide most{};
+  for (int a = 0; a < r.count; a += kLanes) {
+    const Wide3 e = load3(r.far, a) - load3(r.near, a);
+    const Wide squared = dot(e, e);
+    WideInt there = lanes_below(r.count - a);
+    if (r.alive) there = there & lanes_at(r.alive + a);
+    most = select(there & (squared > most), squared, most);
+  }
+  return greatest(most);
 }
 
 }  // namespace weft::WEFT_KERNELS

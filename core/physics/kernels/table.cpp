@@ -41,7 +41,8 @@ const physics::KernelTable& table() {
       squares_within,
       surface_pairs,
       greatest,
-      sum_of_squares,
+      row_energy,
+      greatest_square,
   };
   return table;
 }

@@ -8,19 +8,23 @@ namespace weft::WEFT_KERNELS {
 
 using physics::TetherRow;
 
-void tethers(const TetherRow& given) {
-  const TetherRow r = given;
+void tethers(const TetherRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide3 pin = load3(r.pin, i), x = load3(r.x, i), e = x - pin;
-    const Wide reach = load(r.reach + i), squared = dot(e, e);
-    const WideInt beyond = squared > reach * reach;
-    if (!any(beyond)) continue;
-    const Wide scale = reach / select(beyond, sqrt(squared), wide(1));
-    const Wide3 target = pin + e * scale;
-    store3(r.x, i, select(beyond, target, x));
-    if (r.inverse_dt == 0) continue;
-    const Wide3 v = load3(r.v, i);
-    store3(r.v, i, select(beyond, v + (target - x) * wide(r.inverse_dt), v));
+    const Wide3 start = load3(r.x, i);
+    Wide3 x = start;
+    bool moved = false;
+    for (int t = 0; t < r.count; ++t) {
+      const Wide3 pin = load3(r.tethers[t].pin, i), e = x - pin;
+      const Wide reach = load(r.tethers[t].reach + i), squared = dot(e, e);
+      const WideInt beyond = squared > reach * reach;
+      if (!any(beyond)) continue;
+      moved = true;
+      const Wide scale = reach / select(beyond, sqrt(squared), wide(1));
+      x = select(beyond, pin + e * scale, x);
+    }
+    if (!moved) continue;
+    store3(r.x, i, x);
+    if (r.inverse_dt > 0) store3(r.v, i, load3(r.v, i) + (x - start) * wide(r.inverse_dt));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "physics/stages/stages.h"
 #include "physics/stages/strips.h"
@@ -86,6 +87,10 @@ class Line final : public WholeStage {
     for (LineFamily& l : along_rows_) l.links.forget();
   }
 
+  Velocities velocities(double dt) const override {
+    return velocity_gain(parts_.scene.solver, options_.compliant, dt) == 0 ? Velocities::left_alone
+                                                                           : Velocities::used;
+  }
   void run(const Substep& s, Threads& threads) override {
     if (s.dt != dt_) set_compliance(s.dt);
     strips_.begin(threads);
@@ -98,53 +103,35 @@ class Line final : public WholeStage {
   }
 
   void sweep(bool fresh) {
-    for (LineFamily& l : diagonal_)
-      for (int start = 0; start < l.family->dj; ++start) solve_diagonals(l, start, fresh);
-    if (!along_columns_.empty()) solve_columns(fresh);
+    for (LineFamily& l : diagonal_) solve_strips({&l, 1}, fresh);
+    if (!along_columns_.empty()) solve_strips(along_columns_, fresh);
     if (!along_rows_.empty()) solve_rows(fresh);
   }
 
-  void solve_diagonals(LineFamily& l, int start, bool fresh) {
-    const int columns = parts_.lattice.columns, particles = particles_from(l, start);
-    const int leaning = (particles - 1) * std::abs(l.family->di);
-    // Whole strips to the left of lane 0, so that no block of lanes begins before the first row.
-    const int strips_left = l.family->di > 0 ? (leaning + kStripLines - 1) / kStripLines : 0;
-    const int first = -strips_left * kStripLines;
-    const int end = columns + (l.family->di > 0 ? 0 : leaning);
-    const int strips = (end - first + kStripLines - 1) / kStripLines;
-    strips_.share_out(strips, kConstraintNs * particles * columns / strips,
-                      [&](int strip, StripMemory& memory) {
-                        solve_strip(l, start, first + strip * kStripLines, end, fresh, memory);
-                      });
-  }
-
-  void solve_columns(bool fresh) {
+  // All lines of families between rows, strip by strip: of several only where these are the same
+  // particles.
+  void solve_strips(std::span<LineFamily> families, bool fresh) {
     const Lattice& lattice = parts_.lattice;
     strips_.share_out((lattice.columns + kStripLines - 1) / kStripLines,
-                      kConstraintNs * kStripLines * lattice.rows * double(along_columns_.size()),
+                      kConstraintNs * kStripLines * lattice.rows * double(families.size()),
                       [&](int strip, StripMemory& memory) {
-                        for (LineFamily& l : along_columns_)
+                        for (LineFamily& l : families)
                           for (int start = 0; start < l.family->dj; ++start)
-                            solve_strip(l, start, strip * kStripLines, lattice.columns, fresh,
-                                        memory);
+                            solve_strip(l, start, strip * kStripLines, fresh, memory);
                       });
   }
 
-  // The lines that begin in row `start`, in a strip of lanes from `first`, lines ending before `end`.
-  void solve_strip(LineFamily& l, int start, int first, int end, bool fresh, StripMemory& memory) {
-    LineStrip p = between_rows(l, start, particles_from(l, start));
+  // The lines that begin in row `start`, from line `first` on.
+  void solve_strip(LineFamily& l, int start, int first, bool fresh, StripMemory& memory) {
+    LineStrip p = between_rows(l, start);
     p.first = first;
-    p.lines = end - first <= 16 ? 16 : kStripLines;
+    p.lines = p.columns - first <= 16 ? 16 : kStripLines;
     p.fresh = fresh;
     p.scratch = memory.scratch.data();
     parts_.kernels.line_strip(p);
   }
 
-  int particles_from(const LineFamily& l, int start) const {
-    return (parts_.lattice.rows - start + l.family->dj - 1) / l.family->dj;
-  }
-
-  LineStrip between_rows(LineFamily& l, int start, int particles) {
+  LineStrip between_rows(LineFamily& l, int start) {
     Lattice& lattice = parts_.lattice;
     const Family& f = *l.family;
     LineStrip p{};
@@ -153,7 +140,7 @@ class Line final : public WholeStage {
     p.inverse_dt = inverse_dt();
     p.w = lattice.w(start);
     p.step = std::ptrdiff_t(f.dj) * lattice.stride + f.di;
-    p.particles = particles;
+    p.particles = (lattice.rows - start + f.dj - 1) / f.dj;
     p.lean = f.di;
     p.columns = lattice.columns;
     p.rest = float(f.rest);

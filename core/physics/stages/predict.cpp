@@ -1,5 +1,6 @@
 // Stages "predict" and "velocity" of the methods that project positions: before the sweeps every
-// particle moves by its velocity and gravity, after them the velocity is what it moved by.
+// particle moves by its velocity and gravity, after them the velocity is what it moved by. Between
+// substeps where nobody else looks at velocities they are not written (passes.h).
 #include "physics/stages/stages.h"
 
 namespace weft::physics {
@@ -23,9 +24,12 @@ class Predict final : public RowStage {
       : RowStage("predict", "positions by velocity and gravity", 0, parts.particles(), "particles"),
         parts_(parts),
         multipliers_(multipliers) {}
+  // Where they are not known, it makes them of positions itself.
+  Velocities velocities(double) const override { return Velocities::left_alone; }
   void run(int begin, int end, const Substep& s) override {
     AdvanceRow a = rows_of(parts_, begin, end);
     a.advance = advance_of(parts_, s);
+    if (!s.velocities_known) a.inverse_dt = float(1 / s.dt);
     parts_.kernels.predict(a);
     if (multipliers_) multipliers_->clear(begin, end);
   }
@@ -41,7 +45,12 @@ class Velocity final : public RowStage {
       : RowStage("velocity", "from the change of position", 0, parts.particles(), "particles"),
         parts_(parts),
         compliant_(compliant) {}
+  Velocities velocities(double dt) const override {
+    return velocity_from_positions(parts_.scene.solver, compliant_, dt) ? Velocities::from_positions
+                                                                        : Velocities::left_alone;
+  }
   void run(int begin, int end, const Substep& s) override {
+    if (!s.velocities_wanted) return;
     if (!velocity_from_positions(parts_.scene.solver, compliant_, s.dt)) return;
     AdvanceRow a = rows_of(parts_, begin, end);
     a.inverse_dt = float(1 / s.dt);

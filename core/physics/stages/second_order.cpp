@@ -6,11 +6,14 @@
 namespace weft::physics {
 namespace {
 
-SecondOrderRow row_of(const ClothParts& parts, History& h, int j) {
+// Rows j … end-1 as one long row, padding and all.
+SecondOrderRow rows_of(const ClothParts& parts, History& h, int j, int end, double dt) {
   Lattice& l = parts.lattice;
   const std::size_t lane = std::size_t(j) * l.stride;
   SecondOrderRow r{};
-  r.columns = l.columns;
+  r.columns = (end - j) * l.stride;
+  r.dt = float(dt);
+  r.from_star = velocity_from_positions(parts.scene.solver, true, dt);
   r.x = l.x.row(j);
   r.v = l.v.row(j);
   r.previous = l.previous.row(j);
@@ -37,21 +40,34 @@ class Predict final : public RowStage {
     const AlignedArray<float>& mass = parts_.lattice.inverse_mass;
     std::copy_n(mass.data(), mass.size(), history_.inverse_mass.data());
   }
-  void run(int j, const Substep& s) override {
-    SecondOrderRow r = row_of(parts_, history_, j);
+  // Where they are not known, it makes them of positions itself.
+  Velocities velocities(double dt) const override {
+    return velocity_from_positions(parts_.scene.solver, true, dt) ? Velocities::left_alone
+                                                                  : Velocities::used;
+  }
+  void run(int begin, int end, const Substep& s) override {
+    for (int first = begin; first < end;) {
+      int last = first + 1;
+      while (last < end && dt_[last] == dt_[first]) ++last;
+      run_alike(first, last, s);
+      first = last;
+    }
+    if (multipliers_) multipliers_->clear(begin, end);
+  }
+
+ private:
+  void run_alike(int begin, int end, const Substep& s) {
+    SecondOrderRow r = rows_of(parts_, history_, begin, end, s.dt);
     const Vec3& g = parts_.scene.gravity;
-    r.fresh = dt_[j] != s.dt;
-    dt_[j] = s.dt;
-    r.dt = float(s.dt);
-    r.from_star = velocity_from_positions(parts_.scene.solver, true, s.dt);
+    r.fresh = dt_[begin] != s.dt;
+    std::fill(dt_.begin() + begin, dt_.begin() + end, s.dt);
+    r.v_waits = !s.velocities_known;
     r.gx = float(g[0]);
     r.gy = float(g[1]);
     r.gz = float(g[2]);
     parts_.kernels.predict_second_order(r);
-    if (multipliers_) multipliers_->clear(j, j + 1);
   }
 
- private:
   ClothParts parts_;
   History& history_;
   Multipliers* multipliers_;
@@ -65,11 +81,13 @@ class Velocity final : public RowStage {
                  "particles"),
         parts_(parts),
         history_(history) {}
-  void run(int j, const Substep& s) override {
-    SecondOrderRow r = row_of(parts_, history_, j);
-    r.dt = float(s.dt);
-    r.from_star = velocity_from_positions(parts_.scene.solver, true, s.dt);
-    parts_.kernels.velocity_second_order(r);
+  Velocities velocities(double dt) const override {
+    return velocity_from_positions(parts_.scene.solver, true, dt) ? Velocities::from_positions
+                                                                  : Velocities::used;
+  }
+  void run(int begin, int end, const Substep& s) override {
+    if (s.velocities_wanted)
+      parts_.kernels.velocity_second_order(rows_of(parts_, history_, begin, end, s.dt));
   }
 
  private:

@@ -53,6 +53,10 @@ class ProjectedFamilies {
     return sum;
   }
 
+  // Compliant sweeps gather corrections, the strain limit changes both.
+  Velocities velocities() const {
+    return options_.limit > 0 ? Velocities::used : Velocities::left_alone;
+  }
   void prepare(double dt) {
     for (Member& m : members_) {
       const Family& family = parts_.families[m.index];
@@ -131,6 +135,7 @@ class GaussSeidel final : public RowStage {
         colour_(colour) {}
   std::size_t bytes() const override { return families_->bytes(); }
   void prepare(double dt) override { families_->prepare(dt); }
+  Velocities velocities(double) const override { return families_->velocities(); }
   void run(int begin, int end, const Substep&) override {
     families_->run([&](ProjectRows rows) {
       rows.begin = begin;
@@ -195,6 +200,11 @@ float velocity_share(const ClothParts& parts, const SweepOptions& options, doubl
   return options.compliant ? float(1 / (dt * implicit_share(parts.scene.solver))) : 0.0f;
 }
 
+// Compliant corrections change velocities as they are computed.
+Velocities velocities_of(const SweepOptions& options) {
+  return options.compliant ? Velocities::used : Velocities::left_alone;
+}
+
 // The six families of a plain cloth in one kernel.
 class PlainJacobi final : public PlainRowsStage {
  public:
@@ -215,6 +225,7 @@ class PlainJacobi final : public PlainRowsStage {
         constraints_[std::size_t(j) * kPlainFamilies + std::size_t(f)] =
             constants_of(parts_.families[std::size_t(f)], j, dt);
   }
+  Velocities velocities(double) const override { return velocities_of(options_); }
   void run(int begin, int end, const Substep& s) override {
     for (int first = begin; first < end;) {
       const bool same = alike(first);
@@ -276,6 +287,7 @@ class Jacobi final : public RowStage {
   void prepare(double dt) override {
     for (ProjectedFamilies& f : families_) f.prepare(dt);
   }
+  Velocities velocities(double) const override { return velocities_of(options_); }
   void start(const Substep& s) override {
     for (int k = 0; k <= reach; ++k)
       zero(sum_.row(s.slot * (reach + 1) + k), parts_.lattice.stride);

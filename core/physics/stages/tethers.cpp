@@ -4,6 +4,7 @@
 // grid. Of all pins a particle is tethered to the nearest in each of the four quadrants around it:
 // pins on different sides hold it in different directions, and one behind a nearer pin of the same
 // quadrant adds little. For nearly inextensible cloth only: real stretch would be taken back.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -16,11 +17,11 @@
 namespace weft::physics {
 namespace {
 
-constexpr int kQuadrants = 4;
 constexpr float kFree = 1e18f;  // m; the reach of a particle without a tether
 
 struct Place {
   int i = -1, j = -1;
+  bool operator==(const Place&) const = default;
 };
 
 // The nearest pin of one quadrant for every particle, handed on from neighbour to neighbour.
@@ -68,10 +69,9 @@ class Tethers final : public RowStage {
       if (!pin.keys.empty()) keys_[std::size_t(pin.j) * l.columns + pin.i] = &pin.keys;
     for (auto& places : slots) {
       Slot& slot = slots_.emplace_back();
-      slot.pin = Rows(l.rows, l.stride);
       slot.reach = AlignedArray<float>(std::size_t(l.rows) * l.stride);
       std::fill_n(slot.reach.data(), slot.reach.size(), kFree);
-      slot.moves.assign(l.rows, false);
+      slot.moves.assign(std::size_t(l.rows), false);
       for (int j = 0; j < l.rows; ++j)
         for (int i = 0; i < l.columns; ++i) {
           const Place p = places[std::size_t(j) * l.columns + i];
@@ -80,6 +80,7 @@ class Tethers final : public RowStage {
           if (keys_[std::size_t(p.j) * l.columns + p.i]) slot.moves[j] = true;
         }
       slot.places = std::move(places);
+      share_rows(slot);
     }
     Tethers::restart();
   }
@@ -91,7 +92,8 @@ class Tethers final : public RowStage {
       for (int j = 0; j < l.rows; ++j)
         for (int i = 0; i < l.columns; ++i) {
           const Place p = slot.places[std::size_t(j) * l.columns + i];
-          for (int k = 0; p.i >= 0 && k < 3; ++k) slot.pin.at(k, j, i) = l.x.at(k, p.j, p.i);
+          for (int k = 0; p.i >= 0 && k < 3; ++k)
+            slot.pin.at(k, slot.row[std::size_t(j)], i) = l.x.at(k, p.j, p.i);
         }
   }
 
@@ -102,18 +104,26 @@ class Tethers final : public RowStage {
     return sum;
   }
 
-  void run(int j, const Substep& s) override {
+  Velocities velocities(double dt) const override {
+    return velocity_gain(parts_.scene.solver, compliant_, dt) == 0 ? Velocities::left_alone
+                                                                   : Velocities::used;
+  }
+  void run(int begin, int end, const Substep& s) override {
     // The way over a torn sheet is another.
     if (parts_.topology && parts_.topology->torn() > 0) return;
-    for (Slot& slot : slots_) {
-      if (slot.moves[j]) follow_pins(slot, j, s.time);
-      TetherRow r{};
-      r.columns = parts_.lattice.columns;
+    TetherRow r{};
+    r.columns = parts_.lattice.columns;
+    r.inverse_dt = velocity_gain(parts_.scene.solver, compliant_, s.dt);
+    r.count = int(slots_.size());
+    for (int j = begin; j < end; ++j) {
       r.x = parts_.lattice.x.row(j);
       r.v = parts_.lattice.v.row(j);
-      r.inverse_dt = velocity_gain(parts_.scene.solver, compliant_, s.dt);
-      r.pin = slot.pin.row(j);
-      r.reach = slot.reach.data() + std::size_t(j) * parts_.lattice.stride;
+      for (int t = 0; t < r.count; ++t) {
+        Slot& slot = slots_[std::size_t(t)];
+        if (slot.moves[std::size_t(j)]) follow_pins(slot, j, s.time);
+        r.tethers[t] = {slot.pin.row(slot.row[std::size_t(j)]),
+                        slot.reach.data() + std::size_t(j) * parts_.lattice.stride};
+      }
       parts_.kernels.tethers(r);
     }
   }
@@ -122,9 +132,25 @@ class Tethers final : public RowStage {
   struct Slot {
     std::vector<Place> places;
     Rows pin;
+    std::vector<int> row;  // of `pin`, of every row of the lattice
     AlignedArray<float> reach;
     std::vector<bool> moves;  // rows with a tether to a pin on a path
   };
+
+  // Rows whose tethers go to the same pins share a row of these, which so stay in the nearest cache;
+  // unless the pins move: rows are in different substeps.
+  void share_rows(Slot& slot) const {
+    const auto columns = parts_.lattice.columns;
+    const auto row = [&](int j) { return slot.places.begin() + std::ptrdiff_t(j) * columns; };
+    int rows = 0;
+    for (int j = 0; j < parts_.lattice.rows; ++j) {
+      const bool shared = j > 0 && !slot.moves[std::size_t(j)] && !slot.moves[std::size_t(j) - 1] &&
+                          std::equal(row(j), row(j) + columns, row(j - 1));
+      if (!shared) ++rows;
+      slot.row.push_back(rows - 1);
+    }
+    slot.pin = Rows(rows, parts_.lattice.stride);
+  }
 
   static float rest_distance(const ClothParts& parts, const Place& p, int i, int j) {
     const Grid& g = parts.cloth.grid;
@@ -144,7 +170,7 @@ class Tethers final : public RowStage {
       const auto* keys = p.i < 0 ? nullptr : keys_[std::size_t(p.j) * l.columns + p.i];
       if (!keys) continue;
       const Vec3 x = position_at(*keys, time);
-      for (int k = 0; k < 3; ++k) slot.pin.at(k, j, i) = float(x[k]);
+      for (int k = 0; k < 3; ++k) slot.pin.at(k, slot.row[std::size_t(j)], i) = float(x[k]);
     }
   }
 
@@ -161,14 +187,14 @@ std::unique_ptr<RowStage> make_tethers(const ClothParts& parts, bool compliant) 
   if (parts.cloth.pins.empty()) return nullptr;
   // Slot s of a particle holds its s-th tether, so that few pins fill few slots.
   std::vector<std::vector<Place>> slots;
-  std::array<std::vector<Place>, kQuadrants> found{nearest(parts, -1, -1), nearest(parts, 1, -1),
-                                                   nearest(parts, -1, 1), nearest(parts, 1, 1)};
+  std::array<std::vector<Place>, kTethers> found{nearest(parts, -1, -1), nearest(parts, 1, -1),
+                                                 nearest(parts, -1, 1), nearest(parts, 1, 1)};
   std::int64_t count = 0;
   for (std::size_t p = 0; p < found[0].size(); ++p) {
     const int i = int(p) % l.columns, j = int(p) / l.columns;
     if (l.w(j, i) == 0) continue;
     std::size_t used = 0;
-    for (int q = 0; q < kQuadrants; ++q) {
+    for (int q = 0; q < kTethers; ++q) {
       const Place place = found[q][p];
       bool again = place.i < 0;
       for (std::size_t s = 0; s < used; ++s)
