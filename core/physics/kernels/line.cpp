@@ -296,13 +296,13 @@ void solve_blocks(const LineStrip& given, int first) {
 
 template <bool kLambda, bool kVelocity>
 void solve(const LineStrip& p) {
-  if (kLanes >= 8 && p.lines >= 2 * kLanes) {
-    for (int first = 0; first < p.lines; first += 2 * kLanes)
-      solve_blocks<kLambda, kVelocity, 2>(p, first);
-    return;
+  const int lines = least(kStripLines, p.columns - p.first);
+  for (int first = 0; first < lines;) {
+    const bool two = kLanes >= 8 && lines - first > kLanes;
+    two ? solve_blocks<kLambda, kVelocity, 2>(p, first)
+        : solve_blocks<kLambda, kVelocity, 1>(p, first);
+    first += two ? 2 * kLanes : kLanes;
   }
-  for (int first = 0; first < p.lines; first += kLanes)
-    solve_blocks<kLambda, kVelocity, 1>(p, first);
 }
 
 }  // namespace

@@ -25,9 +25,8 @@ struct LineStrip {
   int particles;  // rows that lines pass through
   int lean;
   int columns;
-  int first;                       // number of the first line of the strip, a multiple of 16
-  int lines;                       // 16 or 32, of which those from `columns` on do not exist
-  float rest;                      // m
+  int first;   // number of the first line of the strip, a multiple of 16; up to kStripLines of them
+  float rest;  // m
   float share;                     // factor on the correction
   Row3 v;                          // velocities, laid out as x; gain corrections times inverse_dt
   float inverse_dt;                // 1/s; 0 = velocities are not touched

@@ -82,6 +82,10 @@ class BendingConstraints final : public WholeStage {
     torn_.forget();
   }
 
+  Velocities velocities(double dt) const override {
+    return velocity_gain(parts_.scene.solver, compliant_, dt) == 0 ? Velocities::left_alone
+                                                                   : Velocities::used;
+  }
   void run(const Substep& s, Threads& threads) override {
     const BendingStiffness k = bending_stiffness(parts_.cloth);
     const double h = s.dt * implicit_share(parts_.scene.solver);

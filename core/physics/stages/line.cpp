@@ -125,7 +125,6 @@ class Line final : public WholeStage {
   void solve_strip(LineFamily& l, int start, int first, bool fresh, StripMemory& memory) {
     LineStrip p = between_rows(l, start);
     p.first = first;
-    p.lines = p.columns - first <= 16 ? 16 : kStripLines;
     p.fresh = fresh;
     p.scratch = memory.scratch.data();
     parts_.kernels.line_strip(p);
@@ -179,7 +178,6 @@ class Line final : public WholeStage {
         p.step = n * kStripLines;
         p.particles = (columns - start + n - 1) / n;
         p.columns = rows;
-        p.lines = rows <= 16 ? 16 : kStripLines;
         p.rest = float(l.family->rest);
         p.share = options_.share;
         p.compliance = l.compliance.data() + group * kStripLines;
