@@ -48,12 +48,18 @@ WEFT_INLINE Wide select(WideInt mask, Wide a, Wide b) {
 WEFT_INLINE Wide max(Wide a, Wide b) {
   return (Wide)_mm512_maskz_max_ps(0xffff, (__m512)a, (__m512)b);
 }
+WEFT_INLINE Wide min(Wide a, Wide b) {
+  return (Wide)_mm512_maskz_min_ps(0xffff, (__m512)a, (__m512)b);
+}
 WEFT_INLINE Wide sqrt(Wide v) {
   return (Wide)_mm512_maskz_sqrt_ps(0xffff, (__m512)v);
 }
 #elif WEFT_LANES == 8
 WEFT_INLINE Wide max(Wide a, Wide b) {
   return (Wide)_mm256_max_ps((__m256)a, (__m256)b);
+}
+WEFT_INLINE Wide min(Wide a, Wide b) {
+  return (Wide)_mm256_min_ps((__m256)a, (__m256)b);
 }
 WEFT_INLINE Wide sqrt(Wide v) {
   return (Wide)_mm256_sqrt_ps((__m256)v);
@@ -62,6 +68,9 @@ WEFT_INLINE Wide sqrt(Wide v) {
 WEFT_INLINE Wide max(Wide a, Wide b) {
   return (Wide)_mm_max_ps((__m128)a, (__m128)b);
 }
+WEFT_INLINE Wide min(Wide a, Wide b) {
+  return (Wide)_mm_min_ps((__m128)a, (__m128)b);
+}
 WEFT_INLINE Wide sqrt(Wide v) {
   return (Wide)_mm_sqrt_ps((__m128)v);
 }
@@ -69,23 +78,31 @@ WEFT_INLINE Wide sqrt(Wide v) {
 WEFT_INLINE Wide max(Wide a, Wide b) {
   return a > b ? a : b;
 }
+WEFT_INLINE Wide min(Wide a, Wide b) {
+  return a < b ? a : b;
+}
 WEFT_INLINE Wide sqrt(Wide v) {
   return Wide{__builtin_sqrtf(v[0])};
 }
 #endif
 
-WEFT_INLINE Wide min(Wide a, Wide b) {
-  return select(a < b, a, b);
-}
 WEFT_INLINE Wide abs(Wide v) {
   return max(v, -v);
 }
 
+// The lanes N further on, from the last to the first.
+template <int N, int... I>
+WEFT_INLINE Wide turned(Wide v, std::integer_sequence<int, I...>) {
+  return __builtin_shufflevector(v, v, ((I + N) % kLanes)...);
+}
+
 // The least and the greatest lane: exact, so the order does not matter.
+template <int N = kLanes / 2>
 WEFT_INLINE float least(Wide v) {
-  float r = v[0];
-  for (int i = 1; i < kLanes; ++i) r = v[i] < r ? v[i] : r;
-  return r;
+  if constexpr (N == 0)
+    return v[0];
+  else
+    return least<N / 2>(min(v, turned<N>(v, std::make_integer_sequence<int, kLanes>{})));
 }
 WEFT_INLINE float greatest(Wide v) {
   return -least(-v);
