@@ -188,7 +188,7 @@ TEST(LineRuns, ThePlanNamesTheStages) {
   const Simulation simulation(s);
   std::vector<std::string> names;
   for (const PlannedStage& p : simulation.plan().stages) names.push_back(p.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"predict", "tethers", "bending", "line", "velocity"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"predict", "tethers", "line", "bending", "velocity"}));
 }
 
 // A straight chain whose ends come nearer.

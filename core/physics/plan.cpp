@@ -113,7 +113,6 @@ void ClothStep::choose_stages() {
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
     if (auto tethers = solver.tethers ? make_tethers(parts, sweep.compliant) : nullptr)
       stages_.push_back(std::move(tethers));
-    if (bending) stages_.push_back(std::move(bending));
     if (lines) {
       const float share = sweep.compliant ? 1.0f : float(2 * cloth_.positional_k);
       if (auto line = make_line(parts, {sweep.compliant, solver.iterations, share}))
@@ -126,6 +125,8 @@ void ClothStep::choose_stages() {
         append_gauss_seidel(parts, sweep, stages_);
     }
     if (corrections_) stages_.push_back(make_corrections(parts, *corrections_));
+    // What comes last stays as solved, and stretching undoes more of bending than that of stretching.
+    if (bending) stages_.push_back(std::move(bending));
     if (history_)
       stages_.push_back(make_velocity_second_order(parts, *history_));
     else if (!sweep.compliant || lines)
