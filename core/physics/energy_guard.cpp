@@ -55,13 +55,15 @@ Elastic elastic(const Scene& scene, Method method, const ClothStep& step,
   const Lattice& l = step.lattice();
   double size = 1, stiffness = 0;
   for (const Vec3& p : x) size = std::max(size, std::sqrt(dot(p, p)));
+  const double share =
+      std::min(1.0, 2 * step.cloth().positional_k * scene.solver.iterations);  // of positional
   const auto inverse_mass = [&](int p) { return double(l.w(p / l.columns, p % l.columns)); };
   double sum = bending_energy(step.cloth(), x);
   for (const Family& f : step.families())
     for_each_constraint(step.cloth(), f, [&](int a, int b, double k) {
       const double w = inverse_mass(a) + inverse_mass(b);
       const double rigid = w > 0 ? 1 / (w * dt * dt) : 0;
-      if (method == Method::positional) k = rigid;
+      if (method == Method::positional) k = rigid * share;
       if (method == Method::compliant) k = std::min(k, rigid);
       const Vec3 e = minus(x[std::size_t(b)], x[std::size_t(a)]);
       const double c = std::abs(std::sqrt(dot(e, e)) - f.rest) + kRounding * size;
@@ -130,7 +132,7 @@ void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, 
     const Elastic as_set = elastic(scene, method, *step, x, dt);
     push_out(scene, time, l, x);
     put_in_ += std::max(as_set.energy, elastic(scene, method, *step, x, dt).energy);
-    rounding_ += as_set.per_substep;
+    if (is_explicit(method)) rounding_ += as_set.per_substep;  // projection loses what it gains
   }
   look(scene, cloths, false);
   highest_ = potential_;

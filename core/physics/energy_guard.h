@@ -5,9 +5,10 @@
 //
 // Stiff springs turn the rounding of positions into motion, substep by substep: that is allowed for.
 // A projected constraint counts as a spring of at most the inertia of its ends over dt², all that a
-// sweep makes of it. Where something else does work (pins and colliders on paths, wind, a hand,
-// contact of the sheet with itself), the motion may also come to kBound times that of a sheet that is
-// 10 m/s faster than what drives it. A run that keeps its energy stays near a quarter of the bound.
+// sweep makes of it, and of its positional share. Where something else does work (pins and colliders
+// on paths, wind, a hand, contact of the sheet with itself), the motion may also come to kBound times
+// that of a sheet that is 10 m/s faster than what drives it. A run that keeps its energy stays near a
+// quarter of the bound.
 #pragma once
 
 #include <memory>
