@@ -181,13 +181,26 @@ WEFT_INLINE Wide descend(const Shape& shape, const FacesRow& f, const Face& face
   WideInt pending = wanted & (bound < enough);
   Wide3 p = (face.a + face.b + face.c) * wide(1.0f / 3.0f);
   const Wide least = wide(0.1f * f.edge);
-  for (int n = 0; n < kDescents && any(pending); ++n) {
+  for (int n = 0; any(pending); ++n) {
     const Surface s = shape.at(p);
     bound = select(pending, max(tangent_bound(s, p, face), bound), bound);
     pending = pending & (bound < enough);
+    if (n + 1 == kDescents || !any(pending)) break;
     p = nearest_on(face, p - s.normal * max(s.distance + f.row.shape.radius, least));
   }
   return bound;
+}
+
+// The lanes one further on, the last of them from the block that follows.
+template <int... I>
+WEFT_INLINE Wide one_on(Wide here, Wide next, std::integer_sequence<int, I...>) {
+  return __builtin_shufflevector(here, next, (I + 1)...);
+}
+WEFT_INLINE Surface one_on(const Surface& here, const Surface& next) {
+  constexpr std::make_integer_sequence<int, kLanes> lanes;
+  const Wide3 &a = here.normal, &b = next.normal;
+  return {one_on(here.distance, next.distance, lanes),
+          {one_on(a.x, b.x, lanes), one_on(a.y, b.y, lanes), one_on(a.z, b.z, lanes)}};
 }
 
 constexpr float kFaceReach = 2;  // edges; triangles reach no farther from their corners
@@ -204,27 +217,32 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
   const float speed = __builtin_sqrtf(greatest(fastest));
   const float enough = r.offset - f.slack;
   const float far = r.offset + kFaceReach * f.edge + speed * r.dt;
+  const auto surface = [&](ConstRow3 row, int i) { return shape.at(load3(row, i) - place); };
+  Surface s00 = surface(r.x, 0), s01 = surface(f.x_next, 0);
   for (int i = 0; i < padded(r.columns); i += kLanes) {
+    const bool last = i + kLanes >= padded(r.columns);
+    const Surface n00 = last ? s00 : surface(r.x, i + kLanes);
+    const Surface n01 = last ? s01 : surface(f.x_next, i + kLanes);
     const WideInt there = lanes_below(r.columns - i), inside = lanes_below(r.columns - 1 - i);
-    const Wide3 x00 = load3(r.x, i) - place, x01 = load3(f.x_next, i) - place;
-    const Surface s00 = shape.at(x00), s01 = shape.at(x01);
     const Wide nearest = min(s00.distance, s01.distance);
     clearance = min(clearance, select(there, nearest - r.offset, wide(kFar)));
     const WideInt close = inside & (nearest < far);
-    Wide bound = wide(kFar);
+    Wide bounds[2] = {wide(kFar), wide(kFar)};
     if (any(close)) {
+      const Wide3 x00 = load3(r.x, i) - place, x01 = load3(f.x_next, i) - place;
       const Wide3 x10 = load3(r.x, i + 1) - place, x11 = load3(f.x_next, i + 1) - place;
-      const Surface s10 = shape.at(x10), s11 = shape.at(x11);
+      const Surface s10 = one_on(s00, n00), s11 = one_on(s01, n01);
       const Face one{x00, x10, x01}, two{x10, x11, x01};
       const Wide first = max(tangent_bound(s00, x00, one),
                              max(tangent_bound(s01, x01, one), tangent_bound(s10, x10, one)));
       const Wide second = max(tangent_bound(s11, x11, two),
                               max(tangent_bound(s01, x01, two), tangent_bound(s10, x10, two)));
-      bound = min(descend(shape, f, one, close, first, enough),
-                  descend(shape, f, two, close, second, enough)) -
-              r.offset;
+      bounds[0] = descend(shape, f, one, close, first, enough) - r.offset;
+      bounds[1] = descend(shape, f, two, close, second, enough) - r.offset;
     }
-    store(f.bound + i, select(close, bound, wide(kFar)));
+    for (int t = 0; t < 2; ++t) store(f.bound[t] + i, select(close, bounds[t], wide(kFar)));
+    s00 = n00;
+    s01 = n01;
   }
   return {least(clearance), speed};
 }

@@ -152,7 +152,9 @@ class ColliderFaces final : public RowStage {
     f.v_next = l.v.row(j + 1);
     f.edge = float(edge_);
     f.slack = float(kSlack * edge_);
-    f.bound = bound_.row(s.slot).x;
+    const Row3 bound = bound_.row(s.slot);
+    f.bound[0] = bound.x;
+    f.bound[1] = bound.y;
     RowReach reach = parts_.kernels.below_faces[collider_.shape()](f);
     // The way of a substep matters only where it is long against the collider.
     const float way = reach.speed * f.row.dt;
@@ -161,15 +163,17 @@ class ColliderFaces final : public RowStage {
     reach.clearance -= float(1.5 * edge_);
     far_.found(j, s, reach);
     for (int i = 0; i + 1 < l.columns; ++i) {
-      if (f.bound[i] >= near) continue;
-      // An edge or a corner of the collider leaves a triangle by one of its sides after another.
-      for (int n = 0; n < kTurns && touch(f.row, {j, j, j + 1}, {i, i + 1, i}); ++n) continue;
-      for (int n = 0; n < kTurns && touch(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i}); ++n)
-        continue;
+      if (f.bound[0][i] < near) lift(f.row, {j, j, j + 1}, {i, i + 1, i});
+      if (f.bound[1][i] < near) lift(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
     }
   }
 
  private:
+  // An edge or a corner of the collider leaves a triangle by one of its sides after another.
+  void lift(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i) {
+    for (int n = 0; n < kTurns && touch(r, j, i); ++n) continue;
+  }
+
   // Lifts one triangle out once; whether it may be in by another side still.
   bool touch(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i) {
     Lattice& l = parts_.lattice;
@@ -188,7 +192,11 @@ class ColliderFaces final : public RowStage {
         [&](const auto& shape) {
           const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
           const int places = std::clamp(int(std::ceil(2 * longest / size)), 1, kMostPlaces);
-          return first_touch(shape, r.offset, c, places, edge_);
+          if (places > 1) return first_touch(shape, r.offset, c, places, edge_);
+          // What is no deeper than may be need not be known sharply.
+          Touch found = first_touch(shape, r.offset - kSlack * edge_, c, 1, edge_);
+          found.depth += found.depth > 0 ? kSlack * edge_ : 0;
+          return found;
         },
         upright_);
     if (touch.depth <= kSlack * edge_) return false;
