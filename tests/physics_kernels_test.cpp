@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "kernel_patch.h"
-#include "physics/family.h"
 #include "physics/kernels/kernels.h"
 
 namespace weft::physics {
@@ -310,91 +309,6 @@ TEST_P(WideKernels, EqualTheScalarOnesBitForBit) {
       const auto scalar = bits_after(test, Simd::scalar, columns, -0.3f, scalar_numbers);
       ASSERT_TRUE(numbers && scalar_numbers) << test.name << ", " << columns << " columns";
       ASSERT_EQ(wide, scalar) << test.name << ", " << columns << " columns";
-    }
-}
-
-// Every lane and every place counts, the sign does not, and what is no number is infinite.
-TEST_P(WideKernels, FindTheGreatestSize) {
-  if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
-  const auto greatest = kernel_table(GetParam()).greatest;
-  EXPECT_EQ(greatest(nullptr, 0), 0.0f);
-  for (const int count : {16, 48, 64, 208}) {
-    AlignedArray<float> values(static_cast<std::size_t>(count));
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.5f - float(i % 3) * 0.4f;
-    EXPECT_EQ(greatest(values.data(), count), 0.5f);
-    for (std::size_t i = 0; i < values.size(); ++i)
-      for (const float odd : {3.0f, -1e30f, std::numeric_limits<float>::infinity(),
-                              std::numeric_limits<float>::quiet_NaN()}) {
-        const float before = std::exchange(values[i], odd);
-        const float expected = std::isnan(odd) ? std::numeric_limits<float>::infinity() : odd;
-        EXPECT_EQ(greatest(values.data(), count), std::fabs(expected)) << i << " of " << count;
-        values[i] = before;
-      }
-  }
-}
-
-TEST_P(WideKernels, CountTheEnergyOfARow) {
-  if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
-  Rows x(1, 112), v(1, 112);
-  AlignedArray<float> w(112);
-  Random random(7, 3);
-  EnergyRow r{};
-  r.x = x.row(0);
-  r.v = v.row(0);
-  r.w = w.data();
-  const Vec3 g{1, -9.81, 0.5};
-  for (int k = 0; k < 3; ++k) r.g[k] = g[k];
-  for (const int columns : {0, 1, 16, 31, 96}) {
-    double kinetic = 0, potential = 0, size = 0;
-    std::fill_n(w.data(), w.size(), 0.0f);
-    for (int i = 0; i < columns; ++i) {
-      if (i % 5 > 0) w[std::size_t(i)] = float(50 + 40 * random.symmetric());
-      const double mass = w[std::size_t(i)] > 0 ? 1 / double(w[std::size_t(i)]) : 0;
-      for (int k = 0; k < 3; ++k) {
-        x.at(k, 0, i) = float(random.symmetric());
-        v.at(k, 0, i) = float(random.symmetric());
-        kinetic += 0.5 * mass * v.at(k, 0, i) * v.at(k, 0, i);
-        potential -= mass * g[k] * x.at(k, 0, i);
-        size += mass * std::abs(g[k] * x.at(k, 0, i));
-      }
-    }
-    r.columns = columns;
-    const RowEnergy got = kernel_table(GetParam()).row_energy(r);
-    const RowEnergy scalar = kernel_table(Simd::scalar).row_energy(r);
-    EXPECT_EQ(got.kinetic, scalar.kinetic);
-    EXPECT_EQ(got.potential, scalar.potential);
-    EXPECT_NEAR(got.kinetic, kinetic, 2e-7 * kinetic);
-    EXPECT_NEAR(got.potential, potential, 1e-7 * size);
-  }
-}
-
-TEST_P(WideKernels, FindTheLongestConstraintThatIsLeft) {
-  if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
-  const auto longest = kernel_table(GetParam()).greatest_square;
-  Rows x(2, 96);
-  Random random(9, 1);
-  for (int k = 0; k < 3; ++k)
-    for (int j = 0; j < 2; ++j)
-      for (int i = 0; i < 96; ++i) x.at(k, j, i) = float(random.symmetric());
-  for (const int count : {1, 15, 16, 17, 79})
-    for (const int shift : {0, 1}) {
-      Links links(1, 96, count);
-      for (int left = count; left >= 0; left -= count > 20 ? 7 : 1) {
-        float expected = 0;
-        for (int i = 0; i < count; ++i) {
-          float squared = 0;
-          for (int k = 0; k < 3; ++k) {
-            const float e = x.at(k, 1, i + shift) - x.at(k, 0, i);
-            squared += e * e;
-          }
-          links.row(0)[i] = i * 5 % count < left ? -1 : 0;
-          if (links.alive(0, i)) expected = std::max(expected, squared);
-        }
-        EXPECT_EQ(longest({count, x.row(0), ConstRow3(x.row(1)).from(shift), links.row(0)}),
-                  expected);
-        if (left < count) continue;
-        EXPECT_EQ(longest({count, x.row(0), ConstRow3(x.row(1)).from(shift), nullptr}), expected);
-      }
     }
 }
 

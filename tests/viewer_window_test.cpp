@@ -99,7 +99,7 @@ TEST_F(Window, HandsPullPinAndCutTheCloth) {
   screen.wait_for("held", 3);
   screen.key("3");
   screen.wait_for("tool", "cut");
-  screen.drag({{800, 300}, {830, 310}, {860, 320}, {890, 330}, {920, 340}, {950, 350}}, "a cut",
+  screen.drag({{760, 480}, {800, 490}, {840, 500}, {880, 510}, {920, 520}, {960, 530}}, "a cut",
               [](const Json& now) { return now["torn"] == true; });
   const Json cut = screen.now();
   EXPECT_LT(cut["triangles"], 2 * 49 * 49);

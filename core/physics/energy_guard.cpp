@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/bending.h"
 #include "physics/colliders/shapes.h"
@@ -27,88 +28,123 @@ void for_each_free(const Lattice& l, Visit&& visit) {
       if (const double w = l.w(j, i); w > 0) visit(j, i, 1 / w);
 }
 
-// Where colliders will have put what lies inside them.
-void push_out(const Scene& scene, double time, const Lattice& l, std::vector<Vec3>& x) {
+// Positions outside of the colliders, where these will have put what lies inside them.
+Rows pushed_out(const Scene& scene, double time, const Lattice& l) {
+  Rows x(l.rows, l.stride);
+  x.copy(l.x);
   for (const Collider& c : scene.colliders) {
     if (c.cuts) continue;
     const Vec3 moved = displacement(c, time);
     for_each_free(l, [&](int j, int i, double) {
-      Vec3& p = x[std::size_t(j) * l.columns + i];
+      const Vec3 p{x.at(0, j, i), x.at(1, j, i), x.at(2, j, i)};
       std::visit(
           [&](const auto& shape) {
             const Nearest n = nearest_of(shape, minus(minus(p, moved), place_of(shape)));
-            if (n.distance < c.offset) p = plus(p, times(n.normal, c.offset - n.distance));
+            for (int k = 0; k < 3 && n.distance < c.offset; ++k)
+              x.at(k, j, i) = float(p[k] + (c.offset - n.distance) * n.normal[k]);
           },
           c.shape);
     });
   }
+  return x;
 }
 
-// Elastic energy as the method feels it, with what rounding of the positions puts in at once, and
-// what rounding them anew in every substep adds.
-struct Elastic {
-  double energy = 0;       // J
-  double per_substep = 0;  // J
-};
-Elastic elastic(const Scene& scene, Method method, const ClothStep& step,
-                const std::vector<Vec3>& x, double dt) {
-  const Lattice& l = step.lattice();
-  double size = 1, stiffness = 0;
-  for (const Vec3& p : x) size = std::max(size, std::sqrt(dot(p, p)));
-  const double share =
-      std::min(1.0, 2 * step.cloth().positional_k * scene.solver.iterations);  // of positional
-  const auto inverse_mass = [&](int p) { return double(l.w(p / l.columns, p % l.columns)); };
-  double sum = bending_energy(step.cloth(), x);
-  for (const Family& f : step.families())
-    for_each_constraint(step.cloth(), f, [&](int a, int b, double k) {
-      const double w = inverse_mass(a) + inverse_mass(b);
-      const double rigid = w > 0 ? 1 / (w * dt * dt) : 0;
-      if (method == Method::positional) k = rigid * share;
-      if (method == Method::compliant) k = std::min(k, rigid);
-      const Vec3 e = minus(x[std::size_t(b)], x[std::size_t(a)]);
-      const double c = std::abs(std::sqrt(dot(e, e)) - f.rest) + kRounding * size;
-      sum += 0.5 * k * c * c;
-      stiffness += k;
-      const double over = c - step.cloth().strain_limit * f.rest;
-      if (step.cloth().strain_limit > 0 && over > 0) sum += 0.5 * rigid * over * over;
-    });
-  // Tethers take back at once what is farther from a pin than the sheet is long.
-  const Grid& g = step.cloth().grid;
-  for (std::size_t n = 0; scene.solver.tethers && n < step.cloth().pins.size(); ++n) {
-    const Pin& pin = step.cloth().pins[n];
-    for_each_free(l, [&](int j, int i, double mass) {
-      Vec3 rest;
-      for (int k = 0; k < 3; ++k)
-        rest[k] = g.u[k] / (g.nx - 1) * (i - pin.i) + g.v[k] / (g.ny - 1) * (j - pin.j);
-      const Vec3 e =
-          minus(x[std::size_t(j) * l.columns + i], x[std::size_t(pin.j) * l.columns + pin.i]);
-      const double over = std::max(0.0, std::sqrt(dot(e, e)) - std::sqrt(dot(rest, rest)));
-      sum += 0.5 * mass * over * over / (dt * dt);
-    });
-  }
-  return {sum, stiffness * std::pow(kHalfUnit * size, 2)};
+double greatest_coordinate(const ClothStep& step, const Rows& x) {
+  return std::max(1.0, double(x.greatest(step.parts().kernels)));
 }
 
-}  // namespace
-
-Holding holding_of(const Scene& scene, Method method, const ClothStep& step, const Rows& x,
-                   const Rows& v, double dt) {
+// What constraints hold as the method feels them, with what rounding of the positions puts in at once.
+double stretch_energy(const Scene& scene, Method method, const ClothStep& step, const Rows& x,
+                      double dt) {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
   const Lattice& l = step.lattice();
-  Holding h;
-  h.inner = elastic(scene, method, step, gather(l, x), dt).energy;
-  for_each_free(l, [&](int j, int i, double m) {
-    for (int k = 0; k < 3; ++k) {
-      h.inner += 0.5 * m * double(v.at(k, j, i)) * v.at(k, j, i);
-      h.height -= m * scene.gravity[k] * x.at(k, j, i);
+  const Cloth& cloth = step.cloth();
+  const double projected = std::min(1.0, 2 * cloth.positional_k * scene.solver.iterations);
+  StretchRow r{};
+  r.slack = float(kRounding * greatest_coordinate(step, x));
+  r.share = is_explicit(method) ? kInfinite : method == Method::positional ? float(projected) : 1;
+  r.inverse_dt2 = float(1 / (dt * dt));
+  double sum = 0;
+  for (const Family& f : step.families()) {
+    r.rest = float(f.rest);
+    r.give = cloth.strain_limit > 0 ? float(cloth.strain_limit * f.rest) : kInfinite;
+    for (int j = 0; j + f.dj < l.rows; ++j) {
+      static_cast<FarRows&>(r) = far_rows(f, x, l.columns, j);
+      r.w_near = l.w(j) + f.near();
+      r.w_far = l.w(j + f.dj) + f.far();
+      r.stiffness = method == Method::positional
+                        ? kInfinite
+                        : float(f.stiffness * gradient_factor(cloth, j, f.dj));
+      sum += step.parts().kernels.stretch_energy(r);
     }
-  });
-  return h;
+  }
+  return sum;
 }
 
-double fastest_drive(const Scene& scene) {
-  const auto fastest = [](const std::vector<Key>& keys) {
+// Tethers take back at once what is farther from a pin than the sheet is long.
+double tether_energy(const ClothStep& step, const Rows& x, double dt) {
+  const Lattice& l = step.lattice();
+  const Grid& g = step.cloth().grid;
+  const Vec3 u = times(g.u, 1.0 / (g.nx - 1)), v = times(g.v, 1.0 / (g.ny - 1));
+  double sum = 0;
+  for (const Pin& pin : step.cloth().pins)
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i) {
+        const Vec3 rest = plus(times(u, i - pin.i), times(v, j - pin.j));
+        Vec3 e;
+        for (int k = 0; k < 3; ++k) e[k] = double(x.at(k, j, i)) - x.at(k, pin.j, pin.i);
+        const double squared = dot(e, e), length = dot(rest, rest);
+        if (squared <= length || !(l.w(j, i) > 0)) continue;
+        const double over = std::sqrt(squared) - std::sqrt(length);
+        sum += 0.5 * over * over / (l.w(j, i) * dt * dt);
+      }
+  return sum;
+}
+
+double elastic(const Scene& scene, Method method, const ClothStep& step, const Rows& x, double dt) {
+  double sum = stretch_energy(scene, method, step, x, dt);
+  if (scene.solver.tethers) sum += tether_energy(step, x, dt);
+  if (step.cloth().bending > 0) sum += bending_energy(step.cloth(), gather(step.lattice(), x));
+  return sum;
+}
+
+// What springs gain in a substep by positions that are rounded anew [J].
+double rounding_gain(const ClothStep& step) {
+  double stiffness = 0;
+  for (const Family& f : step.families())
+    for_each_constraint(step.cloth(), f, [&](int, int, double k) { stiffness += k; });
+  return stiffness * std::pow(kHalfUnit * greatest_coordinate(step, step.lattice().x), 2);
+}
+
+RowEnergy motion(const Scene& scene, const ClothStep& step, const Rows& x, const Rows& v) {
+  const Lattice& l = step.lattice();
+  EnergyRow r{};
+  r.columns = l.columns;
+  for (int k = 0; k < 3; ++k) r.g[k] = scene.gravity[k];
+  RowEnergy sum{0, 0};
+  for (int j = 0; j < l.rows; ++j) {
+    r.x = x.row(j);
+    r.v = v.row(j);
+    r.w = l.w(j);
+    const RowEnergy e = step.parts().kernels.row_energy(r);
+    sum.kinetic += e.kinetic;
+    sum.potential += e.potential;
+  }
+  return sum;
+}
+
+double free_mass(const Lattice& l) {
+  double mass = 0;
+  for_each_free(l, [&](int, int, double m) { mass += m; });
+  return mass;
+}
+
+// The greatest speed of paths between two times, and of wind [m/s].
+double fastest_drive(const Scene& scene, double from, double to) {
+  const auto fastest = [&](const std::vector<Key>& keys) {
     double most = 0;
     for (std::size_t n = 1; n < keys.size(); ++n) {
+      if (keys[n].time <= from || keys[n - 1].time >= to) continue;
       const Vec3 e = minus(keys[n].position, keys[n - 1].position);
       most = std::max(most, std::sqrt(dot(e, e)) / (keys[n].time - keys[n - 1].time));
     }
@@ -121,23 +157,38 @@ double fastest_drive(const Scene& scene) {
   return most;
 }
 
+}  // namespace
+
+bool gained(const Scene& scene, Method method, const ClothStep& step, const Rows& x, const Rows& v,
+            double dt, double start, double end) {
+  constexpr double kMore = 2;
+  const Lattice& l = step.lattice();
+  const RowEnergy before = motion(scene, step, x, v), now = motion(scene, step, l.x, l.v);
+  double put_in = std::max(0.0, before.potential - now.potential);
+  if (const double speed = kMore * fastest_drive(scene, start, end); speed > 0)
+    put_in += 0.5 * free_mass(l) * speed * speed;
+  const double inner = now.kinetic + elastic(scene, method, step, l.x, dt);
+  // Motion alone accounts for most frames.
+  if (inner <= kMore * before.kinetic + put_in) return false;
+  return inner > kMore * (before.kinetic + elastic(scene, method, step, x, dt)) + put_in;
+}
+
 void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, double time,
                        double dt) {
   *this = {};
   double mass = 0;
   for (const auto& step : cloths) {
     const Lattice& l = step->lattice();
-    for_each_free(l, [&](int, int, double m) { mass += m; });
-    std::vector<Vec3> x = gather(l, l.x);
-    const Elastic as_set = elastic(scene, method, *step, x, dt);
-    push_out(scene, time, l, x);
-    put_in_ += std::max(as_set.energy, elastic(scene, method, *step, x, dt).energy);
-    if (is_explicit(method)) rounding_ += as_set.per_substep;  // projection loses what it gains
+    mass += free_mass(l);
+    put_in_ += std::max(elastic(scene, method, *step, l.x, dt),
+                        elastic(scene, method, *step, pushed_out(scene, time, l), dt));
+    if (is_explicit(method)) rounding_ += rounding_gain(*step);  // projection loses what it gains
   }
   look(scene, cloths, false);
   highest_ = potential_;
   fall_ = 0;
-  const double driven = kDrivenSpeed + fastest_drive(scene);
+  const double driven =
+      kDrivenSpeed + fastest_drive(scene, 0, std::numeric_limits<double>::infinity());
   put_in_ += kinetic_ + 0.5 * mass * kStillness * kStillness;
   driven_floor_ = 0.5 * mass * driven * driven;
 }
@@ -146,18 +197,9 @@ void EnergyGuard::look(const Scene& scene, const Cloths& cloths, bool driven) {
   driven_ = driven;
   kinetic_ = potential_ = 0;
   for (const auto& step : cloths) {
-    const Lattice& l = step->lattice();
-    EnergyRow r{};
-    r.columns = l.columns;
-    for (int k = 0; k < 3; ++k) r.g[k] = scene.gravity[k];
-    for (int j = 0; j < l.rows; ++j) {
-      r.x = l.x.row(j);
-      r.v = l.v.row(j);
-      r.w = l.w(j);
-      const RowEnergy e = step->parts().kernels.row_energy(r);
-      kinetic_ += e.kinetic;
-      potential_ += e.potential;
-    }
+    const RowEnergy e = motion(scene, *step, step->lattice().x, step->lattice().v);
+    kinetic_ += e.kinetic;
+    potential_ += e.potential;
   }
   fall_ = std::max(released_, highest_ - potential_);
 }

@@ -18,14 +18,11 @@
 
 namespace weft::physics {
 
-// What one cloth has [J]: motion and elastic energy as the method feels it, and height.
-struct Holding {
-  double inner = 0, height = 0;
-};
-Holding holding_of(const Scene& scene, Method method, const ClothStep& step, const Rows& x,
-                   const Rows& v, double dt);
-// The greatest speed of paths and wind [m/s].
-double fastest_drive(const Scene& scene);
+// Whether the motion and elastic energy of a cloth, as the method feels it, is more than twice what it
+// was at `start` with positions x and velocities v, and besides more than what gravity, paths and wind
+// can have put in until `end`.
+bool gained(const Scene& scene, Method method, const ClothStep& step, const Rows& x, const Rows& v,
+            double dt, double start, double end);
 
 class EnergyGuard {
  public:

@@ -54,6 +54,11 @@ double gradient_factor(const Cloth& cloth, int j, int dj) {
   return 1 - cloth.stiffness_gradient * (j + 0.5 * dj) / (cloth.grid.ny - 1);
 }
 
+FarRows far_rows(const Family& f, const Rows& x, int columns, int j) {
+  return {f.per_row(columns), x.row(j).from(f.near()), x.row(j + f.dj).from(f.far()),
+          f.links ? f.links->row(j) : nullptr};
+}
+
 FamilyRow family_row(Lattice& l, const Family& f, int j) {
   FamilyRow r{};
   r.count = f.per_row(l.columns);

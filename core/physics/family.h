@@ -57,6 +57,9 @@ std::vector<Family> families_of(const Cloth& cloth);
 // Factor on the stiffness of constraints between rows j and j+dj (seed 003's stiffness gradient).
 double gradient_factor(const Cloth& cloth, int j, int dj);
 
+// The ends of a family's constraints of row j in positions of `columns` columns; row j+dj must exist.
+FarRows far_rows(const Family& family, const Rows& x, int columns, int j);
+
 // The rows that a family's constraints of row j join; row j+dj must exist.
 FamilyRow family_row(Lattice& lattice, const Family& family, int j);
 

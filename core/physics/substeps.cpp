@@ -38,9 +38,8 @@ float greatest_stretch(const ClothStep& step, const Rows& x) {
   for (const Family& f : step.families()) {
     if (f.kind != Kind::structural) continue;
     for (int j = 0; j + f.dj < l.rows; j += 4) {
-      const FarRows rows{f.per_row(l.columns), x.row(j).from(f.near()),
-                         x.row(j + f.dj).from(f.far()), f.links ? f.links->row(j) : nullptr};
-      most = std::max(most, step.parts().kernels.greatest_square(rows) / float(f.rest * f.rest));
+      const float longest = step.parts().kernels.greatest_square(far_rows(f, x, l.columns, j));
+      most = std::max(most, longest / float(f.rest * f.rest));
     }
   }
   return most;
@@ -196,24 +195,22 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
 // cannot have put into this frame. A line is solved by one Newton step a substep, which overshoots
 // where much happens in one, as when a straight line is pressed together from its ends.
 bool Simulation::State::overshot() const {
-  constexpr float kStretched = 1.25f * 1.25f;
-  constexpr double kMore = 2;  // times the energy before
+  // Squared lengths in those at rest: much, or so much that has doubled within the frame.
+  constexpr float kStretched = 1.25f * 1.25f, kNoticed = 1.01f * 1.01f;
   if (grab_ || self_collision || blown() || !scene.colliders.empty()) return false;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
     const ClothStep& step = *cloths[c];
     const Lattice& l = step.lattice();
     const float most = greatest_stretch(step, l.x);
-    if (!(most > kStretched) || most <= greatest_stretch(step, backups_[c].x)) continue;
-    const Holding before = holding_of(scene, method, step, backups_[c].x, backups_[c].v, dt);
-    const Holding now = holding_of(scene, method, step, l.x, l.v, dt);
-    double mass = 0;
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i)
-        if (l.w(j, i) > 0) mass += 1 / double(l.w(j, i));
-    const double speed = kMore * fastest_drive(scene);
-    const double put_in = std::max(0.0, before.height - now.height) + 0.5 * mass * speed * speed;
-    if (now.inner > kMore * before.inner + put_in) return true;
+    if (!(most > kNoticed)) continue;
+    const float at_start = greatest_stretch(step, backups_[c].x);
+    const bool doubled = most - 1 > 2 * (at_start - 1);
+    if (most <= at_start || !(most > kStretched || doubled)) continue;
+    const double start = double(frame) * scene.time.frame;
+    if (gained(scene, method, step, backups_[c].x, backups_[c].v, dt, start,
+               start + scene.time.frame))
+      return true;
   }
   return false;
 }

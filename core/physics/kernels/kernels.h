@@ -155,6 +155,16 @@ struct FarRows {
   const std::int32_t* alive;  // -1 or 0 each; null: all
 };
 
+// What such constraints hold: Σ ½ κ (||e| - l| + slack)², κ the lesser of their stiffness and a share
+// of what takes a violation back in one substep, 1/((w_a + w_b) dt²).
+struct StretchRow : FarRows {
+  const float *w_near, *w_far;  // inverse masses of their ends [1/kg]; both 0: counts nothing
+  float rest, slack;            // m
+  float stiffness, share;       // N/m, 1; either may be infinite
+  float inverse_dt2;            // 1/s²
+  float give;  // m; what is beyond it is taken back in one substep besides; infinite: no limit
+};
+
 // Constants of a collider's shape, about its place (colliders/).
 struct ShapeConstants {
   float radius = 0;           // sphere, capsule; the box's rounding [m]
@@ -284,7 +294,8 @@ struct KernelTable {
   // The greatest size of `count` values, a multiple of 16; infinite if one is not a number.
   float (*greatest)(const float* values, std::ptrdiff_t count);
   RowEnergy (*row_energy)(const EnergyRow&);
-  float (*greatest_square)(const FarRows&);  // of a constraint's length
+  float (*greatest_square)(const FarRows&);     // of a constraint's length
+  double (*stretch_energy)(const StretchRow&);  // J
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

@@ -97,6 +97,7 @@ void bend_twist(const physics::TwistRow&);
 float greatest(const float* values, std::ptrdiff_t count);
 physics::RowEnergy row_energy(const physics::EnergyRow&);
 float greatest_square(const physics::FarRows&);
+double stretch_energy(const physics::StretchRow&);
 void wind(const physics::WindRow&);
 void push(const AdvanceRow&);
 void block_bounds(const physics::BlockRows&);

@@ -62,4 +62,26 @@ float greatest_square(const physics::FarRows& r) {
   return greatest(most);
 }
 
+double stretch_energy(const physics::StretchRow& r) {
+  WideDouble sum[kBlocks] = {};
+  for (int i = 0; i < padded(r.count); i += 16)
+    for (int b = 0; b < kBlocks; ++b) {
+      const int a = i + b * kLanes;
+      const Wide w = load(r.w_near + a) + load(r.w_far + a);
+      WideInt there = lanes_below(r.count - a) & (w > 0.0f);
+      if (r.alive) there = there & lanes_at(r.alive + a);
+      const Wide3 e = load3(r.far, a) - load3(r.near, a);
+      const Wide off = abs(sqrt(dot(e, e)) - r.rest) + r.slack;
+      const Wide rigid = r.inverse_dt2 / w;
+      const Wide k = select(there, min(rigid * r.share, wide(r.stiffness)), Wide{});
+      const Wide over = max(off - r.give, Wide{});
+      sum[b] = sum[b] + twice(k) * twice(off) * twice(off) +
+               twice(select(there, rigid, Wide{})) * twice(over) * twice(over);
+    }
+  double energy = 0;
+  for (const WideDouble& s : sum)
+    for (int lane = 0; lane < kLanes; ++lane) energy += 0.5 * s[lane];
+  return energy;
+}
+
 }  // namespace weft::WEFT_KERNELS

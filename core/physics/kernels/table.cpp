@@ -43,6 +43,7 @@ const physics::KernelTable& table() {
       greatest,
       row_energy,
       greatest_square,
+      stretch_energy,
   };
   return table;
 }
