@@ -86,24 +86,24 @@ double tether_energy(const ClothStep& step, const Rows& x, double dt) {
   const Lattice& l = step.lattice();
   const Grid& g = step.cloth().grid;
   const Vec3 u = times(g.u, 1.0 / (g.nx - 1)), v = times(g.v, 1.0 / (g.ny - 1));
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v);
   double sum = 0;
   for (const Pin& pin : step.cloth().pins)
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i) {
-        const Vec3 rest = plus(times(u, i - pin.i), times(v, j - pin.j));
-        Vec3 e;
-        for (int k = 0; k < 3; ++k) e[k] = double(x.at(k, j, i)) - x.at(k, pin.j, pin.i);
-        const double squared = dot(e, e), length = dot(rest, rest);
-        if (squared <= length || !(l.w(j, i) > 0)) continue;
-        const double over = std::sqrt(squared) - std::sqrt(length);
-        sum += 0.5 * over * over / (l.w(j, i) * dt * dt);
+    for_each_free(l, [&](int j, int i, double mass) {
+      const double a = i - pin.i, b = j - pin.j, rest = a * (uu * a + 2 * uv * b) + vv * b * b;
+      double squared = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double e = double(x.at(k, j, i)) - x.at(k, pin.j, pin.i);
+        squared += e * e;
       }
+      const double over = std::max(0.0, std::sqrt(squared) - std::sqrt(rest));
+      sum += 0.5 * mass * over * over / (dt * dt);
+    });
   return sum;
 }
 
 double elastic(const Scene& scene, Method method, const ClothStep& step, const Rows& x, double dt) {
   double sum = stretch_energy(scene, method, step, x, dt);
-  if (scene.solver.tethers) sum += tether_energy(step, x, dt);
   if (step.cloth().bending > 0) sum += bending_energy(step.cloth(), gather(step.lattice(), x));
   return sum;
 }
@@ -180,8 +180,11 @@ void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, 
   for (const auto& step : cloths) {
     const Lattice& l = step->lattice();
     mass += free_mass(l);
-    put_in_ += std::max(elastic(scene, method, *step, l.x, dt),
-                        elastic(scene, method, *step, pushed_out(scene, time, l), dt));
+    const auto held = [&](const Rows& x) {
+      const double tethers = scene.solver.tethers ? tether_energy(*step, x, dt) : 0;
+      return elastic(scene, method, *step, x, dt) + tethers;
+    };
+    put_in_ += std::max(held(l.x), held(pushed_out(scene, time, l)));
     if (is_explicit(method)) rounding_ += rounding_gain(*step);  // projection loses what it gains
   }
   look(scene, cloths, false);

@@ -89,11 +89,12 @@ class Block {
       : p(strip), offset_(offset), line_(strip.first + offset) {
     const int left = strip.columns - line_;
     lines_ = left < kLanes ? left : kLanes;
-    if (p.lean == 0)  // nothing leaves the sheet, and beyond its side is padding without mass
+    if (p.lean == 0) {  // nothing leaves the sheet, and beyond its side is padding without mass
       last_whole_ = line_;
-    else if (lines_ == kLanes)
-      first_whole_ = p.lean < 0 ? -p.lean : 0,
+    } else if (lines_ == kLanes) {
+      first_whole_ = p.lean < 0 ? -p.lean : 0;
       last_whole_ = p.columns - kLanes - (p.lean > 0 ? p.lean : 0);
+    }
   }
 
   // Whether constraint m of all lines goes from lanes to lanes next to each other; and if it does,

@@ -25,11 +25,11 @@ struct LineStrip {
   int particles;  // rows that lines pass through
   int lean;
   int columns;
-  int first;   // number of the first line of the strip, a multiple of 16; up to kStripLines of them
-  float rest;  // m
-  float share;                     // factor on the correction
-  Row3 v;                          // velocities, laid out as x; gain corrections times inverse_dt
-  float inverse_dt;                // 1/s; 0 = velocities are not touched
+  int first;         // number of the strip's first line, a multiple of 16; it has up to kStripLines
+  float rest;        // m
+  float share;       // factor on the correction
+  Row3 v;            // velocities, laid out as x; gain corrections times inverse_dt
+  float inverse_dt;  // 1/s; 0 = velocities are not touched
   const float* compliance;         // [m][kStripLines] of constraint m of each line [1/kg]
   std::ptrdiff_t compliance_step;  // kStripLines, or 0 when all rows are alike
   // -1 where constraint m of line n holds, 0 where it is cut, laid out as x; or null.

@@ -24,21 +24,25 @@ struct Place {
   bool operator==(const Place&) const = default;
 };
 
+// Of the distance over the sheet [m²].
+double squared_distance(const Grid& g, const Place& p, int i, int j) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double e = g.u[k] / (g.nx - 1) * (p.i - i) + g.v[k] / (g.ny - 1) * (p.j - j);
+    sum += e * e;
+  }
+  return sum;
+}
+
 // The nearest pin of one quadrant for every particle, handed on from neighbour to neighbour.
 std::vector<Place> nearest(const ClothParts& parts, int side_i, int side_j) {
   const Lattice& l = parts.lattice;
-  const Grid& g = parts.cloth.grid;
   std::vector<Place> best(std::size_t(l.columns) * l.rows);
   for (const Pin& pin : parts.cloth.pins)
     best[std::size_t(pin.j) * l.columns + pin.i] = {pin.i, pin.j};
   const auto squared = [&](const Place& p, int i, int j) {
-    if (p.i < 0) return std::numeric_limits<double>::infinity();
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double e = g.u[k] / (g.nx - 1) * (p.i - i) + g.v[k] / (g.ny - 1) * (p.j - j);
-      sum += e * e;
-    }
-    return sum;
+    return p.i < 0 ? std::numeric_limits<double>::infinity()
+                   : squared_distance(parts.cloth.grid, p, i, j);
   };
   for (int b = 0; b < l.rows; ++b)
     for (int a = 0; a < l.columns; ++a) {
@@ -76,7 +80,8 @@ class Tethers final : public RowStage {
         for (int i = 0; i < l.columns; ++i) {
           const Place p = places[std::size_t(j) * l.columns + i];
           if (p.i < 0) continue;
-          slot.reach[std::size_t(j) * l.stride + i] = rest_distance(parts, p, i, j);
+          slot.reach[std::size_t(j) * l.stride + i] =
+              float(std::sqrt(squared_distance(parts.cloth.grid, p, i, j)));
           if (keys_[std::size_t(p.j) * l.columns + p.i]) slot.moves[j] = true;
         }
       slot.places = std::move(places);
@@ -150,16 +155,6 @@ class Tethers final : public RowStage {
       slot.row.push_back(rows - 1);
     }
     slot.pin = Rows(rows, parts_.lattice.stride);
-  }
-
-  static float rest_distance(const ClothParts& parts, const Place& p, int i, int j) {
-    const Grid& g = parts.cloth.grid;
-    double sum = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double e = g.u[k] / (g.nx - 1) * (p.i - i) + g.v[k] / (g.ny - 1) * (p.j - j);
-      sum += e * e;
-    }
-    return float(std::sqrt(sum));
   }
 
   // From the paths, not from the lattice, whose other rows are in other substeps.
