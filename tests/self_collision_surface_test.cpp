@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "physics/kernels/surface.h"
@@ -16,7 +17,7 @@ namespace {
 using Vector = Eigen::Vector3d;
 
 constexpr int kPadding = 16;
-constexpr float kRange = 0.8f, kClose = 0.05f, kThickness = 0.3f;
+constexpr float kClose = 0.05f, kBeyond = 0.4f, kThickness = 0.3f;
 
 double to_segment(const Vector& p, const Vector& a, const Vector& b) {
   const Vector e = b - a;
@@ -54,16 +55,21 @@ struct Squares {
     for (int q = 0; q < count; ++q) {
       Square s{};
       for (int c = 0; c < 4; ++c) {
-        const bool shared = q % 5 == 4 && c % 2 == 0;  // with the square before
-        for (int k = 0; k < 3; ++k) {
-          s.x[c][k] = shared ? square.back().x[c + 1][k] : next() + (k == 0 ? 0.3f * float(c) : 0);
-          s.v[c][k] = shared ? square.back().v[c + 1][k] : next();
+        if (q % 5 == 4 && c % 2 == 0) {  // with the square before
+          s.corner[c] = square.back().corner[c + 1];
+          continue;
         }
-        s.w[c] = shared ? square.back().w[c + 1] : (q + c) % 6 == 0 ? 0 : 1 + 0.5f * next();
-        s.corner[c] = shared ? square.back().corner[c + 1] : 4 * q + c;
+        Vertex v{};
+        for (int k = 0; k < 3; ++k) {
+          v.x[k] = next() + (k == 0 ? 0.3f * float(c) : 0);
+          v.v[k] = next();
+        }
+        v.w = (q + c) % 6 == 0 ? 0 : 1 + 0.5f * next();
+        s.corner[c] = std::int32_t(vertex.size());
+        vertex.push_back(v);
       }
       s.place[0] = float(q / 5 * 100 + q % 5);
-      s.place[2] = kThickness;
+      s.thickness = kThickness;
       s.friction = 0.5f;
       square.push_back(s);
     }
@@ -78,16 +84,17 @@ struct Squares {
   }
 
   Vector at(int q, int corner) const {
-    const float* const x = square[std::size_t(q)].x[corner];
+    const float* const x = vertex[std::size_t(square[std::size_t(q)].corner[corner])].x;
     return {x[0], x[1], x[2]};
   }
+  Vertex& of(std::size_t q, int corner) { return vertex[std::size_t(square[q].corner[corner])]; }
   bool same(int a, int corner, int b, int other) const {
     return square[std::size_t(a)].corner[corner] == square[std::size_t(b)].corner[other];
   }
   // Of what a owns from what b owns, parts that share a corner apart.
   double distance(int a, int b) const {
     constexpr int kFaces[2][3] = {{0, 1, 2}, {1, 3, 2}}, kEdges[3][2] = {{0, 1}, {0, 2}, {1, 2}};
-    double least = kRange;
+    double least = std::numeric_limits<double>::infinity();
     for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, a}})
       for (const auto& f : kFaces)
         if (!same(p, 0, q, f[0]) && !same(p, 0, q, f[1]) && !same(p, 0, q, f[2]))
@@ -106,6 +113,7 @@ struct Squares {
   }
 
   int pairs = 0;
+  std::vector<Vertex> vertex;
   std::vector<Square> square;
   std::vector<std::int32_t> owner, neighbour;
 };
@@ -119,14 +127,14 @@ class Surfaces : public testing::TestWithParam<Simd> {
     std::vector<float> near_squared;
     std::vector<SquaresTouching> touching;
   };
-  static Result measured(const Squares& s, Simd simd) {
+  static Result measured(const Squares& s, Simd simd, bool touching = true) {
     Result r;
     r.near_squared.resize(s.owner.size());
     r.touching.resize(s.owner.size());
-    const int touching = kernel_table(simd).surface_pairs(
-        {s.square.data(), s.pairs, s.owner.data(), s.neighbour.data(), kRange, kClose,
-         r.near_squared.data(), r.touching.data()});
-    r.touching.resize(std::size_t(touching));
+    const int found = kernel_table(simd).surface_pairs(
+        {s.vertex.data(), s.square.data(), s.pairs, s.owner.data(), s.neighbour.data(), kClose,
+         kBeyond, r.near_squared.data(), touching ? r.touching.data() : nullptr});
+    r.touching.resize(std::size_t(found));
     r.near_squared.resize(std::size_t(s.pairs));
     return r;
   }
@@ -140,13 +148,22 @@ TEST_P(Surfaces, MeasuresDistancesAndFindsWhatTouches) {
     for (int k = 0; k < s.pairs; ++k) {
       const int a = s.owner[std::size_t(k)], b = s.neighbour[std::size_t(k)];
       const double distance = s.distance(a, b);
-      EXPECT_NEAR(std::sqrt(r.near_squared[std::size_t(k)]), distance, 1e-5) << a << ' ' << b;
+      const float squared = r.near_squared[std::size_t(k)];
+      const double reach = s.held(a, b) + kBeyond;
+      if (distance < reach - 1e-5) {
+        EXPECT_NEAR(std::sqrt(squared), distance, 1e-5) << a << ' ' << b;
+      } else if (distance > reach + 1e-5) {
+        EXPECT_EQ(squared, kOutOfReach) << a << ' ' << b;
+      }
       const bool touches = t < r.touching.size() && r.touching[t].pair == k;
       EXPECT_EQ(touches, distance < s.held(a, b)) << a << ' ' << b;
       t += touches;
     }
     EXPECT_EQ(t, r.touching.size());
     EXPECT_TRUE(count < 30 || t > 10) << t;
+    const Result alone = measured(s, GetParam(), false);
+    EXPECT_EQ(alone.near_squared, r.near_squared);
+    EXPECT_TRUE(alone.touching.empty());
   }
 }
 
@@ -157,13 +174,15 @@ TEST_P(Surfaces, PushesBothApartByOneImpulse) {
   const float corners[2][4][3] = {{{0, 0.1f, 0}, {1, 1, 0}, {-1, 1, 1}, {0, 2, 1}},
                                   {{-2, 0, -2}, {3, 0, -2}, {-2, 0, 3}, {3, 0, 3}}};
   for (std::size_t q = 0; q < 2; ++q) {
-    std::copy_n(&corners[q][0][0], 12, &s.square[q].x[0][0]);
-    std::fill_n(&s.square[q].v[0][0], 12, 0.0f);
     s.square[q].place[0] = 100 * float(q);
     s.square[q].friction = 0.2f + 0.4f * float(q);
-    for (int c = 0; c < 4; ++c) s.square[q].w[c] = 1 + 0.5f * float(q) + 0.1f * float(c);
+    for (int c = 0; c < 4; ++c) {
+      Vertex& v = s.of(q, c) = {};
+      std::copy_n(corners[q][c], 3, v.x);
+      v.w = 1 + 0.5f * float(q) + 0.1f * float(c);
+      if (q == 0) v.v[0] = 2, v.v[1] = -1;
+    }
   }
-  for (float(&v)[3] : s.square[0].v) v[0] = 2, v[1] = -1;
   const Result r = measured(s, GetParam());
   ASSERT_EQ(r.touching.size(), 1u);
   Vector pushed[2], gained[2];
@@ -172,7 +191,7 @@ TEST_P(Surfaces, PushesBothApartByOneImpulse) {
     const SquareChange& change = r.touching[0].change[n];
     for (int c = 0; c < 4; ++c) {
       if (change.weight[c] == 0) continue;
-      const double of = 1 / (double(change.weight[c]) * s.square[std::size_t(n)].w[c]);
+      const double of = 1 / (double(change.weight[c]) * s.of(std::size_t(n), c).w);
       for (int k = 0; k < 3; ++k) {
         pushed[n][k] += change.push[c][k] * of;
         gained[n][k] += change.gain[c][k] * of;
@@ -186,7 +205,7 @@ TEST_P(Surfaces, PushesBothApartByOneImpulse) {
   EXPECT_GT(gained[0].y(), 0.1);
   EXPECT_NEAR(gained[0].x(), -0.4 * gained[0].y(), 1e-5) << "the mean of both frictions";
   // What is pinned stays where it is.
-  std::fill_n(s.square[1].w, 4, 0.0f);
+  for (int c = 0; c < 4; ++c) s.of(1, c).w = 0;
   const SquareChange held = measured(s, GetParam()).touching.at(0).change[1];
   for (const auto& change : {held.push, held.gain})
     for (int c = 0; c < 4; ++c)

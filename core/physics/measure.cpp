@@ -136,9 +136,10 @@ void add_idle(const Simulation::State& s, Report& r) {
     if (s.surface) {
       std::snprintf(
           why, sizeof why,
-          "surfaces measured after %.1f %% of the substeps; %lld moves of particles cut short",
+          "surfaces measured after %.1f %% of the substeps, pairs listed %.1f times; %lld moves of "
+          "particles cut short",
           100 * double(s.surface->measured()) / double(std::max<std::int64_t>(s.total_substeps, 1)),
-          static_cast<long long>(s.surface->held_back()));
+          s.surface->listed(), static_cast<long long>(s.surface->held_back()));
       r.skipped.push_back({"self_surface", why});
     }
   }

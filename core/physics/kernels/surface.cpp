@@ -23,6 +23,7 @@ using physics::SquareChange;
 using physics::SquaresTouching;
 using physics::SquaresWithin;
 using physics::SurfacePairs;
+using physics::Vertex;
 
 constexpr float kTiny = 1e-20f;
 // Of the thickness: weights of pairs nearer than that grow no further.
@@ -31,7 +32,7 @@ constexpr float kClosest = 0.01f;
 constexpr float kApart = 2.5f;
 
 constexpr int kEdges[3][2] = {{0, 1}, {0, 2}, {1, 2}}, kFaces[2][3] = {{0, 1, 2}, {1, 3, 2}};
-constexpr int kStride = sizeof(Square) / sizeof(float);
+constexpr int kSquare = sizeof(Square) / sizeof(float), kVertex = sizeof(Vertex) / sizeof(float);
 
 // SquareChange of kLanes pairs.
 struct Change {
@@ -97,7 +98,7 @@ WEFT_INLINE Wide vertex_face(Wide3 p, const Face& t, Wide (&share)[3]) {
   const WideInt inside =
       (t.area > kTiny) & (share[0] >= 0.0f) & (share[1] >= 0.0f) & (share[2] >= 0.0f);
   const Wide3 above = d - e.along * share[1] - f.along * share[2];
-  Wide best = select(inside, dot(above, above), wide(1e18f));
+  Wide best = select(inside, dot(above, above), wide(physics::kOutOfReach));
   constexpr int kSides[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   for (int n = 0; n < 3; ++n) {
     const auto [i, j] = kSides[n];
@@ -131,28 +132,32 @@ WEFT_INLINE Wide edge_edge(Wide3 p, const Edge& e, Wide3 q, const Edge& f, Wide&
 // kLanes pairs of squares.
 class Pairs {
  public:
-  WEFT_INLINE Pairs(const SurfacePairs& given, int at)
-      : given_(given), number_{given.owner + at, given.neighbour + at} {
-    for (int n = 0; n < 2; ++n) corners_of(n, &Square::x, shape_[n].x);
-    const Wide3 origin = shape_[0].x[0];
+  WEFT_INLINE Pairs(const SurfacePairs& given, int at) : given_(given) {
+    const std::int32_t* const number[2] = {given.owner + at, given.neighbour + at};
+    Wide4 place[2];
     for (int n = 0; n < 2; ++n) {
-      for (Wide3& x : shape_[n].x) x = x - origin;
-      fill_shape(shape_[n]);
-      const Wide4 corner = records_at((const float*)given.squares->corner, kStride, number_[n]);
+      const auto* const corners = (const float*)given.squares->corner;
+      const Wide4 corner = records_at(corners, kSquare, number[n]);
       corner_[n][0] = (WideInt)corner.xyz.x;
       corner_[n][1] = (WideInt)corner.xyz.y;
       corner_[n][2] = (WideInt)corner.xyz.z;
       corner_[n][3] = (WideInt)corner.last;
+      place[n] = records_at(given.squares->place, kSquare, number[n]);
+      for (int c = 0; c < 4; ++c) shape_[n].x[c] = vertex_part(&Vertex::x, n, c).xyz;
     }
-    const Wide4 p = records_at(given.squares->place, kStride, number_[0]);
-    const Wide4 q = records_at(given.squares->place, kStride, number_[1]);
+    const Wide3 origin = shape_[0].x[0];
+    for (int n = 0; n < 2; ++n) {
+      for (Wide3& x : shape_[n].x) x = x - origin;
+      fill_shape(shape_[n]);
+    }
+    const auto &p = place[0], &q = place[1];
     const WideInt beside = (abs(q.xyz.x - p.xyz.x) < kApart) & (abs(q.xyz.y - p.xyz.y) < kApart);
     const Wide thickness = 0.5f * (q.xyz.z + p.xyz.z);
     held_ = select(beside, min(thickness, wide(given.close)), thickness);
     held_squared_ = held_ * held_;
     friction_ = 0.5f * (q.last + p.last);
-    near_squared_ = wide(given.range * given.range);
-    valid_ = lanes_below(given.pairs - at);
+    near_squared_ = wide(physics::kOutOfReach);
+    valid_ = lanes_below(given.touching ? given.pairs - at : 0);
   }
 
   // The vertex of each against a triangle of the other.
@@ -186,7 +191,10 @@ class Pairs {
     push(c, touch);
   }
 
-  WEFT_INLINE Wide near_squared() const { return near_squared_; }
+  WEFT_INLINE Wide near_squared() const {
+    const Wide reach = held_ + given_.beyond;
+    return select(near_squared_ < reach * reach, near_squared_, wide(physics::kOutOfReach));
+  }
 
   // Writes what those that touch want, `at` being the number of the first; returns how many.
   WEFT_INLINE int put_touching(int at, SquaresTouching* to) const {
@@ -209,20 +217,14 @@ class Pairs {
     return corner_[n][corner] == corner_[1 - n][other];
   }
 
-  // Three floats of each corner.
-  WEFT_INLINE void corners_of(int n, float (Square::*part)[4][3], Wide3 (&out)[4]) const {
-    Wide f[12];
-    for (int q = 0; q < 3; ++q) {
-      const Wide4 four = records_at(&(given_.squares->*part)[0][0] + 4 * q, kStride, number_[n]);
-      f[4 * q] = four.xyz.x, f[4 * q + 1] = four.xyz.y, f[4 * q + 2] = four.xyz.z,
-            f[4 * q + 3] = four.last;
-    }
-    for (int c = 0; c < 4; ++c) out[c] = {f[3 * c], f[3 * c + 1], f[3 * c + 2]};
+  // Four floats of a corner's particle: x and w, or v.
+  WEFT_INLINE Wide4 vertex_part(float (Vertex::*part)[3], int n, int c) const {
+    return records_at(given_.vertices->*part, kVertex, (const std::int32_t*)&corner_[n][c]);
   }
 
   // Takes a distance squared into account; returns where it is less than the thickness.
   WEFT_INLINE WideInt met(Wide square, WideInt joined) {
-    const Wide apart = select(joined, wide(1e18f), square);
+    const Wide apart = select(joined, wide(physics::kOutOfReach), square);
     near_squared_ = min(near_squared_, apart);
     return (apart < held_squared_) & valid_;
   }
@@ -235,15 +237,12 @@ class Pairs {
     Wide3 off = wide3(0, 0, 0), u = wide3(0, 0, 0);
     Wide mass{}, w[2][4];
     for (int n = 0; n < 2; ++n) {
-      Wide3 v[4];
-      corners_of(n, &Square::v, v);
-      const Wide4 four = records_at(given_.squares->w, kStride, number_[n]);
-      w[n][0] = four.xyz.x, w[n][1] = four.xyz.y, w[n][2] = four.xyz.z, w[n][3] = four.last;
       const float sign = n == 0 ? 1 : -1;
       for (int k = 0; k < 4; ++k) {
         const Wide share = c.at[n][k] * sign;
+        w[n][k] = vertex_part(&Vertex::x, n, k).last;
         off = off + shape_[n].x[k] * share;
-        u = u + v[k] * share;
+        u = u + vertex_part(&Vertex::v, n, k).xyz * share;
         mass = mass + w[n][k] * (share * share);
       }
     }
@@ -274,7 +273,6 @@ class Pairs {
   }
 
   const SurfacePairs& given_;
-  const std::int32_t* const number_[2];
   Shape shape_[2];
   WideInt corner_[2][4], valid_, touched_{};
   Wide held_, held_squared_, friction_, near_squared_;
@@ -285,17 +283,19 @@ class Pairs {
 
 int squares_within(const SquaresWithin& given) {
   const SquaresWithin s = given;
-  constexpr int kBoxStride = sizeof(physics::SquareBox) / sizeof(float);
-  const auto outside = [&](int k, const std::int32_t* low, const std::int32_t* high) {
-    return records_at(s.boxes->low, kBoxStride, low + k).xyz -
-           records_at(s.boxes->high, kBoxStride, high + k).xyz;
-  };
+  constexpr int kBox = sizeof(physics::SquareBox) / sizeof(float);
   int count = 0;
   for (int k = 0; k < s.pairs; k += kLanes) {
-    const Wide3 a = outside(k, s.owner, s.neighbour), b = outside(k, s.neighbour, s.owner);
+    const auto low = [&](const std::int32_t* of) { return records_at(s.boxes->low, kBox, of + k); };
+    const auto high = [&](const std::int32_t* of) {
+      return records_at(s.boxes->high, kBox, of + k).xyz;
+    };
+    const Wide4 p = low(s.owner), q = low(s.neighbour);
+    const Wide3 a = p.xyz - high(s.neighbour), b = q.xyz - high(s.owner);
     const Wide3 gap{max(max(a.x, b.x), Wide{}), max(max(a.y, b.y), Wide{}),
                     max(max(a.z, b.z), Wide{})};
-    const WideInt within = (dot(gap, gap) < s.range * s.range) & lanes_below(s.pairs - k);
+    const WideInt within =
+        (dot(gap, gap) < s.range * s.range) & (p.last + q.last > 0.0f) & lanes_below(s.pairs - k);
     store_lanes(s.within_owner + count, within, lanes_at(s.owner + k));
     count += store_lanes(s.within_neighbour + count, within, lanes_at(s.neighbour + k));
   }
@@ -311,7 +311,7 @@ int surface_pairs(const SurfacePairs& given) {
     for (int n = 0; n < 3; ++n)
       for (int m = 0; m < 3; ++m) pairs.edge(n, m);
     store(given.near_squared + k, pairs.near_squared());
-    touching += pairs.put_touching(k, given.touching + touching);
+    if (given.touching) touching += pairs.put_touching(k, given.touching + touching);
   }
   return touching;
 }

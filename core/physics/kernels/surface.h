@@ -5,24 +5,31 @@
 
 namespace weft::physics {
 
+// A particle of a sheet, as squares know it.
+struct alignas(32) Vertex {
+  float x[3], w;       // m, 1/kg
+  float v[3], unused;  // m/s
+};
+
 // A square of a sheet: its corners A (its number's particle), B beyond A along the row, C below A, D
 // below B. It owns the vertex A, the edges AB, AC and BC, and the triangles ABC and BDC. At a
 // sheet's end corners beyond it are those before them: what has no length or area there is of no
 // account.
-struct alignas(64) Square {
-  float x[4][3], v[4][3];  // m, m/s
-  float w[4];              // 1/kg
-  float place[3];  // column and row of A; columns of different sheets are far apart; thickness [m]
-  float friction;
+struct alignas(32) Square {
   std::int32_t corner[4];  // numbers of the particles, over all sheets
+  float place[2];          // column and row of A; columns of different sheets are far apart
+  float thickness;         // m
+  float friction;
 };
 
-// Box about a square; the fourth values are 0.
+// Box about a square.
 struct SquareBox {
-  float low[4], high[4];  // m
+  float low[3], asked;    // m; 1 where all pairs of the square are asked for, else 0
+  float high[3], unused;  // m
 };
 
-// Pairs of squares, and where those of them go whose boxes are within a range.
+// Pairs of squares, and where those of them go whose boxes are within a range, and one of which is
+// asked for.
 struct SquaresWithin {
   const SquareBox* boxes;
   int pairs;
@@ -43,17 +50,21 @@ struct SquaresTouching {
   SquareChange change[2];
 };
 
+constexpr float kOutOfReach = 1e18f;  // m²
+
 // Pairs of squares to be measured, each against each.
 struct SurfacePairs {
+  const Vertex* vertices;
   const Square* squares;
   int pairs;
   const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
-  float range;                            // m
-  float close;  // m: pairs of one sheet that are next to each other are kept only so far apart
-  // Out: squared distance of what one owns from what the other does, range² at most [m²]; and 16
+  // m: what pairs are kept apart by, beside the thickness: those of one sheet that are next to each
+  // other; and how much farther apart than that they are of account.
+  float close, beyond;
+  // Out: squared distance of what one owns from what the other does, or kOutOfReach [m²]; and 16
   // lanes of padding.
   float* near_squared;
-  SquaresTouching* touching;  // out; there is room for all
+  SquaresTouching* touching;  // out; there is room for all; null: distances alone
 };
 
 }  // namespace weft::physics

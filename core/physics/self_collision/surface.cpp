@@ -15,9 +15,11 @@ constexpr float kFloor = 0.05f;     // of the thickness: what is nearer is only 
 constexpr float kMeasureAt = 0.7f;  // of a bound, moved: all is measured anew
 constexpr float kComeAt = 0.8f;     // of the rest of a bound, at its speed: time to come again
 constexpr int kMostSubsteps = 8;    // between two times
-constexpr float kBeyond = 0.25f;    // spacings beyond the thickness that distances are measured to
+constexpr float kBeyond = 0.2f;     // spacings that listed pairs may be farther apart than is held
 constexpr float kClose = 0.25f;     // spacings that neighbours are kept apart
-constexpr std::size_t kAtOnce = 256;  // pairs that are measured in one call
+constexpr float kLeastBound = 1e-12f;  // m, to divide by
+constexpr std::size_t kAtOnce = 256;   // pairs that are measured in one call
+constexpr std::size_t kFewParticles = 4096;
 constexpr std::size_t kPadding = 32;  // that kernels may write
 constexpr float kOverstretched = 2;  // half-diagonals at rest: larger squares are torn and left out
 
@@ -31,13 +33,12 @@ std::size_t count_particles(const std::vector<Sheet>& sheets) {
 std::vector<RestMetric> metrics_of(const std::vector<Sheet>& sheets) {
   std::vector<RestMetric> metrics;
   for (const Sheet& s : sheets)
-    metrics.push_back(
-        {s.lattice->columns, s.lattice->rows, s.uu, s.uv, s.vv, 0.01f * std::min(s.uu, s.vv)});
+    metrics.push_back({s.lattice->columns, s.lattice->rows, 1, 0, 1, 0.5f});
   return metrics;
 }
 
-float length(const float* a) {
-  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+float square(const float* a) {
+  return a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
 }
 
 void add(const SquareChange& change, SquareChange& sum) {
@@ -48,6 +49,15 @@ void add(const SquareChange& change, SquareChange& sum) {
     }
     sum.weight[c] += change.weight[c];
   }
+}
+
+void widen(Spread& spread, int k, float value) {
+  spread.low[k] = std::min(spread.low[k], value);
+  spread.high[k] = std::max(spread.high[k], value);
+}
+
+float middle(const Spread& spread, int k) {
+  return 0.5f * (spread.low[k] + spread.high[k]);
 }
 
 float half_diagonal(const Sheet& s) {
@@ -65,175 +75,293 @@ std::unique_ptr<SurfaceContact> SurfaceContact::make(const Scene& scene,
   return asked ? std::unique_ptr<SurfaceContact>(new SurfaceContact(sheets, kernels)) : nullptr;
 }
 
+void SurfaceContact::Pairs::reserve(std::size_t pairs) {
+  if (owner.size() >= pairs + kPadding) return;
+  owner.resize(2 * pairs + kPadding);
+  neighbour.resize(owner.size());
+  near_squared.resize(owner.size());
+}
+
 SurfaceContact::SurfaceContact(std::vector<Sheet> sheets, const KernelTable& kernels)
     : sheets_(std::move(sheets)),
       kernels_(kernels),
       search_(count_particles(sheets_), metrics_of(sheets_), true, kernels) {
-  std::size_t n = 0;
-  float spacing = 0, thickness = 0;
-  close_ = floor_ = std::numeric_limits<float>::max();
-  for (const Sheet& s : sheets_) {
-    first_.push_back(n);
-    n += std::size_t(s.lattice->columns) * std::size_t(s.lattice->rows);
+  constexpr float kBetweenSheets = 1e5f;  // columns
+  float spacing = 0, most = 0;
+  close_ = least_ = floor_ = std::numeric_limits<float>::max();
+  for (std::size_t n = 0; n < sheets_.size(); ++n) {
+    const Sheet& s = sheets_[n];
+    const Lattice& l = *s.lattice;
+    first_.push_back(squares_.size());
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i) {
+        Square q{};
+        for (int c = 0; c < 4; ++c)
+          q.corner[c] = std::int32_t(
+              number(n, std::min(j + (c >> 1), l.rows - 1), std::min(i + (c & 1), l.columns - 1)));
+        q.place[0] = float(i) + kBetweenSheets * float(n);
+        q.place[1] = float(j);
+        q.thickness = s.thickness;
+        q.friction = s.friction;
+        squares_.push_back(q);
+      }
     spacing = std::max({spacing, std::sqrt(s.uu), std::sqrt(s.vv)});
-    thickness = std::max(thickness, s.thickness);
+    most = std::max(most, s.thickness);
+    least_ = std::min(least_, s.thickness);
     close_ = std::min({close_, kClose * std::sqrt(s.uu), kClose * std::sqrt(s.vv)});
     floor_ = std::min({floor_, kFloor * s.thickness, kFloor * close_});
   }
-  reach_ = thickness + kBeyond * spacing;
+  least_ = std::min(least_, close_);
+  beyond_ = kBeyond * spacing;
+  reach_ = most + beyond_;
+  const std::size_t n = squares_.size();
+  vertices_.resize(n);
+  places_.resize(n);
+  chosen_.resize(n);
+  asked_.resize(n);
   sorted_.resize(n);
-  squares_.resize(n);
   boxes_.resize(n);
   sums_.resize(n);
   near_squared_.resize(n);
-  places_.resize(n);
+  left_out_.reserve(n);
+}
+
+void SurfaceContact::read_vertices(Threads& threads) {
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    Lattice& l = *sheets_[s].lattice;
+    threads.share(std::size_t(l.rows), vertices_.size() < kFewParticles, [&](std::size_t j) {
+      const Row3 x = l.x.row(int(j)), v = l.v.row(int(j));
+      const float* const w = l.w(int(j));
+      Vertex* const to = &vertices_[number(s, int(j), 0)];
+      for (int i = 0; i < l.columns; ++i)
+        to[i] = {{x.x[i], x.y[i], x.z[i]}, w[i], {v.x[i], v.y[i], v.z[i]}, 0};
+    });
+  }
+}
+
+// Which pairs are within reach, of those squares that have a vertex which has gone far; of all where
+// that are many.
+//
+// Vertices that are chosen start anew: they have gone nowhere. The others may have gone kFar beyond_
+// before, so much less is left of what pairs that are not listed are apart (unlisted()).
+void SurfaceContact::list(Threads& threads) {
+  std::size_t asked = valid_ ? choose(false) : squares_.size();
+  if (asked > squares_.size() / 2) {
+    asked = choose(true);
+    listed_.count = 0;
+  }
+  squares_listed_ += double(asked);
+  Spread box;
+  std::size_t whole = 0;
+  const float range = reach_ + 2 * list_squares(box, whole);
+  search_.sort(whole, box, range, threads);
+  threads.share(search_.chunks(), search_.few(), [&](std::size_t k) {
+    for (std::size_t p = search_.begin(k); p < search_.begin(k + 1); ++p) fill_box(p);
+  });
+  search_.find(range, threads);
+  if (found_.size() < search_.chunks()) found_.resize(search_.chunks());
+  threads.share(search_.chunks(), false, [&](std::size_t k) { find_in(k); });
+  take_found();
+}
+
+// Vertices that start anew, and the squares that they are corners of; returns how many these are.
+std::size_t SurfaceContact::choose(bool all) {
+  const float far = kFar * beyond_;
+  float gone_squared = 0;
+  for (std::size_t n = 0; n < places_.size(); ++n) {
+    Place& place = places_[n];
+    chosen_[n] = all || place.gone_squared > far * far;
+    if (chosen_[n]) {
+      for (int k = 0; k < 3; ++k)
+        place.listed[k] = vertices_[n].x[k] - (frame_[k] + motion_.common[k]);
+      place.gone_squared = 0;
+    }
+    gone_squared = std::max(gone_squared, place.gone_squared);
+  }
+  motion_.gone = std::sqrt(gone_squared);
+  std::size_t asked = 0;
+  for (std::size_t n = 0; n < squares_.size(); ++n) {
+    const std::int32_t* const c = squares_[n].corner;
+    asked_[n] = chosen_[std::size_t(c[0])] | chosen_[std::size_t(c[1])] |
+                chosen_[std::size_t(c[2])] | chosen_[std::size_t(c[3])];
+    asked += asked_[n];
+  }
+  return asked;
+}
+
+// The middle of a square's corners, and how far from it they are at most, squared.
+float SurfaceContact::middle_of(std::size_t square, float (&middle)[3]) const {
+  float off[4] = {};
+  for (int k = 0; k < 3; ++k) {
+    float x[4];
+    for (int c = 0; c < 4; ++c) x[c] = vertices_[std::size_t(squares_[square].corner[c])].x[k];
+    middle[k] = 0.25f * (x[0] + x[1] + x[2] + x[3]);
+    for (int c = 0; c < 4; ++c) off[c] += (x[c] - middle[k]) * (x[c] - middle[k]);
+  }
+  return *std::max_element(off, off + 4);
 }
 
 // The middles of all squares that are whole, for the search; returns the greatest distance of a corner
 // from the middle.
 float SurfaceContact::list_squares(Spread& box, std::size_t& count) {
   box = nothing();
-  count = 0;
-  float widest = 0;
+  left_out_.clear();
+  float widest_squared = 0;
   const Row3 to = search_.points();
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
-    Lattice& l = *sheets_[s].lattice;
+    const Lattice& l = *sheets_[s].lattice;
     const float most = kOverstretched * half_diagonal(sheets_[s]);
-    for (int j = 0; j < l.rows; ++j) {
-      const Row3 row = l.x.row(j), below = l.x.row(std::min(j + 1, l.rows - 1));
+    for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i) {
-        const int beyond = std::min(i + 1, l.columns - 1);
-        const auto corners = [&](const float* r, const float* b) {
-          return std::array{r[i], r[beyond], b[i], b[beyond]};
-        };
-        const std::array<float, 4> x[3] = {corners(row.x, below.x), corners(row.y, below.y),
-                                           corners(row.z, below.z)};
-        float middle[3], square[4] = {};
-        for (int k = 0; k < 3; ++k) {
-          middle[k] = 0.25f * (x[k][0] + x[k][1] + x[k][2] + x[k][3]);
-          for (std::size_t c = 0; c < 4; ++c)
-            square[c] += (x[k][c] - middle[k]) * (x[k][c] - middle[k]);
-        }
-        const float radius = std::sqrt(*std::max_element(square, square + 4));
-        if (!(radius <= most)) {
-          sorted_[number(s, j, i)] = -1;
+        const std::size_t n = number(s, j, i);
+        float middle[3];
+        const float radius_squared = middle_of(n, middle);
+        if (!(radius_squared <= most * most)) {
+          left_out_.push_back({n, most * most});
           continue;
         }
-        widest = std::max(widest, radius);
+        widest_squared = std::max(widest_squared, radius_squared);
         to.x[count] = middle[0];
         to.y[count] = middle[1];
         to.z[count] = middle[2];
-        for (int k = 0; k < 3; ++k) {
-          box.low[k] = std::min(box.low[k], middle[k]);
-          box.high[k] = std::max(box.high[k], middle[k]);
-        }
+        for (int k = 0; k < 3; ++k) widen(box, k, middle[k]);
         search_.sites()[count++] = {std::uint16_t(s), std::uint16_t(j), std::uint16_t(i)};
       }
-    }
   }
-  return widest;
+  return std::sqrt(widest_squared);
 }
 
-// The corners of one square, and the box about them.
-void SurfaceContact::fill_square(std::size_t sorted) {
+// Whether squares that were left out have come together again: then their pairs are to be listed.
+bool SurfaceContact::come_together() {
+  bool any = false;
+  for (const LeftOut& square : left_out_) {
+    float middle[3];
+    if (!(middle_of(square.number, middle) <= square.most_squared)) continue;
+    any = true;
+    for (const std::int32_t c : squares_[square.number].corner)
+      places_[std::size_t(c)].gone_squared = std::numeric_limits<float>::max();
+  }
+  return any;
+}
+
+// The box about one square.
+void SurfaceContact::fill_box(std::size_t sorted) {
   const Site site = search_.site(sorted);
-  const Sheet& s = sheets_[site.cloth];
-  Lattice& l = *s.lattice;
-  sorted_[number(site.cloth, site.row, site.column)] = std::int32_t(sorted);
-  Square& q = squares_[sorted];
+  const std::size_t n = number(site.cloth, site.row, site.column);
+  sorted_[sorted] = std::int32_t(n);
   SquareBox& box = boxes_[sorted];
   for (int c = 0; c < 4; ++c) {
-    const int i = std::min(site.column + (c & 1), l.columns - 1),
-              j = std::min(site.row + (c >> 1), l.rows - 1);
+    const float* const x = vertices_[std::size_t(squares_[n].corner[c])].x;
     for (int k = 0; k < 3; ++k) {
-      q.x[c][k] = l.x.at(k, j, i);
-      q.v[c][k] = l.v.at(k, j, i);
-      box.low[k] = c == 0 ? q.x[c][k] : std::min(box.low[k], q.x[c][k]);
-      box.high[k] = c == 0 ? q.x[c][k] : std::max(box.high[k], q.x[c][k]);
+      box.low[k] = c == 0 ? x[k] : std::min(box.low[k], x[k]);
+      box.high[k] = c == 0 ? x[k] : std::max(box.high[k], x[k]);
     }
-    q.w[c] = l.w(j, i);
-    q.corner[c] = std::int32_t(number(site.cloth, j, i));
   }
-  constexpr float kBetweenSheets = 1e5f;  // columns
-  q.place[0] = float(site.column) + kBetweenSheets * float(site.cloth);
-  q.place[1] = float(site.row);
-  q.place[2] = s.thickness;
-  q.friction = s.friction;
+  box.asked = asked_[n];
 }
 
-// The pairs of a chunk whose boxes are in range, measured.
-void SurfaceContact::measure_chunk(std::size_t chunk) {
-  const PairSearch::Pairs pairs = search_.pairs(chunk);
-  Measured& m = chunks_[chunk];
-  if (m.owner.size() < pairs.count + kPadding) {
-    m.owner.resize(2 * pairs.count + kPadding);
-    m.neighbour.resize(m.owner.size());
-    m.near_squared.resize(m.owner.size());
+// The pairs of a chunk of the search that are asked for and within reach.
+void SurfaceContact::find_in(std::size_t chunk) {
+  const PairSearch::Pairs near = search_.pairs(chunk);
+  Pairs& found = found_[chunk];
+  found.reserve(near.count);
+  const int count =
+      kernels_.squares_within({boxes_.data(), int(near.count), near.owner, near.neighbour, reach_,
+                               found.owner.data(), found.neighbour.data()});
+  for (std::size_t i = 0; i < std::size_t(count); ++i) {
+    // In this order, so that a pair is measured to the same bits however it was found.
+    const auto [p, q] = std::minmax(sorted_[std::size_t(found.owner[i])],
+                                    sorted_[std::size_t(found.neighbour[i])]);
+    found.owner[i] = p;
+    found.neighbour[i] = q;
   }
-  m.count = std::size_t(
-      kernels_.squares_within({boxes_.data(), int(pairs.count), pairs.owner, pairs.neighbour,
-                               reach_, m.owner.data(), m.neighbour.data()}));
-  m.touches = 0;
-  for (std::size_t first = 0; first < m.count; first += kAtOnce) {
-    if (m.touching.size() < m.touches + kAtOnce) m.touching.resize(2 * m.touches + kAtOnce);
-    SquaresTouching* const touching = m.touching.data() + m.touches;
-    const int touches = kernels_.surface_pairs(
-        {squares_.data(), int(std::min(m.count - first, kAtOnce)), m.owner.data() + first,
-         m.neighbour.data() + first, reach_, close_, m.near_squared.data() + first, touching});
-    for (int k = 0; k < touches; ++k) touching[k].pair += std::int32_t(first);
-    m.touches += std::size_t(touches);
+  kernels_.surface_pairs({vertices_.data(), squares_.data(), count, found.owner.data(),
+                          found.neighbour.data(), close_, beyond_, found.near_squared.data(),
+                          nullptr});
+  found.count = 0;
+  for (std::size_t i = 0; i < std::size_t(count); ++i)
+    if (found.near_squared[i] < kOutOfReach) {
+      found.owner[found.count] = found.owner[i];
+      found.neighbour[found.count++] = found.neighbour[i];
+    }
+}
+
+// In place of all listed pairs of the squares asked for.
+void SurfaceContact::take_found() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < listed_.count; ++i) {
+    if (asked_[std::size_t(listed_.owner[i])] || asked_[std::size_t(listed_.neighbour[i])])
+      continue;
+    listed_.owner[kept] = listed_.owner[i];
+    listed_.neighbour[kept++] = listed_.neighbour[i];
   }
+  for (std::size_t k = 0; k < search_.chunks(); ++k) {
+    const Pairs& found = found_[k];
+    listed_.reserve(kept + found.count);
+    std::copy_n(found.owner.data(), found.count, listed_.owner.data() + kept);
+    std::copy_n(found.neighbour.data(), found.count, listed_.neighbour.data() + kept);
+    kept += found.count;
+  }
+  listed_.count = kept;
+  for (std::vector<std::int32_t>* of : {&listed_.owner, &listed_.neighbour})
+    std::fill_n(of->data() + kept, kPadding, 0);
+}
+
+// How far apart all is now: pushes what touches, and bounds the way that everything may go from here.
+void SurfaceContact::measure(Threads& threads) {
+  read_vertices(threads);
+  if (!valid_ || come_together() || unlisted() <= least_) list(threads);
+  const std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
+  if (pieces_.size() < pieces) pieces_.resize(pieces);
+  threads.share(pieces, false, [&](std::size_t k) { measure_piece(k); });
+  // Each goes through all pairs.
+  const auto parts = std::size_t(threads.count());
+  const std::size_t squares = squares_.size();
+  threads.share(parts, false,
+                [&](std::size_t k) { sum_up(k * squares / parts, (k + 1) * squares / parts); });
+  for (std::size_t s = 0; s < sheets_.size(); ++s)
+    threads.share(std::size_t(sheets_[s].lattice->rows), squares < kFewParticles,
+                  [&](std::size_t j) { set_places_and_push(s, int(j)); });
+  for (int k = 0; k < 3; ++k) frame_[k] += motion_.common[k];
+  valid_ = true;
+  since_ = 0;
+  ++measured_;
+}
+
+void SurfaceContact::measure_piece(std::size_t piece) {
+  const std::size_t first = piece * kAtOnce, count = std::min(listed_.count - first, kAtOnce);
+  Piece& p = pieces_[piece];
+  p.touching.resize(kAtOnce);
+  p.touches = std::size_t(kernels_.surface_pairs(
+      {vertices_.data(), squares_.data(), int(count), listed_.owner.data() + first,
+       listed_.neighbour.data() + first, close_, beyond_, listed_.near_squared.data() + first,
+       p.touching.data()}));
+  for (std::size_t t = 0; t < p.touches; ++t) p.touching[t].pair += std::int32_t(first);
 }
 
 // What all pairs say of the squares from `begin` to `end`, in the order of the pairs.
 void SurfaceContact::sum_up(std::size_t begin, std::size_t end) {
+  const float unlisted = this->unlisted();
   std::fill(sums_.begin() + std::ptrdiff_t(begin), sums_.begin() + std::ptrdiff_t(end),
             SquareChange{});
   std::fill(near_squared_.begin() + std::ptrdiff_t(begin),
-            near_squared_.begin() + std::ptrdiff_t(end), reach_ * reach_);
+            near_squared_.begin() + std::ptrdiff_t(end), unlisted * unlisted);
   const auto ours = [&](std::int32_t square) { return std::size_t(square) - begin < end - begin; };
-  for (std::size_t k = 0; k < search_.chunks() && search_.begin(k) < end; ++k) {
-    const Measured& m = chunks_[k];
-    for (std::size_t i = 0; i < m.count; ++i)
-      for (const std::int32_t square : {m.owner[i], m.neighbour[i]})
-        if (ours(square)) {
-          float& near = near_squared_[std::size_t(square)];
-          near = std::min(near, m.near_squared[i]);
-        }
-    for (std::size_t t = 0; t < m.touches; ++t) {
-      const SquaresTouching& pair = m.touching[t];
-      const auto i = std::size_t(pair.pair);
-      const std::int32_t square[2] = {m.owner[i], m.neighbour[i]};
+  for (std::size_t i = 0; i < listed_.count; ++i)
+    for (const std::int32_t square : {listed_.owner[i], listed_.neighbour[i]})
+      if (ours(square)) {
+        float& near = near_squared_[std::size_t(square)];
+        near = std::min(near, listed_.near_squared[i]);
+      }
+  const std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
+  for (std::size_t p = 0; p < pieces; ++p)
+    for (std::size_t t = 0; t < pieces_[p].touches; ++t) {
+      const SquaresTouching& touching = pieces_[p].touching[t];
+      const auto i = std::size_t(touching.pair);
+      const std::int32_t square[2] = {listed_.owner[i], listed_.neighbour[i]};
       for (int n = 0; n < 2; ++n)
-        if (ours(square[n])) add(pair.change[n], sums_[std::size_t(square[n])]);
+        if (ours(square[n])) add(touching.change[n], sums_[std::size_t(square[n])]);
     }
-  }
-}
-
-void SurfaceContact::measure(Threads& threads) {
-  Spread box;
-  std::size_t count = 0;
-  const float widest = list_squares(box, count), range = reach_ + 2 * widest;
-  search_.sort(count, box, range, threads);
-  const std::size_t chunks = search_.chunks();
-  threads.share(chunks, search_.few(), [&](std::size_t k) {
-    for (std::size_t p = search_.begin(k); p < search_.begin(k + 1); ++p) fill_square(p);
-  });
-  search_.find(range, threads);
-  if (chunks_.size() < chunks) chunks_.resize(chunks);
-  threads.share(chunks, false, [&](std::size_t k) { measure_chunk(k); });
-  // Each goes through all pairs.
-  const auto parts = std::size_t(threads.count());
-  threads.share(parts, false,
-                [&](std::size_t k) { sum_up(k * count / parts, (k + 1) * count / parts); });
-  for (std::size_t s = 0; s < sheets_.size(); ++s) {
-    const Lattice& l = *sheets_[s].lattice;
-    threads.share(std::size_t(l.rows), l.rows * l.columns < 4096,
-                  [&](std::size_t j) { set_places_and_push(s, int(j)); });
-  }
-  valid_ = true;
-  since_ = 0;
-  ++measured_;
 }
 
 // A vertex belongs to up to four squares: its bound is of the nearest of all, its push of all.
@@ -241,14 +369,15 @@ void SurfaceContact::set_places_and_push(std::size_t sheet, int row) {
   Lattice& l = *sheets_[sheet].lattice;
   for (int i = 0; i < l.columns; ++i) {
     Place& place = places_[number(sheet, row, i)];
-    float push[3] = {}, gain[3] = {}, weight = 0, near_squared = reach_ * reach_;
+    float push[3] = {}, gain[3] = {}, weight = 0;
+    float near_squared = std::numeric_limits<float>::max();
     for (int c = 0; c < 4; ++c) {
       const int column = i - (c & 1), above = row - (c >> 1);
       if (column < 0 || above < 0) continue;
-      const std::int32_t square = sorted_[number(sheet, above, column)];
-      if (square < 0) continue;
-      const SquareChange& sum = sums_[std::size_t(square)];
-      near_squared = std::min(near_squared, near_squared_[std::size_t(square)]);
+      const std::size_t square = number(sheet, above, column);
+      near_squared = std::min(near_squared, near_squared_[square]);
+      const SquareChange& sum = sums_[square];
+      if (!(sum.weight[c] > 0)) continue;
       weight += sum.weight[c];
       for (int k = 0; k < 3; ++k) {
         push[k] += sum.push[c][k];
@@ -258,7 +387,7 @@ void SurfaceContact::set_places_and_push(std::size_t sheet, int row) {
     const float nearest = std::sqrt(near_squared);
     float pushed = 0;
     if (weight > 0 && l.w(row, i) > 0) {
-      const float far = length(push) / weight, most = kMostPush * nearest;
+      const float far = std::sqrt(square(push)) / weight, most = kMostPush * nearest;
       const float share = (far > most ? most / far : 1) / weight;
       pushed = std::min(far, most);
       for (int k = 0; k < 3; ++k) {
@@ -273,78 +402,96 @@ void SurfaceContact::set_places_and_push(std::size_t sheet, int row) {
 
 // Puts back what has left its bound, and tells how near to them the rest is. What is pinned or asleep
 // stays where it is: then nothing is common to all.
-SurfaceContact::Motion SurfaceContact::hold(double seconds) {
-  Spread moved = nothing(), speed = moved;
-  const auto each = [&](auto&& work) {
+void SurfaceContact::hold(double seconds) {
+  const auto each_row = [&](auto&& work) {
     for (std::size_t s = 0; s < sheets_.size(); ++s) {
       Lattice& l = *sheets_[s].lattice;
       for (int j = 0; j < l.rows; ++j)
-        for (int i = 0; i < l.columns; ++i) work(l, j, i, places_[number(s, j, i)]);
+        work(l.x.row(j), l.v.row(j), l.w(j), &places_[number(s, j, 0)], l.columns);
     }
   };
+  Spread moved = nothing(), speed = moved;
   bool all_free = true;
-  each([&](Lattice& l, int j, int i, const Place&) { all_free &= l.w(j, i) > 0; });
-  if (all_free)
-    each([&](Lattice& l, int j, int i, const Place& place) {
-      for (int k = 0; k < 3; ++k) {
-        const float d = l.x.at(k, j, i) - place.x[k], v = l.v.at(k, j, i);
-        moved.low[k] = std::min(moved.low[k], d);
-        moved.high[k] = std::max(moved.high[k], d);
-        speed.low[k] = std::min(speed.low[k], v);
-        speed.high[k] = std::max(speed.high[k], v);
-      }
-    });
-  Motion m{};
-  float drift[3] = {};
-  for (int k = 0; k < 3 && all_free; ++k) {
-    m.common[k] = 0.5f * (moved.low[k] + moved.high[k]);
-    drift[k] = 0.5f * (speed.low[k] + speed.high[k]);
-  }
-  each([&](Lattice& l, int j, int i, const Place& place) {
-    float d[3], u[3];
-    for (int k = 0; k < 3; ++k) {
-      d[k] = l.x.at(k, j, i) - place.x[k] - m.common[k];
-      u[k] = l.v.at(k, j, i) - drift[k];
-    }
-    const float far_off = length(d), bound = std::max(place.bound, 1e-12f);
-    m.rate = std::max(m.rate, length(u) / bound);
-    m.share = std::max(m.share, std::min(1.0f, far_off / bound));
-    if (far_off <= bound || l.w(j, i) <= 0) return;
-    ++held_back_;
-    const float back = bound / far_off;
-    const float out = (u[0] * d[0] + u[1] * d[1] + u[2] * d[2]) / far_off;
-    const float lost =
-        std::clamp(float((far_off - bound) / std::max(seconds, 1e-9)), 0.0f, std::max(out, 0.0f));
-    for (int k = 0; k < 3; ++k) {
-      l.x.at(k, j, i) = place.x[k] + m.common[k] + d[k] * back;
-      l.v.at(k, j, i) -= d[k] / far_off * lost;
+  each_row([&](Row3 x, Row3 v, const float* w, const Place* place, int columns) {
+    for (int i = 0; i < columns; ++i) {
+      all_free &= w[i] > 0;
+      const float d[3] = {x.x[i] - place[i].x[0], x.y[i] - place[i].x[1], x.z[i] - place[i].x[2]};
+      const float u[3] = {v.x[i], v.y[i], v.z[i]};
+      for (int k = 0; k < 3; ++k) widen(moved, k, d[k]), widen(speed, k, u[k]);
     }
   });
-  return m;
+  Motion m{};
+  float drift[3] = {}, frame[3];
+  for (int k = 0; k < 3; ++k) {
+    if (all_free) {
+      m.common[k] = middle(moved, k);
+      drift[k] = middle(speed, k);
+    }
+    frame[k] = frame_[k] + m.common[k];
+  }
+  float share_squared = 0, rate_squared = 0, gone_squared = 0;
+  each_row([&](Row3 x, Row3 v, const float* w, Place* place, int columns) {
+    for (int i = 0; i < columns; ++i) {
+      Place& p = place[i];
+      float* const at[3] = {x.x + i, x.y + i, x.z + i};
+      float* const speed_at[3] = {v.x + i, v.y + i, v.z + i};
+      float d[3], u[3], from[3];
+      for (int k = 0; k < 3; ++k) {
+        d[k] = *at[k] - p.x[k] - m.common[k];
+        u[k] = *speed_at[k] - drift[k];
+      }
+      const float bound = std::max(p.bound, kLeastBound);
+      const float far_off = square(d), inverse = 1 / (bound * bound);
+      rate_squared = std::max(rate_squared, square(u) * inverse);
+      share_squared = std::max(share_squared, far_off * inverse);
+      if (far_off > bound * bound && w[i] > 0) {
+        ++held_back_;
+        const float far = std::sqrt(far_off), back = bound / far;
+        const float out = (u[0] * d[0] + u[1] * d[1] + u[2] * d[2]) / far;
+        const float lost =
+            std::clamp(float((far - bound) / std::max(seconds, 1e-9)), 0.0f, std::max(out, 0.0f));
+        for (int k = 0; k < 3; ++k) {
+          *at[k] = p.x[k] + m.common[k] + d[k] * back;
+          *speed_at[k] -= d[k] / far * lost;
+        }
+      }
+      for (int k = 0; k < 3; ++k) from[k] = *at[k] - p.listed[k] - frame[k];
+      p.gone_squared = square(from);
+      gone_squared = std::max(gone_squared, p.gone_squared);
+    }
+  });
+  m.share = std::min(1.0f, std::sqrt(share_squared));
+  m.rate = std::sqrt(rate_squared);
+  m.gone = std::sqrt(gone_squared);
+  motion_ = m;
 }
 
 void SurfaceContact::begin(Threads& threads) {
+  valid_ = false;
+  motion_ = {};
   measure(threads);
   hold(0);
 }
 
 int SurfaceContact::run(double dt, int since, Threads& threads) {
   since_ += since;
-  Motion m = hold(since * dt);
-  if (m.share > kMeasureAt || since_ >= kMostSubsteps) {
+  hold(since * dt);
+  if (motion_.share > kMeasureAt || since_ >= kMostSubsteps) {
     measure(threads);
-    m = hold(dt);
+    hold(dt);
   }
-  const double steps = kComeAt * (1 - m.share) / std::max(double(m.rate) * dt, 1e-12);
+  const double steps = kComeAt * (1 - motion_.share) / std::max(double(motion_.rate) * dt, 1e-12);
   return int(std::clamp(steps, 1.0, double(std::max(1, kMostSubsteps - since_))));
 }
 
 std::size_t SurfaceContact::bytes() const {
   std::size_t bytes = search_.bytes();
-  bytes += squares_.size() *
-           (sizeof(Square) + sizeof(SquareBox) + sizeof(SquareChange) + sizeof(Place) + 8);
-  for (const Measured& m : chunks_)
-    bytes += 12 * m.owner.capacity() + sizeof(SquaresTouching) * m.touching.capacity();
+  bytes += squares_.size() * (sizeof(Square) + sizeof(Vertex) + sizeof(Place) + sizeof(SquareBox) +
+                              sizeof(SquareChange) + 10);
+  const auto add = [&](const Pairs& p) { bytes += 12 * p.owner.capacity(); };
+  add(listed_);
+  for (const Pairs& p : found_) add(p);
+  for (const Piece& p : pieces_) bytes += sizeof(SquaresTouching) * p.touching.capacity();
   return bytes;
 }
 

@@ -11,8 +11,10 @@
 // of all motion is left out of account. (Conservative bounds on motion, as in Chen et al. 2025,
 // Offset Geometric Contact; distances as in Bridson et al. 2002.)
 //
-// Pairs of squares of the sheets are found by the same search as particles (pair_search.h), and each
-// is measured once.
+// Pairs of squares of the sheets that are within reach, somewhat more than the thickness, are listed,
+// and only these are measured as long as no others can touch. They are found by the same search as
+// particles (pair_search.h), anew for those squares alone that have moved far; and each is measured
+// once.
 #pragma once
 
 #include <memory>
@@ -39,29 +41,54 @@ class SurfaceContact {
 
   void restart() { valid_ = false; }
   bool valid() const { return valid_; }
-  // Times that all was measured, and vertices put back, so far.
+  // So far: times that all was measured, squares whose pairs were listed (in times all of them), and
+  // vertices put back.
   std::int64_t measured() const { return measured_; }
+  double listed() const {
+    return squares_listed_ / double(std::max<std::size_t>(squares_.size(), 1));
+  }
   std::int64_t held_back() const { return held_back_; }
   std::size_t bytes() const;
 
  private:
   struct Place {
     float x[3], bound;  // m
+    // m: where it was when its pairs were listed, apart from common motion; m²: how far off it is now
+    float listed[3], gone_squared;
   };
   struct Motion {     // of all vertices
-    float common[3];  // m
+    float common[3];  // m, since all was measured
     float share;      // greatest |displacement|/bound
     float rate;       // greatest speed/bound [1/s]
+    float gone;       // m, greatest since pairs were listed
+  };
+  struct Pairs {
+    std::vector<std::int32_t> owner, neighbour;
+    std::vector<float> near_squared;  // m²
+    std::size_t count = 0;
+    void reserve(std::size_t pairs);
   };
 
   SurfaceContact(std::vector<Sheet> sheets, const KernelTable& kernels);
-  void measure(Threads& threads);
+  void read_vertices(Threads& threads);
+  void list(Threads& threads);
+  std::size_t choose(bool all);
+  float middle_of(std::size_t square, float (&middle)[3]) const;
   float list_squares(Spread& box, std::size_t& count);
-  void fill_square(std::size_t sorted);
-  void measure_chunk(std::size_t chunk);
+  bool come_together();
+  void fill_box(std::size_t sorted);
+  void find_in(std::size_t chunk);
+  void take_found();
+  void measure(Threads& threads);
+  void measure_piece(std::size_t piece);
   void sum_up(std::size_t begin, std::size_t end);
   void set_places_and_push(std::size_t sheet, int row);
-  Motion hold(double seconds);
+  void hold(double seconds);
+  // Of what listed pairs may be farther apart than is held: vertices that have gone that far when
+  // others must be listed are listed anew, too.
+  static constexpr float kFar = 1.0f / 6;
+  // What pairs that are not listed are apart, at least [m].
+  float unlisted() const { return least_ + (1 - 2 * kFar) * beyond_ - 2 * motion_.gone; }
   std::size_t number(std::size_t sheet, int row, int column) const {
     return first_[sheet] + std::size_t(row) * std::size_t(sheets_[sheet].lattice->columns) +
            std::size_t(column);
@@ -70,25 +97,38 @@ class SurfaceContact {
   const std::vector<Sheet> sheets_;
   const KernelTable& kernels_;
   std::vector<std::size_t> first_;  // number of every sheet's first particle
-  PairSearch search_;               // among squares
-  // Squares as sorted by the search; those of torn ones are not among them.
-  std::vector<std::int32_t> sorted_;  // of every particle, the number of its square, or -1
-  std::vector<Square> squares_;
-  std::vector<SquareBox> boxes_;
-  struct Measured {  // pairs of a chunk whose boxes are in range, and those that touch
-    std::vector<std::int32_t> owner, neighbour;
-    std::vector<float> near_squared;
-    std::vector<SquaresTouching> touching;
-    std::size_t count = 0, touches = 0;
+  std::vector<Square> squares_;     // of every particle
+  std::vector<Vertex> vertices_;
+  std::vector<Place> places_;
+  Motion motion_{};
+  float frame_[3] = {};  // m, what has been common so far
+
+  PairSearch search_;                 // among the middles of squares that are not torn
+  std::vector<std::uint8_t> chosen_;  // vertices, and
+  std::vector<std::uint8_t> asked_;   // squares whose pairs are listed anew
+  std::vector<std::int32_t> sorted_;  // numbers of squares as sorted by the search
+  std::vector<SquareBox> boxes_;      // as sorted
+  std::vector<Pairs> found_;          // of every chunk of the search
+  struct LeftOut {
+    std::size_t number;
+    float most_squared;  // m², of a corner's distance from the middle: nearer, it is whole
   };
-  std::vector<Measured> chunks_;
+  std::vector<LeftOut> left_out_;  // squares that are torn
+  Pairs listed_;                   // numbers of squares
+  struct Piece {                   // of the listed pairs: those that touch
+    std::vector<SquaresTouching> touching;
+    std::size_t touches = 0;
+  };
+  std::vector<Piece> pieces_;
   std::vector<SquareChange> sums_;   // of every square
   std::vector<float> near_squared_;  // and its distance from others, squared [m²]
-  std::vector<Place> places_;
-  float reach_ = 0, close_ = 0, floor_ = 0;  // m; floor_: a distance that motion does not go below
+  // m: the least that any pair is kept apart, how much farther apart pairs are listed, how far apart
+  // any are then at most; what neighbours are kept apart; a distance that motion does not go below
+  float least_ = 0, beyond_ = 0, reach_ = 0, close_ = 0, floor_ = 0;
   bool valid_ = false;
   int since_ = 0;  // substeps since all was measured
   std::int64_t measured_ = 0, held_back_ = 0;
+  double squares_listed_ = 0;
 };
 
 }  // namespace weft::physics

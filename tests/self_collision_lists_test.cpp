@@ -1,0 +1,103 @@
+// Surfaces measure the pairs of squares that are listed, and list only those anew that have moved far:
+// they find the same as where all are listed every time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "physics/lattice.h"
+#include "physics/self_collision/surface.h"
+#include "physics/threads.h"
+#include "weft/scene.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr int kPoints = 14;
+constexpr double kDt = 1e-3;
+
+// Two sheets, the second above the first, and what keeps them apart.
+struct Pair {
+  explicit Pair(const Scene& scene, bool pinned) {
+    for (int c = 0; c < 2; ++c) {
+      sheet.push_back(make_lattice(scene.cloths[std::size_t(c)], c, 1, false));
+      if (pinned) sheet.back().set_inverse_mass(0, 0, 0);
+    }
+    std::vector<Sheet> sheets;
+    const float square = std::pow(1.0f / (kPoints - 1), 2.0f);
+    for (Lattice& l : sheet) sheets.push_back({&l, 0.05f, 0.3f, square, 0, square, false});
+    contact = SurfaceContact::make(scene, sheets, kernel_table(Simd::best));
+  }
+  void copy_state(const Pair& from) {
+    for (std::size_t s = 0; s < 2; ++s) {
+      sheet[s].x.copy(from.sheet[s].x);
+      sheet[s].v.copy(from.sheet[s].v);
+    }
+  }
+  // Moves everything for a substep: the upper sheet slides and waves over the lower; in the middle of
+  // the time one half of it is torn away and comes back.
+  void move(int step) {
+    for (std::size_t s = 0; s < 2; ++s)
+      for (int j = 0; j < kPoints; ++j)
+        for (int i = 0; i < kPoints; ++i) {
+          if (sheet[s].w(j, i) <= 0) continue;
+          const float wave = std::sin(0.9f * float(i) + 0.6f * float(j) + 0.05f * float(step));
+          float speed[3] = {1.5f * float(s), 0.8f * wave * float(s), 0.4f * wave};
+          if (s == 1 && i >= kPoints / 2 && step >= 60 && step < 120)
+            speed[1] += step < 90 ? 6 : -6;
+          for (int k = 0; k < 3; ++k) {
+            sheet[s].v.at(k, j, i) = speed[k];
+            sheet[s].x.at(k, j, i) += speed[k] * float(kDt);
+          }
+        }
+  }
+
+  std::vector<Lattice> sheet;
+  std::unique_ptr<SurfaceContact> contact;
+};
+
+class SurfaceLists : public testing::TestWithParam<bool> {};
+
+TEST_P(SurfaceLists, FindWhatIsFoundWhereAllAreListed) {
+  Scene scene;
+  scene.cloths.resize(2);
+  for (std::size_t c = 0; c < 2; ++c) {
+    scene.cloths[c].grid.nx = scene.cloths[c].grid.ny = kPoints;
+    scene.cloths[c].grid.origin = {0.2 * double(c), 0.06 * double(c), 0.1 * double(c)};
+    scene.cloths[c].self_collision.mode = SelfCollisionMode::surface;
+  }
+  Pair pair(scene, GetParam()), fresh(scene, GetParam());
+  Threads threads(2);
+  pair.contact->begin(threads);
+  int pushes = 0;
+  for (int step = 0; step < 240; ++step) {
+    pair.move(step);
+    fresh.copy_state(pair);
+    fresh.contact->begin(threads);
+    Pair before(scene, GetParam());
+    before.copy_state(pair);
+    pair.contact->run(kDt, 8, threads);
+    for (std::size_t s = 0; s < 2; ++s)
+      for (int j = 0; j < kPoints; ++j)
+        for (int i = 0; i < kPoints; ++i)
+          for (int k = 0; k < 3; ++k) {
+            const float x = pair.sheet[s].x.at(k, j, i);
+            ASSERT_NEAR(x, fresh.sheet[s].x.at(k, j, i), 1e-6)
+                << step << ": " << s << ' ' << j << ' ' << i;
+            pushes += std::abs(x - before.sheet[s].x.at(k, j, i)) > 1e-6f;
+          }
+  }
+  EXPECT_GT(pushes, 1000);
+  EXPECT_EQ(pair.contact->held_back(), 0);
+  EXPECT_EQ(pair.contact->measured(), 241);
+  EXPECT_GT(pair.contact->listed(), 0);
+  EXPECT_LT(pair.contact->listed(), 0.8 * 241) << "squares listed, in times all of them";
+}
+
+INSTANTIATE_TEST_SUITE_P(, SurfaceLists, testing::Bool(),
+                         [](const auto& test) { return test.param ? "Pinned" : "Free"; });
+
+}  // namespace
+}  // namespace weft::physics
