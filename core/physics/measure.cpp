@@ -125,21 +125,25 @@ void add_idle(const Simulation::State& s, Report& r) {
     r.skipped.push_back({"sleep", why});
   }
   if (s.self_collision && s.self_collision_runs > 0) {
-    char why[160];
+    const auto percent_of_substeps = [&](std::int64_t times) {
+      return 100 * double(times) / double(std::max<std::int64_t>(s.total_substeps, 1));
+    };
+    char why[240];
     std::snprintf(
         why, sizeof why,
         "looked after %.1f %% of the substeps, searched in %.1f %% of those; %.1f %% of the "
         "particles had nothing near",
-        100 * double(s.self_collision_runs) / double(std::max<std::int64_t>(s.total_substeps, 1)),
-        100 * (1 - s.self_collision->kept()), 100 * s.self_collision->passed_over());
+        percent_of_substeps(s.self_collision_runs), 100 * (1 - s.self_collision->kept()),
+        100 * s.self_collision->passed_over());
     r.skipped.push_back({"self_collision", why});
     if (s.surface) {
       std::snprintf(
           why, sizeof why,
-          "surfaces measured after %.1f %% of the substeps, pairs listed %.1f times; %lld moves of "
-          "particles cut short",
-          100 * double(s.surface->measured()) / double(std::max<std::int64_t>(s.total_substeps, 1)),
-          s.surface->listed(), static_cast<long long>(s.surface->held_back()));
+          "surfaces measured after %.1f %% of the substeps and in part after %.1f %%, pairs listed "
+          "%.1f times; %lld moves of particles cut short",
+          percent_of_substeps(s.surface->measured()),
+          percent_of_substeps(s.surface->measured_in_part()), s.surface->listed(),
+          static_cast<long long>(s.surface->held_back()));
       r.skipped.push_back({"self_surface", why});
     }
   }

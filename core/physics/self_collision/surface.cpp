@@ -12,10 +12,11 @@ namespace {
 constexpr float kBound = 0.45f;     // of the least distance beyond the floor, the push included
 constexpr float kMostPush = 0.25f;  // of the least distance, at once
 constexpr float kFloor = 0.05f;     // of the thickness: what is nearer is only pushed apart
-constexpr float kMeasureAt = 0.7f;  // of a bound, moved: all is measured anew
+constexpr float kMeasureAt = 0.8f;  // of a bound, moved: a vertex is hot, and measured anew
+constexpr double kMostHot = 0.3;    // of the vertices: more, and all is
 constexpr float kComeAt = 0.8f;     // of the rest of a bound, at its speed: time to come again
 constexpr int kMostSubsteps = 8;    // between two times
-constexpr float kBeyond = 0.2f;     // spacings that listed pairs may be farther apart than is held
+constexpr float kBeyond = 0.35f;    // spacings that listed pairs may be farther apart than is held
 constexpr float kClose = 0.25f;     // spacings that neighbours are kept apart
 constexpr float kLeastBound = 1e-12f;  // m, to divide by
 constexpr std::size_t kAtOnce = 256;   // pairs that are measured in one call
@@ -56,10 +57,6 @@ void widen(Spread& spread, int k, float value) {
   spread.high[k] = std::max(spread.high[k], value);
 }
 
-float middle(const Spread& spread, int k) {
-  return 0.5f * (spread.low[k] + spread.high[k]);
-}
-
 float half_diagonal(const Sheet& s) {
   return 0.5f * std::sqrt(s.uu + s.vv + 2 * std::abs(s.uv));
 }
@@ -80,6 +77,11 @@ void SurfaceContact::Pairs::reserve(std::size_t pairs) {
   owner.resize(2 * pairs + kPadding);
   neighbour.resize(owner.size());
   near_squared.resize(owner.size());
+}
+
+void SurfaceContact::Pairs::pad() {
+  for (std::vector<std::int32_t>* of : {&owner, &neighbour})
+    std::fill_n(of->data() + count, kPadding, 0);
 }
 
 SurfaceContact::SurfaceContact(std::vector<Sheet> sheets, const KernelTable& kernels)
@@ -119,6 +121,7 @@ SurfaceContact::SurfaceContact(std::vector<Sheet> sheets, const KernelTable& ker
   places_.resize(n);
   chosen_.resize(n);
   asked_.resize(n);
+  hot_.resize(n);
   sorted_.resize(n);
   boxes_.resize(n);
   sums_.resize(n);
@@ -172,8 +175,7 @@ std::size_t SurfaceContact::choose(bool all) {
     Place& place = places_[n];
     chosen_[n] = all || place.gone_squared > far * far;
     if (chosen_[n]) {
-      for (int k = 0; k < 3; ++k)
-        place.listed[k] = vertices_[n].x[k] - (frame_[k] + motion_.common[k]);
+      for (int k = 0; k < 3; ++k) place.listed[k] = vertices_[n].x[k] - frame_[k];
       place.gone_squared = 0;
     }
     gone_squared = std::max(gone_squared, place.gone_squared);
@@ -231,15 +233,18 @@ float SurfaceContact::list_squares(Spread& box, std::size_t& count) {
   return std::sqrt(widest_squared);
 }
 
-// Whether squares that were left out have come together again: then their pairs are to be listed.
+// Whether squares that were left out have come together again: then their pairs are to be listed, and
+// measured.
 bool SurfaceContact::come_together() {
   bool any = false;
   for (const LeftOut& square : left_out_) {
     float middle[3];
     if (!(middle_of(square.number, middle) <= square.most_squared)) continue;
     any = true;
-    for (const std::int32_t c : squares_[square.number].corner)
+    for (const std::int32_t c : squares_[square.number].corner) {
       places_[std::size_t(c)].gone_squared = std::numeric_limits<float>::max();
+      hot_[std::size_t(c)] = true;
+    }
   }
   return any;
 }
@@ -270,8 +275,8 @@ void SurfaceContact::find_in(std::size_t chunk) {
                                found.owner.data(), found.neighbour.data()});
   for (std::size_t i = 0; i < std::size_t(count); ++i) {
     // In this order, so that a pair is measured to the same bits however it was found.
-    const auto [p, q] = std::minmax(sorted_[std::size_t(found.owner[i])],
-                                    sorted_[std::size_t(found.neighbour[i])]);
+    const auto [p, q] =
+        std::minmax(sorted_[std::size_t(found.owner[i])], sorted_[std::size_t(found.neighbour[i])]);
     found.owner[i] = p;
     found.neighbour[i] = q;
   }
@@ -282,7 +287,8 @@ void SurfaceContact::find_in(std::size_t chunk) {
   for (std::size_t i = 0; i < std::size_t(count); ++i)
     if (found.near_squared[i] < kOutOfReach) {
       found.owner[found.count] = found.owner[i];
-      found.neighbour[found.count++] = found.neighbour[i];
+      found.neighbour[found.count] = found.neighbour[i];
+      found.near_squared[found.count++] = found.near_squared[i];
     }
 }
 
@@ -293,25 +299,28 @@ void SurfaceContact::take_found() {
     if (asked_[std::size_t(listed_.owner[i])] || asked_[std::size_t(listed_.neighbour[i])])
       continue;
     listed_.owner[kept] = listed_.owner[i];
-    listed_.neighbour[kept++] = listed_.neighbour[i];
+    listed_.neighbour[kept] = listed_.neighbour[i];
+    listed_.near_squared[kept++] = listed_.near_squared[i];
   }
   for (std::size_t k = 0; k < search_.chunks(); ++k) {
     const Pairs& found = found_[k];
     listed_.reserve(kept + found.count);
     std::copy_n(found.owner.data(), found.count, listed_.owner.data() + kept);
     std::copy_n(found.neighbour.data(), found.count, listed_.neighbour.data() + kept);
+    std::copy_n(found.near_squared.data(), found.count, listed_.near_squared.data() + kept);
     kept += found.count;
   }
   listed_.count = kept;
-  for (std::vector<std::int32_t>* of : {&listed_.owner, &listed_.neighbour})
-    std::fill_n(of->data() + kept, kPadding, 0);
+  listed_.pad();
 }
 
-// How far apart all is now: pushes what touches, and bounds the way that everything may go from here.
-void SurfaceContact::measure(Threads& threads) {
+// How far apart all is now, or those vertices alone that are near their bounds: pushes what touches,
+// and bounds the way that everything may go from here.
+void SurfaceContact::measure(bool all, Threads& threads) {
   read_vertices(threads);
   if (!valid_ || come_together() || unlisted() <= least_) list(threads);
-  const std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
+  pairs_ = all ? &listed_ : &pairs_of_hot();
+  const std::size_t pieces = (pairs_->count + kAtOnce - 1) / kAtOnce;
   if (pieces_.size() < pieces) pieces_.resize(pieces);
   threads.share(pieces, false, [&](std::size_t k) { measure_piece(k); });
   // Each goes through all pairs.
@@ -321,22 +330,42 @@ void SurfaceContact::measure(Threads& threads) {
                 [&](std::size_t k) { sum_up(k * squares / parts, (k + 1) * squares / parts); });
   for (std::size_t s = 0; s < sheets_.size(); ++s)
     threads.share(std::size_t(sheets_[s].lattice->rows), squares < kFewParticles,
-                  [&](std::size_t j) { set_places_and_push(s, int(j)); });
-  for (int k = 0; k < 3; ++k) frame_[k] += motion_.common[k];
+                  [&](std::size_t j) { set_places_and_push(s, int(j), all); });
   valid_ = true;
-  since_ = 0;
-  ++measured_;
+  if (all) since_ = 0;
+  ++(all ? measured_ : measured_in_part_);
+}
+
+// And of what touched when it was measured last: that is pushed apart all the time.
+const SurfaceContact::Pairs& SurfaceContact::pairs_of_hot() {
+  const auto hot = [&](std::int32_t square) {
+    const std::int32_t* const c = squares_[std::size_t(square)].corner;
+    return hot_[std::size_t(c[0])] | hot_[std::size_t(c[1])] | hot_[std::size_t(c[2])] |
+           hot_[std::size_t(c[3])];
+  };
+  const float touching = reach_ - beyond_;
+  of_hot_.reserve(listed_.count);
+  of_hot_.count = 0;
+  for (std::size_t i = 0; i < listed_.count; ++i) {
+    if (!(listed_.near_squared[i] < touching * touching) && !hot(listed_.owner[i]) &&
+        !hot(listed_.neighbour[i]))
+      continue;
+    of_hot_.owner[of_hot_.count] = listed_.owner[i];
+    of_hot_.neighbour[of_hot_.count++] = listed_.neighbour[i];
+  }
+  of_hot_.pad();
+  return of_hot_;
 }
 
 void SurfaceContact::measure_piece(std::size_t piece) {
-  const std::size_t first = piece * kAtOnce, count = std::min(listed_.count - first, kAtOnce);
+  const std::size_t first = piece * kAtOnce, count = std::min(pairs_->count - first, kAtOnce);
   Piece& p = pieces_[piece];
   p.touching.resize(kAtOnce);
-  p.touches = std::size_t(kernels_.surface_pairs(
-      {vertices_.data(), squares_.data(), int(count), listed_.owner.data() + first,
-       listed_.neighbour.data() + first, close_, beyond_, listed_.near_squared.data() + first,
-       p.touching.data()}));
-  for (std::size_t t = 0; t < p.touches; ++t) p.touching[t].pair += std::int32_t(first);
+  p.near_squared.resize(kAtOnce + kPadding);
+  p.touches = std::size_t(
+      kernels_.surface_pairs({vertices_.data(), squares_.data(), int(count),
+                              pairs_->owner.data() + first, pairs_->neighbour.data() + first,
+                              close_, beyond_, p.near_squared.data(), p.touching.data()}));
 }
 
 // What all pairs say of the squares from `begin` to `end`, in the order of the pairs.
@@ -347,28 +376,33 @@ void SurfaceContact::sum_up(std::size_t begin, std::size_t end) {
   std::fill(near_squared_.begin() + std::ptrdiff_t(begin),
             near_squared_.begin() + std::ptrdiff_t(end), unlisted * unlisted);
   const auto ours = [&](std::int32_t square) { return std::size_t(square) - begin < end - begin; };
-  for (std::size_t i = 0; i < listed_.count; ++i)
-    for (const std::int32_t square : {listed_.owner[i], listed_.neighbour[i]})
-      if (ours(square)) {
-        float& near = near_squared_[std::size_t(square)];
-        near = std::min(near, listed_.near_squared[i]);
-      }
-  const std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
-  for (std::size_t p = 0; p < pieces; ++p)
-    for (std::size_t t = 0; t < pieces_[p].touches; ++t) {
-      const SquaresTouching& touching = pieces_[p].touching[t];
-      const auto i = std::size_t(touching.pair);
-      const std::int32_t square[2] = {listed_.owner[i], listed_.neighbour[i]};
+  for (std::size_t first = 0; first < pairs_->count; first += kAtOnce) {
+    const Piece& piece = pieces_[first / kAtOnce];
+    const std::int32_t *const owner = pairs_->owner.data() + first, *const neighbour =
+                                                                        pairs_->neighbour.data() +
+                                                                        first;
+    for (std::size_t i = 0; i < std::min(pairs_->count - first, kAtOnce); ++i)
+      for (const std::int32_t square : {owner[i], neighbour[i]})
+        if (ours(square)) {
+          float& near = near_squared_[std::size_t(square)];
+          near = std::min(near, piece.near_squared[i]);
+        }
+    for (std::size_t t = 0; t < piece.touches; ++t) {
+      const SquaresTouching& touching = piece.touching[t];
+      const std::int32_t square[2] = {owner[touching.pair], neighbour[touching.pair]};
       for (int n = 0; n < 2; ++n)
         if (ours(square[n])) add(touching.change[n], sums_[std::size_t(square[n])]);
     }
+  }
 }
 
-// A vertex belongs to up to four squares: its bound is of the nearest of all, its push of all.
-void SurfaceContact::set_places_and_push(std::size_t sheet, int row) {
+// A vertex belongs to up to four squares: its bound is of the nearest of all, its push of all. What has
+// not been measured this time keeps to what is left of its old bound.
+void SurfaceContact::set_places_and_push(std::size_t sheet, int row, bool all) {
   Lattice& l = *sheets_[sheet].lattice;
   for (int i = 0; i < l.columns; ++i) {
-    Place& place = places_[number(sheet, row, i)];
+    const std::size_t n = number(sheet, row, i);
+    Place& place = places_[n];
     float push[3] = {}, gain[3] = {}, weight = 0;
     float near_squared = std::numeric_limits<float>::max();
     for (int c = 0; c < 4; ++c) {
@@ -385,9 +419,16 @@ void SurfaceContact::set_places_and_push(std::size_t sheet, int row) {
       }
     }
     const float nearest = std::sqrt(near_squared);
+    float bound = kBound * (nearest - floor_), most = kMostPush * nearest;
+    if (!all && !hot_[n]) {
+      float gone[3];
+      for (int k = 0; k < 3; ++k) gone[k] = vertices_[n].x[k] - frame_[k] - place.x[k];
+      bound = std::max(0.0f, std::min(bound, place.bound - std::sqrt(square(gone))));
+      most = std::min(most, bound);
+    }
     float pushed = 0;
     if (weight > 0 && l.w(row, i) > 0) {
-      const float far = std::sqrt(square(push)) / weight, most = kMostPush * nearest;
+      const float far = std::sqrt(square(push)) / weight;
       const float share = (far > most ? most / far : 1) / weight;
       pushed = std::min(far, most);
       for (int k = 0; k < 3; ++k) {
@@ -395,13 +436,14 @@ void SurfaceContact::set_places_and_push(std::size_t sheet, int row) {
         l.v.at(k, row, i) += gain[k] / weight;
       }
     }
-    place.bound = std::max(0.0f, kBound * (nearest - floor_) - pushed);
-    for (int k = 0; k < 3; ++k) place.x[k] = l.x.at(k, row, i);
+    place.bound = std::max(0.0f, bound - pushed);
+    for (int k = 0; k < 3; ++k) place.x[k] = l.x.at(k, row, i) - frame_[k];
   }
 }
 
-// Puts back what has left its bound, and tells how near to them the rest is. What is pinned or asleep
-// stays where it is: then nothing is common to all.
+// Puts back what has left its bound, and tells how near to them the rest is. What is common to all is the
+// mean, which few that move to and fro do not change; what is pinned or asleep stays where it is: then
+// nothing is common.
 void SurfaceContact::hold(double seconds) {
   const auto each_row = [&](auto&& work) {
     for (std::size_t s = 0; s < sheets_.size(); ++s) {
@@ -410,24 +452,30 @@ void SurfaceContact::hold(double seconds) {
         work(l.x.row(j), l.v.row(j), l.w(j), &places_[number(s, j, 0)], l.columns);
     }
   };
-  Spread moved = nothing(), speed = moved;
+  double moved[3] = {}, speed[3] = {};
   bool all_free = true;
   each_row([&](Row3 x, Row3 v, const float* w, const Place* place, int columns) {
+    float row_moved[3] = {}, row_speed[3] = {};
     for (int i = 0; i < columns; ++i) {
       all_free &= w[i] > 0;
-      const float d[3] = {x.x[i] - place[i].x[0], x.y[i] - place[i].x[1], x.z[i] - place[i].x[2]};
-      const float u[3] = {v.x[i], v.y[i], v.z[i]};
-      for (int k = 0; k < 3; ++k) widen(moved, k, d[k]), widen(speed, k, u[k]);
+      const float* const p = place[i].x;
+      row_moved[0] += x.x[i] - frame_[0] - p[0];
+      row_moved[1] += x.y[i] - frame_[1] - p[1];
+      row_moved[2] += x.z[i] - frame_[2] - p[2];
+      row_speed[0] += v.x[i];
+      row_speed[1] += v.y[i];
+      row_speed[2] += v.z[i];
+    }
+    for (int k = 0; k < 3; ++k) {
+      moved[k] += double(row_moved[k]);
+      speed[k] += double(row_speed[k]);
     }
   });
   Motion m{};
-  float drift[3] = {}, frame[3];
-  for (int k = 0; k < 3; ++k) {
-    if (all_free) {
-      m.common[k] = middle(moved, k);
-      drift[k] = middle(speed, k);
-    }
-    frame[k] = frame_[k] + m.common[k];
+  float drift[3] = {};
+  for (int k = 0; k < 3 && all_free; ++k) {
+    frame_[k] += float(moved[k] / double(places_.size()));
+    drift[k] = float(speed[k] / double(places_.size()));
   }
   float share_squared = 0, rate_squared = 0, gone_squared = 0;
   each_row([&](Row3 x, Row3 v, const float* w, Place* place, int columns) {
@@ -437,13 +485,16 @@ void SurfaceContact::hold(double seconds) {
       float* const speed_at[3] = {v.x + i, v.y + i, v.z + i};
       float d[3], u[3], from[3];
       for (int k = 0; k < 3; ++k) {
-        d[k] = *at[k] - p.x[k] - m.common[k];
+        d[k] = *at[k] - frame_[k] - p.x[k];
         u[k] = *speed_at[k] - drift[k];
       }
       const float bound = std::max(p.bound, kLeastBound);
       const float far_off = square(d), inverse = 1 / (bound * bound);
       rate_squared = std::max(rate_squared, square(u) * inverse);
       share_squared = std::max(share_squared, far_off * inverse);
+      const bool hot = far_off * inverse > kMeasureAt * kMeasureAt;
+      hot_[std::size_t(&p - places_.data())] = hot;
+      m.hot += hot;
       if (far_off > bound * bound && w[i] > 0) {
         ++held_back_;
         const float far = std::sqrt(far_off), back = bound / far;
@@ -451,11 +502,11 @@ void SurfaceContact::hold(double seconds) {
         const float lost =
             std::clamp(float((far - bound) / std::max(seconds, 1e-9)), 0.0f, std::max(out, 0.0f));
         for (int k = 0; k < 3; ++k) {
-          *at[k] = p.x[k] + m.common[k] + d[k] * back;
+          *at[k] = p.x[k] + frame_[k] + d[k] * back;
           *speed_at[k] -= d[k] / far * lost;
         }
       }
-      for (int k = 0; k < 3; ++k) from[k] = *at[k] - p.listed[k] - frame[k];
+      for (int k = 0; k < 3; ++k) from[k] = *at[k] - frame_[k] - p.listed[k];
       p.gone_squared = square(from);
       gone_squared = std::max(gone_squared, p.gone_squared);
     }
@@ -468,16 +519,21 @@ void SurfaceContact::hold(double seconds) {
 
 void SurfaceContact::begin(Threads& threads) {
   valid_ = false;
-  motion_ = {};
-  measure(threads);
+  measure(true, threads);
   hold(0);
 }
 
 int SurfaceContact::run(double dt, int since, Threads& threads) {
   since_ += since;
   hold(since * dt);
-  if (motion_.share > kMeasureAt || since_ >= kMostSubsteps) {
-    measure(threads);
+  const bool all =
+      since_ >= kMostSubsteps || double(motion_.hot) > kMostHot * double(places_.size());
+  if (!all && motion_.hot > 0) {
+    measure(false, threads);
+    return 1;
+  }
+  if (all) {
+    measure(true, threads);
     hold(dt);
   }
   const double steps = kComeAt * (1 - motion_.share) / std::max(double(motion_.rate) * dt, 1e-12);
@@ -487,9 +543,10 @@ int SurfaceContact::run(double dt, int since, Threads& threads) {
 std::size_t SurfaceContact::bytes() const {
   std::size_t bytes = search_.bytes();
   bytes += squares_.size() * (sizeof(Square) + sizeof(Vertex) + sizeof(Place) + sizeof(SquareBox) +
-                              sizeof(SquareChange) + 10);
+                              sizeof(SquareChange) + 11);
   const auto add = [&](const Pairs& p) { bytes += 12 * p.owner.capacity(); };
   add(listed_);
+  add(of_hot_);
   for (const Pairs& p : found_) add(p);
   for (const Piece& p : pieces_) bytes += sizeof(SquaresTouching) * p.touching.capacity();
   return bytes;

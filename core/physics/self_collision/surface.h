@@ -5,11 +5,14 @@
 // (kernels/surface.cpp), by a quarter of d at most, and the vertex has its place there, and a bound:
 // what is left of 0.45 d. While no vertex is farther from its place than its bound, whatever two things
 // were d apart are at least (1 - 2 · 0.45) d apart, on the whole way from there: nothing can have
-// passed. So what has moved too far is put back to its bound, and all is measured anew before
-// bounds matter much. Below a floor bounds are nothing: however a collider or a pull presses, only
-// pushing apart goes on, so that no distance dwindles to what rounding could cross. The common part
-// of all motion is left out of account. (Conservative bounds on motion, as in Chen et al. 2025,
-// Offset Geometric Contact; distances as in Bridson et al. 2002.)
+// passed. So what has moved too far is put back to its bound. Below a floor bounds are nothing: however
+// a collider or a pull presses, only pushing apart goes on, so that no distance dwindles to what
+// rounding could cross. The common part of all motion is left out of account. (Conservative bounds on
+// motion, as in Chen et al. 2025, Offset Geometric Contact; distances as in Bridson et al. 2002.)
+//
+// Vertices that come near their bounds are hot. Few of them are measured by themselves: they get a new
+// bound, and all others keep what is left of theirs, about where they are, or less where a hot one has
+// come near. Where many are hot, and every few substeps, all is measured.
 //
 // Pairs of squares of the sheets that are within reach, somewhat more than the thickness, are listed,
 // and only these are measured as long as no others can touch. They are found by the same search as
@@ -35,15 +38,16 @@ class SurfaceContact {
 
   // Measures where all is now; nothing has crossed.
   void begin(Threads& threads);
-  // Puts back what has moved too far in `since` substeps of dt, and measures anew when it is time.
+  // Puts back what has moved too far in `since` substeps of dt, and measures what it is time for.
   // Returns after how many substeps to come again. Nothing has crossed afterwards.
   int run(double dt, int since, Threads& threads);
 
   void restart() { valid_ = false; }
   bool valid() const { return valid_; }
-  // So far: times that all was measured, squares whose pairs were listed (in times all of them), and
+  // So far: times that all was measured, and a part, squares whose pairs were listed (in times all of them), and
   // vertices put back.
   std::int64_t measured() const { return measured_; }
+  std::int64_t measured_in_part() const { return measured_in_part_; }
   double listed() const {
     return squares_listed_ / double(std::max<std::size_t>(squares_.size(), 1));
   }
@@ -53,20 +57,21 @@ class SurfaceContact {
  private:
   struct Place {
     float x[3], bound;  // m
-    // m: where it was when its pairs were listed, apart from common motion; m²: how far off it is now
+    // m: where it was when its pairs were listed; m²: how far off it is now
     float listed[3], gone_squared;
   };
   struct Motion {     // of all vertices
-    float common[3];  // m, since all was measured
     float share;      // greatest |displacement|/bound
     float rate;       // greatest speed/bound [1/s]
     float gone;       // m, greatest since pairs were listed
+    std::size_t hot;  // vertices that are near their bounds
   };
   struct Pairs {
     std::vector<std::int32_t> owner, neighbour;
     std::vector<float> near_squared;  // m²
     std::size_t count = 0;
     void reserve(std::size_t pairs);
+    void pad();
   };
 
   SurfaceContact(std::vector<Sheet> sheets, const KernelTable& kernels);
@@ -79,10 +84,11 @@ class SurfaceContact {
   void fill_box(std::size_t sorted);
   void find_in(std::size_t chunk);
   void take_found();
-  void measure(Threads& threads);
+  void measure(bool all, Threads& threads);
+  const Pairs& pairs_of_hot();
   void measure_piece(std::size_t piece);
   void sum_up(std::size_t begin, std::size_t end);
-  void set_places_and_push(std::size_t sheet, int row);
+  void set_places_and_push(std::size_t sheet, int row, bool all);
   void hold(double seconds);
   // Of what listed pairs may be farther apart than is held: vertices that have gone that far when
   // others must be listed are listed anew, too.
@@ -101,7 +107,8 @@ class SurfaceContact {
   std::vector<Vertex> vertices_;
   std::vector<Place> places_;
   Motion motion_{};
-  float frame_[3] = {};  // m, what has been common so far
+  float frame_[3] = {};            // m: what has been common so far; places are apart from it
+  std::vector<std::uint8_t> hot_;  // vertices that are near their bounds
 
   PairSearch search_;                 // among the middles of squares that are not torn
   std::vector<std::uint8_t> chosen_;  // vertices, and
@@ -115,9 +122,12 @@ class SurfaceContact {
   };
   std::vector<LeftOut> left_out_;  // squares that are torn
   Pairs listed_;                   // numbers of squares
+  Pairs of_hot_;                   // of these, what hot vertices belong to
+  const Pairs* pairs_ = &listed_;  // those that are measured this time
   struct Piece {                   // of the listed pairs: those that touch
     std::vector<SquaresTouching> touching;
     std::size_t touches = 0;
+    std::vector<float> near_squared;  // m²
   };
   std::vector<Piece> pieces_;
   std::vector<SquareChange> sums_;   // of every square
@@ -127,7 +137,7 @@ class SurfaceContact {
   float least_ = 0, beyond_ = 0, reach_ = 0, close_ = 0, floor_ = 0;
   bool valid_ = false;
   int since_ = 0;  // substeps since all was measured
-  std::int64_t measured_ = 0, held_back_ = 0;
+  std::int64_t measured_ = 0, measured_in_part_ = 0, held_back_ = 0;
   double squares_listed_ = 0;
 };
 
