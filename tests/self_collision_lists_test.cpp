@@ -2,6 +2,7 @@
 // they find the same as where all are listed every time.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -60,6 +61,10 @@ struct Pair {
   std::vector<Lattice> sheet;
   std::unique_ptr<SurfaceContact> contact;
 };
+
+Eigen::Vector3d at(const Lattice& sheet, int row, int column) {
+  return {sheet.x.at(0, row, column), sheet.x.at(1, row, column), sheet.x.at(2, row, column)};
+}
 
 class SurfaceLists : public testing::TestWithParam<bool> {};
 
@@ -151,6 +156,40 @@ TEST_P(SurfaceLists, NothingPassesWhateverMoves) {
   EXPECT_GT(pair.contact->held_back(), 10000);
   EXPECT_GT(pair.contact->measured(), 100);
   EXPECT_GT(pair.contact->measured_in_part(), 100);
+}
+
+// A corner turned over the diagonal of its square comes to lie on the other half of it, and is not
+// pressed through.
+TEST(SurfaceSquare, DoesNotFoldThroughItself) {
+  Scene scene;
+  scene.cloths.resize(1);
+  scene.cloths[0].grid.nx = scene.cloths[0].grid.ny = 3;
+  scene.cloths[0].self_collision.mode = SelfCollisionMode::surface;
+  Lattice sheet = make_lattice(scene.cloths[0], 0, 1, false);
+  const auto contact = SurfaceContact::make(scene, {{&sheet, 0.02f, 0.3f, 0.25f, 0, 0.25f, false}},
+                                            kernel_table(Simd::best));
+  Threads threads(1);
+  contact->begin(threads);
+  // Square A(0, 0), B(0.5, 0), C(0, 0.5), D(0.5, 0.5) in x and z, as it was made; y is up.
+  double highest = 0;
+  for (int degrees = 0; degrees <= 200; ++degrees) {
+    const double angle = degrees * 3.14159265358979 / 180, far = 0.25 - 0.08 * degrees / 200;
+    const double to[3] = {0.25 - far * std::cos(angle), far * std::sin(angle),
+                          0.25 - far * std::cos(angle)};
+    for (int k = 0; k < 3; ++k) {
+      const double step = to[k] - sheet.x.at(k, 0, 0);
+      sheet.x.at(k, 0, 0) += float(step);
+      sheet.v.at(k, 0, 0) = float(step / kDt);
+    }
+    contact->run(kDt, 1, threads);
+    const Eigen::Vector3d b = at(sheet, 0, 1), c = at(sheet, 1, 0), d = at(sheet, 1, 1);
+    const double height = (c - b).cross(d - b).normalized().dot(at(sheet, 0, 0) - b);
+    highest = std::max(highest, height);
+    if (degrees > 10) {
+      EXPECT_GT(height, 0) << degrees;
+    }
+  }
+  EXPECT_GT(highest, 0.1);
 }
 
 INSTANTIATE_TEST_SUITE_P(, SurfaceLists, testing::Bool(),

@@ -283,12 +283,14 @@ class Pairs {
 
 int squares_within(const SquaresWithin& given) {
   const SquaresWithin s = given;
-  constexpr int kBox = sizeof(physics::SquareBox) / sizeof(float);
+  constexpr int kStride = sizeof(physics::SquareBox) / sizeof(float);
   int count = 0;
   for (int k = 0; k < s.pairs; k += kLanes) {
-    const auto low = [&](const std::int32_t* of) { return records_at(s.boxes->low, kBox, of + k); };
+    const auto low = [&](const std::int32_t* of) {
+      return records_at(s.boxes->low, kStride, of + k);
+    };
     const auto high = [&](const std::int32_t* of) {
-      return records_at(s.boxes->high, kBox, of + k).xyz;
+      return records_at(s.boxes->high, kStride, of + k).xyz;
     };
     const Wide4 p = low(s.owner), q = low(s.neighbour);
     const Wide3 a = p.xyz - high(s.neighbour), b = q.xyz - high(s.owner);

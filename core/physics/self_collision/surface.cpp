@@ -16,7 +16,7 @@ constexpr float kMeasureAt = 0.8f;  // of a bound, moved: a vertex is hot, and m
 constexpr double kMostHot = 0.3;    // of the vertices: more, and all is
 constexpr float kComeAt = 0.8f;     // of the rest of a bound, at its speed: time to come again
 constexpr int kMostSubsteps = 8;    // between two times
-constexpr float kBeyond = 0.35f;    // spacings that listed pairs may be farther apart than is held
+constexpr float kBeyond = 0.4f;     // spacings that listed pairs may be farther apart than is held
 constexpr float kClose = 0.25f;     // spacings that neighbours are kept apart
 constexpr float kLeastBound = 1e-12f;  // m, to divide by
 constexpr std::size_t kAtOnce = 256;   // pairs that are measured in one call
@@ -268,23 +268,32 @@ void SurfaceContact::fill_box(std::size_t sorted) {
 // The pairs of a chunk of the search that are asked for and within reach.
 void SurfaceContact::find_in(std::size_t chunk) {
   const PairSearch::Pairs near = search_.pairs(chunk);
+  const std::size_t begin = search_.begin(chunk), end = search_.begin(chunk + 1);
   Pairs& found = found_[chunk];
-  found.reserve(near.count);
-  const int count =
+  found.reserve(near.count + (end - begin));
+  found.count = std::size_t(
       kernels_.squares_within({boxes_.data(), int(near.count), near.owner, near.neighbour, reach_,
-                               found.owner.data(), found.neighbour.data()});
-  for (std::size_t i = 0; i < std::size_t(count); ++i) {
+                               found.owner.data(), found.neighbour.data()}));
+  for (std::size_t i = 0; i < found.count; ++i) {
     // In this order, so that a pair is measured to the same bits however it was found.
     const auto [p, q] =
         std::minmax(sorted_[std::size_t(found.owner[i])], sorted_[std::size_t(found.neighbour[i])]);
     found.owner[i] = p;
     found.neighbour[i] = q;
   }
-  kernels_.surface_pairs({vertices_.data(), squares_.data(), count, found.owner.data(),
+  // A square folded along its diagonal: its own A comes near its own BDC.
+  for (std::size_t p = begin; p < end; ++p)
+    if (boxes_[p].asked > 0) {
+      found.owner[found.count] = sorted_[p];
+      found.neighbour[found.count++] = sorted_[p];
+    }
+  found.pad();
+  const std::size_t count = found.count;
+  kernels_.surface_pairs({vertices_.data(), squares_.data(), int(count), found.owner.data(),
                           found.neighbour.data(), close_, beyond_, found.near_squared.data(),
                           nullptr});
   found.count = 0;
-  for (std::size_t i = 0; i < std::size_t(count); ++i)
+  for (std::size_t i = 0; i < count; ++i)
     if (found.near_squared[i] < kOutOfReach) {
       found.owner[found.count] = found.owner[i];
       found.neighbour[found.count] = found.neighbour[i];
@@ -366,6 +375,8 @@ void SurfaceContact::measure_piece(std::size_t piece) {
       kernels_.surface_pairs({vertices_.data(), squares_.data(), int(count),
                               pairs_->owner.data() + first, pairs_->neighbour.data() + first,
                               close_, beyond_, p.near_squared.data(), p.touching.data()}));
+  if (pairs_ == &listed_)
+    std::copy_n(p.near_squared.data(), count, listed_.near_squared.data() + first);
 }
 
 // What all pairs say of the squares from `begin` to `end`, in the order of the pairs.
@@ -441,10 +452,10 @@ void SurfaceContact::set_places_and_push(std::size_t sheet, int row, bool all) {
   }
 }
 
-// Puts back what has left its bound, and tells how near to them the rest is. What is common to all is the
-// mean, which few that move to and fro do not change; what is pinned or asleep stays where it is: then
-// nothing is common.
-void SurfaceContact::hold(double seconds) {
+// Puts back what has left its bound, and tells how near to them the rest is, or will be in a substep.
+// What is common to all is the mean, which few that move to and fro do not change; what is pinned or
+// asleep stays where it is: then nothing is common.
+void SurfaceContact::hold(double seconds, double dt) {
   const auto each_row = [&](auto&& work) {
     for (std::size_t s = 0; s < sheets_.size(); ++s) {
       Lattice& l = *sheets_[s].lattice;
@@ -483,7 +494,7 @@ void SurfaceContact::hold(double seconds) {
       Place& p = place[i];
       float* const at[3] = {x.x + i, x.y + i, x.z + i};
       float* const speed_at[3] = {v.x + i, v.y + i, v.z + i};
-      float d[3], u[3], from[3];
+      float d[3], u[3], next[3], from[3];
       for (int k = 0; k < 3; ++k) {
         d[k] = *at[k] - frame_[k] - p.x[k];
         u[k] = *speed_at[k] - drift[k];
@@ -492,7 +503,8 @@ void SurfaceContact::hold(double seconds) {
       const float far_off = square(d), inverse = 1 / (bound * bound);
       rate_squared = std::max(rate_squared, square(u) * inverse);
       share_squared = std::max(share_squared, far_off * inverse);
-      const bool hot = far_off * inverse > kMeasureAt * kMeasureAt;
+      for (int k = 0; k < 3; ++k) next[k] = d[k] + u[k] * float(dt);
+      const bool hot = far_off * inverse > kMeasureAt * kMeasureAt || square(next) * inverse > 1;
       hot_[std::size_t(&p - places_.data())] = hot;
       m.hot += hot;
       if (far_off > bound * bound && w[i] > 0) {
@@ -520,12 +532,12 @@ void SurfaceContact::hold(double seconds) {
 void SurfaceContact::begin(Threads& threads) {
   valid_ = false;
   measure(true, threads);
-  hold(0);
+  hold(0, 0);
 }
 
 int SurfaceContact::run(double dt, int since, Threads& threads) {
   since_ += since;
-  hold(since * dt);
+  hold(since * dt, dt);
   const bool all =
       since_ >= kMostSubsteps || double(motion_.hot) > kMostHot * double(places_.size());
   if (!all && motion_.hot > 0) {
@@ -534,7 +546,7 @@ int SurfaceContact::run(double dt, int since, Threads& threads) {
   }
   if (all) {
     measure(true, threads);
-    hold(dt);
+    hold(dt, dt);
   }
   const double steps = kComeAt * (1 - motion_.share) / std::max(double(motion_.rate) * dt, 1e-12);
   return int(std::clamp(steps, 1.0, double(std::max(1, kMostSubsteps - since_))));

@@ -89,7 +89,7 @@ class SurfaceContact {
   void measure_piece(std::size_t piece);
   void sum_up(std::size_t begin, std::size_t end);
   void set_places_and_push(std::size_t sheet, int row, bool all);
-  void hold(double seconds);
+  void hold(double seconds, double dt);
   // Of what listed pairs may be farther apart than is held: vertices that have gone that far when
   // others must be listed are listed anew, too.
   static constexpr float kFar = 1.0f / 6;
