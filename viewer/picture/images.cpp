@@ -82,8 +82,8 @@ Texture load_file(const std::string& path, GLint format, std::string& error) {
 }
 
 float lattice_noise(int x, int y, int z) {
-  auto h = static_cast<std::uint32_t>(x * 73856093) ^ static_cast<std::uint32_t>(y * 19349663) ^
-           static_cast<std::uint32_t>(z * 83492791);
+  auto h = static_cast<std::uint32_t>(x) * 73856093u ^ static_cast<std::uint32_t>(y) * 19349663u ^
+           static_cast<std::uint32_t>(z) * 83492791u;
   h = (h ^ (h >> 13)) * 1274126177u;
   return static_cast<float>((h ^ (h >> 16)) & 0xffffu) / 65535.0f;
 }
