@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kPoints = 14;
 constexpr double kDt = 1e-3;
-constexpr float kAbout = 0.03f;
+constexpr float kAbout = 0.03f;  // m, how far from their places particles fly
 
 // Two sheets, the second above the first, and what keeps them apart.
 struct Pair {
