@@ -2,6 +2,8 @@
 // the state has been taken out and put back.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "weft/read_scene.h"
 #include "weft/simulation.h"
 
@@ -9,10 +11,10 @@ namespace weft {
 namespace {
 
 // `huge` has a test of its own (slow_huge_test.cpp).
-std::vector<std::string> scene_names() {
+std::vector<std::string> scene_names(const std::vector<std::string>& but = {"huge"}) {
   std::vector<std::string> names;
   for (const ShippedScene& scene : shipped_scenes())
-    if (scene.name != "huge") names.push_back(scene.name);
+    if (std::find(but.begin(), but.end(), scene.name) == but.end()) names.push_back(scene.name);
   return names;
 }
 
@@ -51,7 +53,31 @@ TEST_P(Shipped, HasOneResult) {
   expect_one_result(read_scene(GetParam()).scene);
 }
 
+// From a moment on there is one way, whatever was before: for what has run longer, and what is new.
+class Moments : public testing::TestWithParam<std::string> {};
+
+TEST_P(Moments, GoOnInOneWay) {
+  const Scene scene = read_scene(GetParam()).scene;
+  const auto run = [](Simulation& simulation, int frames) {
+    for (int frame = 0; frame < frames; ++frame) simulation.advance_frame();
+    EXPECT_TRUE(simulation.status().ok) << simulation.status().text;
+  };
+  Simulation old(scene, threads(1)), fresh(scene, threads(2));
+  run(old, 10);
+  const Moment moment = old.moment();
+  run(old, 4);
+  for (Simulation* simulation : {&old, &fresh}) {
+    simulation->restore(moment);
+    run(*simulation, 4);
+  }
+  EXPECT_EQ(old.hash(), fresh.hash());
+  EXPECT_EQ(old.velocities(), fresh.velocities());
+}
+
 INSTANTIATE_TEST_SUITE_P(, Shipped, testing::ValuesIn(scene_names()),
+                         [](const auto& test) { return test.param; });
+// But for the larger of two alike.
+INSTANTIATE_TEST_SUITE_P(, Moments, testing::ValuesIn(scene_names({"huge", "fold316"})),
                          [](const auto& test) { return test.param; });
 
 // Large enough to be shared out by every method, even in frames of ten substeps (passes.cpp).

@@ -102,9 +102,7 @@ void Simulation::State::hold(int cloth, int i, int j, bool held) {
   if (rest) rest->keep_masses(cloth);
   for (const auto& stage : step.stages()) stage->restart();
   // One particle more that can move raises the largest frequency, if at all.
-  if (!held && is_explicit(method))
-    spectra[std::size_t(cloth)] =
-        estimate_spectrum(step.cloth(), step.families(), l, method == Method::spring_friction);
+  if (!held && is_explicit(method)) spectra[std::size_t(cloth)] = spectrum_of(std::size_t(cloth));
   guard_.open(scene, method, cloths, double(frame) * scene.time.frame, dt);
   ++changes;
 }

@@ -69,9 +69,7 @@ void Simulation::State::restore(const Moment& m) {
       for (const Moment::Torn& t : c.torn) torn.push_back({t.di, t.dj, t.j, t.a});
       step.topology()->set_torn(torn);
     }
-    if (is_explicit(method))
-      spectra[n] =
-          estimate_spectrum(step.cloth(), step.families(), l, method == Method::spring_friction);
+    if (is_explicit(method)) spectra[n] = spectrum_of(n);
     positions.insert(positions.end(), c.positions.begin(), c.positions.end());
     velocities.insert(velocities.end(), c.velocities.begin(), c.velocities.end());
   }
@@ -84,6 +82,7 @@ void Simulation::State::restore(const Moment& m) {
   finer_ = 1;
   take_substeps(began_at_);
   go_on_as(began_as_, began_with_);
+  lag = is_explicit(method) ? dt / 2 : 0;
   status = Status{};
   plan_changed();
   set(positions, velocities);

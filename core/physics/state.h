@@ -66,7 +66,7 @@ struct Simulation::State {
   int substeps = 1;
   double dt = 0;
   double lag = 0;  // s; by which velocities lie behind the positions (explicit springs)
-  std::vector<physics::Spectrum> spectra;  // of every cloth at the start (explicit springs)
+  std::vector<physics::Spectrum> spectra;  // of every cloth (explicit springs)
 
   // Wall time of every frame [ms]; reserved ahead for the scene's own length.
   std::vector<float> frame_ms;
@@ -93,6 +93,7 @@ struct Simulation::State {
   Solver began_with_;
   int began_at_ = 1;  // substeps a frame
 
+  physics::Spectrum spectrum_of(std::size_t cloth) const;
   void choose_method_and_substeps();
   void note_starts(std::vector<std::string>& notes) const;
   void build_cloths();

@@ -47,6 +47,16 @@ float greatest_stretch(const ClothStep& step, const Rows& x) {
 
 }  // namespace
 
+// Of the sheet as it starts, with the masses that it has now; what becomes of it by stretching is
+// reckoned with apart (stretched_limit()).
+Spectrum Simulation::State::spectrum_of(std::size_t cloth) const {
+  const ClothStep& step = *cloths[cloth];
+  Lattice start = make_lattice(step.cloth(), int(cloth), options.seed, false);
+  const std::span<const float> now = masses(cloth).span();
+  std::copy(now.begin(), now.end(), start.inverse_mass.data());
+  return estimate_spectrum(step.cloth(), step.families(), start, method == Method::spring_friction);
+}
+
 // Explicit springs: the substep from the stability limit, or the user's if it is inside; beyond it,
 // the compliant method in their place, which is stable at any substep.
 void Simulation::State::choose_method_and_substeps() {
@@ -62,12 +72,11 @@ void Simulation::State::choose_method_and_substeps() {
   if (is_explicit(method)) {
     limit = std::numeric_limits<double>::infinity();
     double safe = limit;  // for automatic substeps
-    for (const auto& c : cloths) {
-      spectra.push_back(estimate_spectrum(c->cloth(), c->families(), c->lattice(),
-                                          method == Method::spring_friction));
+    for (std::size_t c = 0; c < cloths.size(); ++c) {
+      spectra.push_back(spectrum_of(c));
       limit = std::min(limit, spectra.back().largest_substep());
       Spectrum folded = spectra.back();
-      if (folds_freely(*c)) folded.omega_squared *= kFolded;
+      if (folds_freely(*cloths[c])) folded.omega_squared *= kFolded;
       safe = std::min(safe, folded.largest_substep());
     }
     const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
