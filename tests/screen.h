@@ -69,12 +69,16 @@ class Screen {
   // Until the window is as expected; the test fails when that never comes.
   using Condition = std::function<bool(const nlohmann::json&)>;
   nlohmann::json wait(const std::string& what, const Condition& condition) const {
-    for (int k = 0; k < 2400; ++k) {
+    bool there = true;
+    for (int k = 0; k < 2400 && there; ++k) {
+      there = runs();  // what it wrote last counts
       const nlohmann::json state = now();
       if (!state.empty() && condition(state)) return state;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    ADD_FAILURE() << "never came: " << what << "\nlast: " << now().dump() << "\n" << said();
+    ADD_FAILURE() << (there ? "never came: " : "the viewer ended before: ") << what
+                  << "\nlast: " << now().dump() << "\n"
+                  << said();
     return now();
   }
   nlohmann::json wait_for(const std::string& key, const nlohmann::json& value) const {
@@ -150,6 +154,12 @@ class Screen {
     return now;
   }
 
+  // Whether the viewer has not ended; it is left for finish().
+  bool runs() const {
+    siginfo_t ended{};
+    return ::waitid(P_PID, static_cast<id_t>(viewer_), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           ended.si_pid == 0;
+  }
   // Ends the viewer by its own key; its exit code, 128 + n for signal n.
   int quit() {
     if (viewer_ > 0) key("Escape");

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "picture/cpu_time.h"
+
 namespace weft::viewer {
 
 namespace {
@@ -216,13 +218,13 @@ void Player::advance() {
   });
 }
 
-// Every frame's, unless that takes too long.
+// Every frame's, unless that is too much work.
 void Player::keep_state() {
-  constexpr double kFree = 2e-3;  // s
+  constexpr double kFree = 2;  // ms
   if (--until_keep_ > 0) return;
-  const double start = seconds_now();
+  const double start = cpu_ms();
   rewind_.keep(simulation_->moment());
-  until_keep_ = 1 + static_cast<int>((seconds_now() - start) / kFree);
+  until_keep_ = 1 + static_cast<int>((cpu_ms() - start) / kFree);
 }
 
 // At most a tenth of the time goes into measuring.
