@@ -1,0 +1,208 @@
+// A person who does anything at any time to a simulation on a thread of its own, as the window lets
+// them: what is shown stays whole, and what was recorded replays to the same bits.
+#include "run/session.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "folder.h"
+#include "physics/random.h"
+#include "weft/read_scene.h"
+
+namespace weft::viewer {
+namespace {
+
+using physics::Random;
+
+class Person {
+ public:
+  explicit Person(std::uint64_t seed) : random_(seed, 1) {}
+
+  int one_of(int n) { return static_cast<int>(random_.bits() % static_cast<std::uint64_t>(n)); }
+  double between(double a, double b) { return a + (b - a) * random_.unit(); }
+  Vec3 near(const Vec3f& p, double by) {
+    return {p.x + by * random_.symmetric(), p.y + by * random_.symmetric(),
+            p.z + by * random_.symmetric()};
+  }
+
+  // What hands do to what is shown.
+  Input input(const Snapshot& shown) {
+    Input input;
+    input.kind = static_cast<Input::Kind>(one_of(static_cast<int>(Input::Kind::set_scene)));
+    input.cloth = one_of(static_cast<int>(shown.cloths.size()));
+    const ClothCopy& cloth = shown.cloths[static_cast<std::size_t>(input.cloth)];
+    input.i = one_of(cloth.columns), input.j = one_of(cloth.rows);
+    const Vec3f at = cloth.position(input.i, input.j);
+    input.a = input.kind == Input::Kind::carry ? near({}, 0.5) : near(at, 0.1);
+    input.b = near(at, 0.1);
+    input.amount = input.kind == Input::Kind::cut ? 0.01 : 2000;
+    if (shown.bodies.empty() && input.kind == Input::Kind::move_collider)
+      input.kind = Input::Kind::release;
+    else if (input.kind == Input::Kind::move_collider)
+      input.collider = one_of(static_cast<int>(shown.bodies.size()));
+    return input;
+  }
+
+  // Another value in the panel; the scene as it was where it does not go with the others.
+  Scene edited(const Scene& before, double time) {
+    Scene scene = before;
+    Cloth& cloth = scene.cloths[static_cast<std::size_t>(one_of(int(scene.cloths.size())))];
+    const auto point = [&] { return near(to_float(cloth.grid.origin), 1); };
+    switch (one_of(9)) {
+      case 0:
+        cloth.stiffness.structural *= between(0.5, 2);
+        break;
+      case 1:
+        cloth.drag = between(0, 2);
+        break;
+      case 2:
+        cloth.tear_strain = between(0.05, 0.5);
+        break;
+      case 3:
+        scene.solver.method = std::array{Method::spring, Method::spring_friction,
+                                         Method::positional, Method::compliant}[one_of(4)];
+        break;
+      case 4:
+        cloth.self_collision.mode = SelfCollisionMode(one_of(3));
+        break;
+      case 5:
+        scene.colliders.push_back(
+            {Sphere{point(), 0.1}, {}, 0.01, {{time, point()}, {time + 0.5, point()}}, false});
+        break;
+      case 6:
+        if (!scene.colliders.empty()) scene.colliders.pop_back();
+        break;
+      case 7:
+        cloth.pins.push_back({one_of(cloth.grid.nx), one_of(cloth.grid.ny), {}});
+        break;
+      case 8:
+        cloth.grid.nx += one_of(3) - 1;
+        break;
+    }
+    return validate(scene).empty() ? scene : before;
+  }
+
+ private:
+  Random random_;
+};
+
+void expect_whole(const Shown& shown) {
+  const Snapshot& s = shown.snapshot;
+  ASSERT_TRUE(s.scene);
+  ASSERT_EQ(s.cloths.size(), s.scene->cloths.size());
+  for (const ClothCopy& cloth : s.cloths) {
+    const std::size_t all = cloth.at(0, cloth.rows);
+    for (const auto* values : {&cloth.x, &cloth.y, &cloth.z, &cloth.vx, &cloth.vy, &cloth.vz}) {
+      ASSERT_EQ(values->size(), all);
+      for (const float value : *values) ASSERT_TRUE(std::isfinite(value));
+    }
+    ASSERT_EQ(cloth.inverse_mass.size(), all);
+    for (const auto& triangle : cloth.triangles)
+      for (const std::uint32_t p : triangle) ASSERT_LT(p, all);
+    ASSERT_EQ(cloth.seam_points.size(), cloth.seam_particles.size());
+    for (const auto& triangle : cloth.seams)
+      for (const std::uint32_t p : triangle) ASSERT_LT(p, cloth.seam_points.size());
+  }
+}
+
+class Sessions : public testing::TestWithParam<const char*> {
+ protected:
+  static constexpr int kWishes = 120;
+
+  // Waits a little, as a person does, and looks at what has come.
+  static void look(Session& session, Person& person) {
+    std::this_thread::sleep_for(std::chrono::microseconds(person.one_of(8000)));
+    if (session.refresh()) expect_whole(session.shown());
+  }
+};
+
+TEST_P(Sessions, StayWholeWhateverIsAsked) {
+  const Scene first = read_scene(GetParam()).scene;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    Person person(seed);
+    Options options;
+    options.threads = 2;
+    Session session(first, options, false, false);
+    session.post([](Player& player) { player.set_speed(8); });
+    Scene scene = first;
+    for (int n = 0; n < kWishes; ++n) {
+      look(session, person);
+      const Snapshot& shown = session.shown().snapshot;
+      switch (person.one_of(12)) {
+        case 0:
+          session.post([](Player& player) { player.step(); });
+          break;
+        case 1:
+          session.post([&, n](Player& player) { player.pause(n % 2 == 0); });
+          break;
+        case 2:
+          session.post([back = n % 7](Player& player) { player.go_back(back); });
+          break;
+        case 3:
+          session.post([threads = 1 + n % 3, simd = n % 2 == 0 ? Simd::best : Simd::sse2](
+                           Player& player) { player.set_options(threads, simd); });
+          break;
+        case 4:
+          if (n % 4 == 0) scene = first;
+          session.post([scene](Player& player) { player.open(scene); });
+          break;
+        case 5:
+        case 6:
+          scene = person.edited(scene, shown.time);
+          session.post([scene](Player& player) { player.change(scene); });
+          break;
+        default:
+          session.post([input = person.input(shown)](Player& player) { player.hand(input); });
+      }
+    }
+    session.post([](Player& player) { player.pause(true); });
+    look(session, person);
+  }
+}
+
+TEST_P(Sessions, RecordingsReplay) {
+  const Folder folder;
+  const std::string path = folder / "session.jsonl";
+  {
+    Person person(3);
+    Scene scene = read_scene(GetParam()).scene;
+    Options options;
+    options.threads = 2;
+    Session session(scene, options, false, false);
+    session.post([path](Player& player) {
+      player.set_speed(8);
+      player.record(path);
+    });
+    for (int n = 0; n < kWishes / 2; ++n) {
+      look(session, person);
+      if (n % 8 == 7) {
+        scene = person.edited(scene, session.shown().snapshot.time);
+        session.post([scene](Player& player) { player.change(scene); });
+      } else {
+        session.post([input = person.input(session.shown().snapshot)](Player& player) {
+          player.hand(input);
+        });
+      }
+    }
+  }
+  const Recording recording = read_recording(path);
+  EXPECT_GT(recording.frames(), 0);
+  Simulation simulation(recording.scene);
+  for (std::size_t next = 0; next < recording.events.size();) {
+    while (const Input* input = next_input(recording, next, simulation)) apply(*input, simulation);
+    if (next == recording.events.size()) break;
+    simulation.advance_frame();
+    ASSERT_NO_THROW(compare_hash(recording, next, simulation));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, Sessions,
+                         testing::Values("seed1_friction", "hello", "cutter", "tug", "two_sheets"),
+                         [](const auto& test) { return test.param; });
+
+}  // namespace
+}  // namespace weft::viewer
