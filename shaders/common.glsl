@@ -22,6 +22,7 @@ uniform float u_translucency;  // share of light that shines through (cloth)
 uniform vec3 u_parts;          // ambient, diffuse, specular: 1 on, 0 off
 uniform float u_shininess;
 uniform float u_normal_scale;
+uniform vec3 u_place;           // m, where the surface's origin stands
 uniform float u_raise;          // m, along the normal, of what is highest
 uniform vec2 u_texture_scale;   // repeats over the surface
 uniform float u_force_scale;    // 1/N: maps forces to colours
@@ -57,7 +58,7 @@ out float v_strain;
 // Hands the surface on, lifted along its normal by `height` [m].
 void surface_vertex(float height) {
   v_normal = normalize(vec3(a_nx, a_ny, a_nz));
-  v_position = vec3(a_x, a_y, a_z) + height * v_normal;
+  v_position = u_place + vec3(a_x, a_y, a_z) + height * v_normal;
   v_uv = a_uv;
   v_force = vec3(a_fx, a_fy, a_fz);
   v_strain = a_strain;

@@ -67,7 +67,7 @@ class BodyMesh {
   GLsizei count_;
 };
 
-// The collider's shape where it stands; `size` [m] is how far a plane is drawn, `tessellation` the
+// The shape where it stands; `size` [m] is how far a plane is drawn, `tessellation` the
 // number of faces around a sphere.
 BodyMesh make_body(const Shape& shape, float size, int tessellation);
 

@@ -150,21 +150,32 @@ void Renderer::update_meshes(const Snapshot& snapshot, const Setting& setting, c
 
 void Renderer::update_bodies(const Snapshot& snapshot, const Setting& setting,
                              const LookSettings& settings) {
-  std::vector<Collider> now;
-  for (const Collider& body : snapshot.bodies) {
-    const Plane* plane = std::get_if<Plane>(&body.shape);
-    if (!plane || !is_level(*plane)) now.push_back(body);
-  }
   double widest = 0;  // m, diagonal of a square of the grid
   for (const Cloth& cloth : snapshot.scene->cloths)
     widest = std::max(widest, std::hypot(spacing_u(cloth.grid), spacing_v(cloth.grid)));
-  for (Collider& body : now) shrink(body, widest);
-  if (now == body_colliders_ && body_tessellation_ == settings.tessellation) return;
-  bodies_.clear();
-  for (const Collider& collider : now)
-    bodies_.push_back(make_body(collider.shape, setting.size, settings.tessellation));
-  body_colliders_ = std::move(now);
+  if (body_tessellation_ != settings.tessellation || body_size_ != setting.size) bodies_.clear();
   body_tessellation_ = settings.tessellation;
+  body_size_ = setting.size;
+  std::size_t count = 0;
+  for (Collider body : snapshot.bodies) {
+    const Plane* plane = std::get_if<Plane>(&body.shape);
+    if (plane && is_level(*plane)) continue;
+    shrink(body, widest);
+    const Shape shape = about_its_place(body);
+    if (count < bodies_.size() && bodies_[count].shape == shape) {
+      bodies_[count++].collider = body;
+      continue;
+    }
+    bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(count), bodies_.end());
+    bodies_.push_back({body, shape, make_body(shape, setting.size, settings.tessellation)});
+    ++count;
+  }
+  bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(count), bodies_.end());
+}
+
+void Renderer::Body::draw(const Shader& shader) const {
+  shader.set("u_place", to_float(place_of(collider)));
+  mesh.draw();
 }
 
 void Renderer::draw_shadow_map(const Snapshot& snapshot, const Setting& setting,
@@ -183,9 +194,10 @@ void Renderer::draw_shadow_map(const Snapshot& snapshot, const Setting& setting,
   const Shader& depth = shader("shadow");
   depth.use();
   depth.set("u_light_view_projection", light);
+  depth.set("u_place", Vec3f{});
   for (const ClothMesh& cloth : cloths_) cloth.draw_surface();
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    if (!std::holds_alternative<Plane>(body_colliders_[b].shape)) bodies_[b].draw();
+  for (const Body& body : bodies_)
+    if (!std::holds_alternative<Plane>(body.shape)) body.draw(depth);
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
@@ -218,6 +230,7 @@ void Renderer::set_material(const Shader& shader, const LookSettings& settings, 
                               settings.specular ? 1.0f : 0.0f});
   shader.set("u_shininess", settings.shininess);
   shader.set("u_normal_scale", settings.normal_scale);
+  shader.set("u_place", Vec3f{});
   shader.set("u_raise", 0.0f);
   const bool heights = shader.name() == "bump" || shader.name() == "displacement";
   const float repeats = heights ? settings.height_repeats : settings.texture_repeats;
@@ -240,10 +253,10 @@ void Renderer::draw_ground(const Setting& setting) {
 void Renderer::draw_bodies(const Look& look, const LookSettings& settings, const Camera& camera) {
   const Shader& material = shader(look.on_colliders ? look.name : "colour");
   set_material(material, settings, false);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+  for (const Body& body : bodies_) {
     // A wall between the eye and the cloth would hide what it pushes.
-    const Plane* plane = std::get_if<Plane>(&body_colliders_[b].shape);
-    if (!plane || in_front_of(*plane, camera.eye())) bodies_[b].draw();
+    const Plane* plane = std::get_if<Plane>(&body.collider.shape);
+    if (!plane || in_front_of(*plane, camera.eye())) body.draw(material);
   }
 }
 

@@ -64,11 +64,17 @@ class Renderer {
   VertexArray nothing_;  // for the background's triangle
 
   std::vector<ClothMesh> cloths_;
-  std::vector<BodyMesh> bodies_;
+  struct Body {
+    Collider collider;  // where it stands
+    Shape shape;        // about its place, as the mesh is
+    BodyMesh mesh;
+    void draw(const Shader& shader) const;
+  };
+  std::vector<Body> bodies_;
+  int body_tessellation_ = 0;
+  float body_size_ = 0;          // m, of planes
   std::vector<BodyMesh> floor_;  // one or none
   Vec3f floor_center_{};
-  std::vector<Collider> body_colliders_;  // as the bodies were made from
-  int body_tessellation_ = 0;
   Mat4 shadow_matrix_;
   float particle_weight_ = 1;  // N, of the cloth that is drawn
   double upload_ms_ = 0;

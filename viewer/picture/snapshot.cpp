@@ -95,6 +95,14 @@ Vec3 place_of(const Collider& collider) {
   return std::visit([](const auto& shape) { return place(shape); }, collider.shape);
 }
 
+Shape about_its_place(const Collider& collider) {
+  Shape shape = collider.shape;
+  const Vec3 place = place_of(collider);
+  std::visit([&](auto& moved) { move_by(moved, {-place[0], -place[1], -place[2]}); }, shape);
+  if (Capsule* capsule = std::get_if<Capsule>(&shape)) capsule->b = to_double(to_float(capsule->b));
+  return shape;
+}
+
 Bounds collider_bounds(const std::vector<Collider>& bodies) {
   Bounds bounds;
   for (const Collider& body : bodies)

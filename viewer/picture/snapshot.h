@@ -51,6 +51,8 @@ Collider collider_at(const Collider& collider, double time);
 
 // The point that a collider's keys move.
 Vec3 place_of(const Collider& collider);
+// The shape with that point at the origin, to single precision: the same all along a path.
+Shape about_its_place(const Collider& collider);
 
 // What of the colliders can be seen as a whole: all but planes.
 Bounds collider_bounds(const std::vector<Collider>& bodies);
