@@ -24,9 +24,9 @@ class Person {
 
   int one_of(int n) { return static_cast<int>(random_.bits() % static_cast<std::uint64_t>(n)); }
   double between(double a, double b) { return a + (b - a) * random_.unit(); }
-  Vec3 near(const Vec3f& p, double by) {
-    return {p.x + by * random_.symmetric(), p.y + by * random_.symmetric(),
-            p.z + by * random_.symmetric()};
+  Vec3 near(const Vec3& p, double by) {
+    return {p[0] + by * random_.symmetric(), p[1] + by * random_.symmetric(),
+            p[2] + by * random_.symmetric()};
   }
 
   // What hands do to what is shown.
@@ -36,7 +36,9 @@ class Person {
     input.cloth = one_of(static_cast<int>(shown.cloths.size()));
     const ClothCopy& cloth = shown.cloths[static_cast<std::size_t>(input.cloth)];
     input.i = one_of(cloth.columns), input.j = one_of(cloth.rows);
-    const Vec3f at = cloth.position(input.i, input.j);
+    const Vec3f shown_at = cloth.position(input.i, input.j);
+    const Vec3 at{shown.origin[0] + shown_at.x, shown.origin[1] + shown_at.y,
+                  shown.origin[2] + shown_at.z};
     input.a = input.kind == Input::Kind::carry ? near({}, 0.5) : near(at, 0.1);
     input.b = near(at, 0.1);
     input.amount = input.kind == Input::Kind::cut ? 0.01 : 2000;
@@ -51,7 +53,7 @@ class Person {
   Scene edited(const Scene& before, double time) {
     Scene scene = before;
     Cloth& cloth = scene.cloths[static_cast<std::size_t>(one_of(int(scene.cloths.size())))];
-    const auto point = [&] { return near(to_float(cloth.grid.origin), 1); };
+    const auto point = [&] { return near(cloth.grid.origin, 1); };
     switch (one_of(9)) {
       case 0:
         cloth.stiffness.structural *= between(0.5, 2);
@@ -92,6 +94,7 @@ class Person {
 
 void expect_whole(const Shown& shown) {
   const Snapshot& s = shown.snapshot;
+  ASSERT_TRUE(shown.vitals.status.ok) << shown.vitals.status.text;
   ASSERT_TRUE(s.scene);
   ASSERT_EQ(s.cloths.size(), s.scene->cloths.size());
   for (const ClothCopy& cloth : s.cloths) {

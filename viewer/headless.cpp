@@ -39,8 +39,10 @@ void render_picture(const Arguments& arguments) {
   Simulation simulation(file.scene, options);
 
   Snapshot snapshot;
-  snapshot.scene = std::make_shared<const Scene>(file.scene);
   copy_view(simulation.view(), simulation.scene(), snapshot);
+  const Vec3& origin = snapshot.origin;
+  snapshot.scene =
+      std::make_shared<const Scene>(moved(file.scene, {-origin[0], -origin[1], -origin[2]}));
   const Setting setting = setting_of(snapshot);
   while (simulation.frame() < arguments.frames && simulation.status().ok)
     simulation.advance_frame();

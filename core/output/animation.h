@@ -1,6 +1,7 @@
 // The animation formats, one file each.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,7 +15,13 @@ namespace weft {
 // Particles of all cloths.
 std::int64_t particle_count(const View& view);
 
-// Calls work(x, y, z) for the particles of a cloth in scene order.
+// A position where it stands.
+inline std::array<float, 3> placed(const View& view, float x, float y, float z) {
+  return {static_cast<float>(x + view.origin[0]), static_cast<float>(y + view.origin[1]),
+          static_cast<float>(z + view.origin[2])};
+}
+
+// Calls work(x, y, z) for the particles of a cloth in scene order, from the view's origin.
 template <class Work>
 void for_each_particle(const ClothView& cloth, const Work& work) {
   for (int j = 0; j < cloth.rows; ++j)
@@ -24,9 +31,11 @@ void for_each_particle(const ClothView& cloth, const Work& work) {
       work(cloth.x[n], cloth.y[n], cloth.z[n]);
     }
 }
+// Calls work(position) for all particles, where they stand.
 template <class Work>
-void for_each_particle(const View& view, const Work& work) {
-  for (const ClothView& cloth : view.cloths) for_each_particle(cloth, work);
+void for_each_placed(const View& view, const Work& work) {
+  for (const ClothView& cloth : view.cloths)
+    for_each_particle(cloth, [&](float x, float y, float z) { work(placed(view, x, y, z)); });
 }
 
 // `samples` are to come, 0: nobody knows.

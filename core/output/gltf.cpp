@@ -33,7 +33,7 @@ struct Bounds {
 class Gltf final : public Animation {
  public:
   Gltf(const std::string& path, const View& first, std::int64_t samples)
-      : file_(path), spool_(path) {
+      : file_(path), spool_(path), origin_(first.origin) {
     const std::filesystem::path target(path);
     if (target.extension() != ".glb")
       buffer_.emplace((target.parent_path() / (target.stem().string() + ".bin")).string());
@@ -58,7 +58,7 @@ class Gltf final : public Animation {
       if (cloth.topology_version > 0)
         throw WriteError(file_.path(),
                          "the cloth tears, which morph targets cannot follow; .obj can");
-      append_positions(cloth, base, at);
+      append_positions(view, cloth, base, at);
     }
   }
 
@@ -112,11 +112,14 @@ class Gltf final : public Animation {
       }
   }
 
-  void append_positions(const ClothView& cloth, bool base, std::size_t& at) {
+  void append_positions(const View& view, const ClothView& cloth, bool base, std::size_t& at) {
     constexpr float far = std::numeric_limits<float>::max();
     Bounds bounds{{far, far, far}, {-far, -far, -far}};
     some_.clear();
+    std::array<float, 3> off{};  // from the node's translation
+    for (std::size_t k = 0; k < 3; ++k) off[k] = static_cast<float>(view.origin[k] - origin_[k]);
     for_each_particle(cloth, [&](float x, float y, float z) {
+      x += off[0], y += off[1], z += off[2];
       if (base) base_.push_back({x, y, z});
       const std::array<float, 3> from = base ? std::array<float, 3>{} : base_[at++];
       const std::array<float, 3> now{x - from[0], y - from[1], z - from[2]};
@@ -167,6 +170,7 @@ class Gltf final : public Animation {
       const std::string name = "cloth_" + std::to_string(c);
       meshes.push_back({{"name", name}, {"primitives", Json::array({primitive})}});
       nodes.push_back({{"name", name}, {"mesh", c}});
+      if (origin_ != decltype(origin_){}) nodes.back()["translation"] = origin_;
       roots.push_back(c);
       channels.push_back({{"sampler", 0}, {"target", {{"node", c}, {"path", "weights"}}}});
     }
@@ -222,6 +226,7 @@ class Gltf final : public Animation {
   std::optional<OutputFile> buffer_;
   Spool spool_;  // positions and displacements
   std::vector<Shape> shapes_;
+  std::array<double, 3> origin_;  // the nodes' translation [m]
   std::string indices_, some_;
   std::vector<float> times_;
   std::vector<std::array<float, 3>> base_;

@@ -22,8 +22,8 @@ class Mdd final : public Animation {
       throw std::invalid_argument("a point cache keeps its number of particles");
     append_big_endian(times_, static_cast<float>(view.time));
     ++samples_;
-    for_each_particle(view, [&](float x, float y, float z) {
-      for (const float value : {x, y, z}) append_big_endian(some_, value);
+    for_each_placed(view, [&](const std::array<float, 3>& at) {
+      for (const float value : at) append_big_endian(some_, value);
       if (some_.size() > kSome) flush();
     });
     flush();

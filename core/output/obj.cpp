@@ -27,8 +27,10 @@ void append_vertex(std::string& text, const std::array<float, 3>& at) {
   text += '\n';
 }
 
-void append_vertices(std::string& text, const ClothView& cloth) {
-  for_each_particle(cloth, [&](float x, float y, float z) { append_vertex(text, {x, y, z}); });
+void append_vertices(std::string& text, const View& view, const ClothView& cloth) {
+  for_each_particle(cloth,
+                    [&](float x, float y, float z) { append_vertex(text, placed(view, x, y, z)); });
+  for (const auto& [x, y, z] : cloth.seam_points) append_vertex(text, placed(view, x, y, z));
 }
 
 // Corners in the order that makes u × v the face normal. OBJ counts vertices from 1 over the whole
@@ -81,8 +83,7 @@ class ObjSequence final : public Animation {
     int number = 0;
     for (const ClothView& cloth : view.cloths) {
       text_ = "o cloth_" + std::to_string(number++) + "\n";
-      append_vertices(text_, cloth);
-      for (const auto& point : cloth.seam_points) append_vertex(text_, point);
+      append_vertices(text_, view, cloth);
       if (cloth.topology_version > 0)
         append_torn(text_, cloth, first);
       else

@@ -28,13 +28,11 @@ class Pc2 final : public Animation {
     if (particle_count(view) != points_) {
       throw std::invalid_argument("a point cache keeps its number of particles");
     }
-    for (const ClothView& cloth : view.cloths) {
-      some_.clear();
-      for_each_particle(cloth, [&](float x, float y, float z) {
-        for (const float value : {x, y, z}) append_little_endian(some_, value);
-      });
-      file_.write(some_);
-    }
+    for_each_placed(view, [&](const std::array<float, 3>& at) {
+      for (const float value : at) append_little_endian(some_, value);
+      if (some_.size() > kSome) flush();
+    });
+    flush();
     ++samples_;
   }
 
@@ -48,10 +46,17 @@ class Pc2 final : public Animation {
   std::string written() const override { return file_.path(); }
 
  private:
+  static constexpr std::size_t kSome = 1 << 16;
+
+  void flush() {
+    file_.write(some_);
+    some_.clear();
+  }
+
   OutputFile file_;
   std::int64_t points_;
   std::int32_t samples_ = 0;
-  std::string some_;  // bytes of one cloth, kept for its memory
+  std::string some_;
 };
 
 }  // namespace

@@ -54,7 +54,7 @@ void Simulation::State::grab(int cloth, int i, int j, const Vec3& target, double
   wake(cloth);
   grab_->column = i;
   grab_->row = j;
-  grab_->target = target;
+  grab_->target = minus(target, origin);
   grab_->stiffness = stiffness;
   if (is_explicit(method)) follow_stretch(stretched_limit());
 }
@@ -112,13 +112,19 @@ void Simulation::State::move_collider(int collider, const Vec3& target) {
     throw std::out_of_range("there is no collider " + std::to_string(collider));
   if (!std::all_of(target.begin(), target.end(), [](double t) { return std::isfinite(t); }))
     throw std::invalid_argument("a collider's target is finite");
-  Collider& c = scene.colliders[std::size_t(collider)];
+  const Collider& c = where_it_stands().colliders[std::size_t(collider)];
   const double now = double(frame) * scene.time.frame;
-  const Vec3 from = c.keys.empty()
-                        ? std::visit([](const auto& shape) { return place_of(shape); }, c.shape)
-                        : position_at(c.keys, now);
-  c.keys = {{now, from}, {now + scene.time.frame, target}};
+  const Vec3 from = c.keys.empty() ? place_of(c.shape) : position_at(c.keys, now);
   wake();
+  set_path(std::size_t(collider), {{now, from}, {now + scene.time.frame, target}});
+}
+
+// A collider goes another way, by keys where it stands.
+void Simulation::State::set_path(std::size_t collider, std::vector<Key> keys) {
+  if (placed) placed->colliders[collider].keys = keys;
+  for (Key& key : keys) key.position = minus(key.position, origin);
+  Collider& c = scene.colliders[collider];
+  c.keys = std::move(keys);
   for (auto& step : cloths)
     for (const auto& stage : step->stages()) stage->follow(c);
 }
@@ -142,8 +148,8 @@ double segment_distance(const Vec3& p, const Vec3& d, const Vec3& q, const Vec3&
 
 }  // namespace
 
-int Simulation::State::cut(const Vec3& a, const Vec3& b, double width) {
-  const Vec3 d = minus(b, a);
+int Simulation::State::cut(const Vec3& begin, const Vec3& end, double width) {
+  const Vec3 a = minus(begin, origin), d = minus(end, begin);
   std::int64_t cut = 0;
   for (auto& step : cloths) {
     const Lattice& l = step->lattice();

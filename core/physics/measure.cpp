@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "physics/bending.h"
+#include "physics/colliders/shapes.h"
 #include "physics/energy.h"
 #include "physics/self_collision/crossings.h"
 #include "weft/shape.h"
@@ -28,7 +29,7 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
     const int i = int(p) % l.columns, j = int(p) / l.columns;
     if (masses[std::size_t(j) * l.stride + i] == 0) continue;
     const double m = particle_mass(step.cloth(), i, j);
-    const Vec3& a = x[p];
+    const Vec3 a = plus(x[p], s.origin);
     const Vec3& b = v[p];
     for (int k = 0; k < 3; ++k) {
       r.energy.kinetic += 0.5 * m * b[k] * b[k];

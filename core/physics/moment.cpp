@@ -22,6 +22,7 @@ std::size_t Moment::bytes() const {
 Moment Simulation::State::moment() const {
   Moment m;
   m.time = double(frame) * scene.time.frame;
+  m.origin = origin;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     const Lattice& l = cloths[n]->lattice();
     Moment::ClothMoment c{l.columns, l.rows, {}, {}, {}, {}};
@@ -39,7 +40,7 @@ Moment Simulation::State::moment() const {
         c.torn.push_back({t.di, t.dj, t.j, t.a});
     m.cloths.push_back(std::move(c));
   }
-  for (const Collider& c : scene.colliders) m.paths.push_back(c.keys);
+  for (const Collider& c : where_it_stands().colliders) m.paths.push_back(c.keys);
   return m;
 }
 
@@ -73,11 +74,7 @@ void Simulation::State::restore(const Moment& m) {
     positions.insert(positions.end(), c.positions.begin(), c.positions.end());
     velocities.insert(velocities.end(), c.velocities.begin(), c.velocities.end());
   }
-  for (std::size_t n = 0; n < m.paths.size(); ++n) {
-    scene.colliders[n].keys = m.paths[n];
-    for (auto& step : cloths)
-      for (const auto& stage : step->stages()) stage->follow(scene.colliders[n]);
-  }
+  for (std::size_t n = 0; n < m.paths.size(); ++n) set_path(n, m.paths[n]);
   frame = std::llround(m.time / scene.time.frame);
   finer_ = 1;
   take_substeps(began_at_);
@@ -85,7 +82,7 @@ void Simulation::State::restore(const Moment& m) {
   lag = is_explicit(method) ? dt / 2 : 0;
   status = Status{};
   plan_changed();
-  set(positions, velocities);
+  set(positions, m.origin, velocities);
 }
 
 namespace {
@@ -112,12 +109,16 @@ void change_pins(const Cloth& before, const Cloth& after, Moment::ClothMoment& c
 
 void Simulation::set_scene(Scene scene) {
   Simulation next(std::move(scene), state_->options);
-  const Scene &before = state_->scene, &after = next.scene();
+  const Scene& before = this->scene();
+  const Scene after = next.scene();
   bool same = before.cloths.size() == after.cloths.size();
   for (std::size_t n = 0; same && n < after.cloths.size(); ++n)
     same = before.cloths[n].grid.nx == after.cloths[n].grid.nx &&
            before.cloths[n].grid.ny == after.cloths[n].grid.ny;
   if (same) {
+    // The cloths stay where they are, wherever the new scene would have them start.
+    if (next.state_->origin != state_->origin)
+      next.state_ = std::make_unique<State>(after, state_->options, state_->origin);
     Moment m = state_->moment();
     for (std::size_t n = 0; n < after.cloths.size(); ++n)
       if (before.cloths[n].pins != after.cloths[n].pins)

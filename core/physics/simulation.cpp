@@ -7,6 +7,7 @@
 
 #include "physics/energy.h"
 #include "physics/measure.h"
+#include "physics/origin.h"
 #include "physics/plan.h"
 #include "physics/stability.h"
 #include "physics/state.h"
@@ -37,7 +38,8 @@ Simulation::Simulation(Scene scene, Options options) {
     throw std::invalid_argument(std::string("this machine has no ") + simd_name(options.simd));
   if (options.threads < 0 || options.threads > 256)
     throw std::invalid_argument("threads is " + std::to_string(options.threads) + " (0 to 256)");
-  state_ = std::make_unique<State>(std::move(scene), options);
+  const Vec3 origin = origin_of(scene);
+  state_ = std::make_unique<State>(std::move(scene), options, origin);
 }
 
 Simulation::~Simulation() = default;
@@ -48,7 +50,7 @@ void Simulation::advance_frame() {
   state_->advance_frame();
 }
 const Scene& Simulation::scene() const {
-  return state_->scene;
+  return state_->where_it_stands();
 }
 const Options& Simulation::options() const {
   return state_->options;
@@ -82,6 +84,7 @@ View Simulation::view() const {
   View view;
   view.version = std::uint64_t(state_->frame) + state_->changes;
   view.time = time();
+  view.origin = state_->origin;
   for (std::size_t n = 0; n < state_->cloths.size(); ++n) {
     const auto& step = state_->cloths[n];
     const Lattice& l = step->lattice();
@@ -115,7 +118,7 @@ std::vector<double> Simulation::positions() const {
   std::vector<double> all;
   for (const auto& step : state_->cloths)
     for (const Vec3& x : gather(step->lattice(), step->lattice().x))
-      all.insert(all.end(), x.begin(), x.end());
+      for (int k = 0; k < 3; ++k) all.push_back(x[k] + state_->origin[k]);
   return all;
 }
 
@@ -127,7 +130,7 @@ std::vector<double> Simulation::velocities() const {
 }
 
 void Simulation::set_state(std::span<const double> positions, std::span<const double> velocities) {
-  state_->set(positions, velocities);
+  state_->set(positions, {}, velocities);
 }
 
 void Simulation::grab(int cloth, int i, int j, const Vec3& target, double stiffness) {

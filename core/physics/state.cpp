@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/colliders/shapes.h"
 #include "physics/energy.h"
 #include "physics/stages/colliders.h"
 
@@ -54,14 +55,19 @@ std::string steady_jacobi(Scene& scene) {
 
 }  // namespace
 
-Simulation::State::State(Scene given, const Options& given_options)
+Simulation::State::State(Scene given, const Options& given_options, const Vec3& about)
     : scene(std::move(given)),
+      origin(about),
       options(given_options),
       simd(resolve(options.simd)),
       threads(options.threads),
       one_thread(1),
       method(scene.solver.method) {
   const std::string changed = steady_jacobi(scene);
+  if (origin != Vec3{}) {
+    placed = scene;
+    scene = moved(std::move(scene), times(origin, -1));
+  }
   build_cloths();
   choose_method_and_substeps();
   began_as_ = method;
@@ -211,7 +217,8 @@ void Simulation::State::run_substeps(int first, int count) {
   }
 }
 
-void Simulation::State::set(std::span<const double> positions, std::span<const double> velocities) {
+void Simulation::State::set(std::span<const double> positions, const Vec3& from,
+                            std::span<const double> velocities) {
   std::size_t particles = 0;
   for (const auto& step : cloths)
     particles += std::size_t(step->lattice().columns) * step->lattice().rows;
@@ -224,12 +231,13 @@ void Simulation::State::set(std::span<const double> positions, std::span<const d
     throw std::invalid_argument("a state holds a value that is not finite");
   std::size_t p = 0;
   wake();
+  const Vec3 off = minus(origin, from);
   for (auto& step : cloths) {
     Lattice& l = step->lattice();
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i, ++p)
         for (int c = 0; c < 3; ++c) {
-          l.x.at(c, j, i) = float(positions[3 * p + c]);
+          l.x.at(c, j, i) = float(positions[3 * p + c] - off[c]);
           l.v.at(c, j, i) = l.w(j, i) > 0 ? float(velocities[3 * p + c]) : 0;
         }
   }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdio>
 #include <deque>
+#include <optional>
 
 #include "physics/energy_guard.h"
 #include "physics/plan.h"
@@ -31,7 +32,7 @@ inline std::string number(double v) {
 }
 
 struct Simulation::State {
-  State(Scene given, const Options& given_options);
+  State(Scene given, const Options& given_options, const Vec3& about);
 
   void advance_frame();
   void grab(int cloth, int i, int j, const Vec3& target, double stiffness);
@@ -39,13 +40,20 @@ struct Simulation::State {
   void carry(int cloth, const Vec3& velocity);
   void hold(int cloth, int i, int j, bool held);
   int cut(const Vec3& a, const Vec3& b, double width);
-  void set(std::span<const double> positions, std::span<const double> velocities);
+  // Positions are counted from `from`.
+  void set(std::span<const double> positions, const Vec3& from, std::span<const double> velocities);
   void move_collider(int collider, const Vec3& target);
+  void set_path(std::size_t collider, std::vector<Key> keys);
   Moment moment() const;
   void restore(const Moment& moment);
   std::size_t backup_bytes() const;
 
-  Scene scene;  // as simulated; only move_collider() and go_on_as() change it
+  // As simulated, about the origin; only move_collider(), restore() and go_on_as() change it. And where
+  // it stands, unless that is the same.
+  Scene scene;
+  const Vec3 origin;  // m
+  std::optional<Scene> placed;
+  const Scene& where_it_stands() const { return placed ? *placed : scene; }
   Options options;
   Simd simd;
   physics::Threads threads;

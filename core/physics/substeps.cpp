@@ -196,6 +196,7 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
   method = as;
   lag = is_explicit(as) ? dt / 2 : 0;
   scene.solver = solver;
+  if (placed) placed->solver = solver;
   for (auto& step : cloths) step->choose_anew(method);
   plan_changed();
 }

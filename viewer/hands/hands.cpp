@@ -99,7 +99,7 @@ void Hands::grab(Workspace& workspace, const Ray& ray) {
   target_ = target;
   Input input{.kind = Input::Kind::grab};
   input.cloth = held_.cloth, input.i = held_.i, input.j = held_.j;
-  input.a = to_double(target);
+  input.a = workspace.in_scene(target);
   input.amount = kPull;
   workspace.give(input);
 }
@@ -111,8 +111,8 @@ void Hands::cut(Workspace& workspace) {
   if (!from || !to || from->cloth != to->cloth) return;
   const auto& cloths = workspace.snapshot().scene->cloths;
   Input input{.kind = Input::Kind::cut};
-  input.a = to_double(from->point);
-  input.b = to_double(to->point);
+  input.a = workspace.in_scene(from->point);
+  input.b = workspace.in_scene(to->point);
   input.amount = 0.2 * spacing_of(cloths[static_cast<std::size_t>(to->cloth)]);
   workspace.give(input);
 }
@@ -131,15 +131,17 @@ void Hands::shoot(Workspace& workspace, const Ray& ray) const {
   const Setting& setting = workspace.setting();
   const double radius = 0.06 * setting.size, start = workspace.snapshot().time;
   const Vec3 g = workspace.document().scene().gravity;
-  const Vec3 from = to_double(ray.origin + ray.direction * (0.3f * workspace.camera.distance()));
+  const Vec3 from =
+      workspace.in_scene(ray.origin + ray.direction * (0.3f * workspace.camera.distance()));
   const Vec3 velocity = to_double(ray.direction * (2.2f * setting.size));
+  const double lowest = workspace.snapshot().origin[1] + setting.ground + radius;
   text::Json keys = text::Json::array();
   for (double t = 0; t <= kSeconds; t += kEvery) {
     Vec3 p{};
     for (std::size_t k = 0; k < 3; ++k)
       p[k] = std::clamp(from[k] + velocity[k] * t + 0.5 * g[k] * t * t, -9999.0, 9999.0);
-    const bool landed = setting.has_ground && p[1] < setting.ground + radius;
-    if (landed) p[1] = setting.ground + radius;
+    const bool landed = setting.has_ground && p[1] < lowest;
+    if (landed) p[1] = lowest;
     keys.push_back({start + t, p[0], p[1], p[2]});
     if (landed) break;
   }

@@ -51,7 +51,7 @@ bool Pusher::has_body(const Workspace& workspace) const {
 }
 
 Vec3f Pusher::place(const Workspace& workspace) const {
-  return to_float(place_of(workspace.snapshot().bodies[static_cast<std::size_t>(chosen_)]));
+  return to_float(place_of(workspace.snapshot().bodies[static_cast<std::size_t>(chosen_)].shape));
 }
 
 bool Pusher::take_arrow(const Workspace& workspace, const Area& area, float x, float y) {
@@ -97,7 +97,7 @@ void Pusher::move_body(Workspace& workspace, Vec3f to) {
   moved_ = true;
   Input input{.kind = Input::Kind::move_collider};
   input.collider = chosen_;
-  input.a = to_double(to);
+  input.a = workspace.in_scene(to);
   workspace.give(input);
 }
 
@@ -108,7 +108,7 @@ void Pusher::let_go(Workspace& workspace) {
   if (number >= workspace.document().scene().colliders.size()) return;
   const Collider& collider = workspace.document().scene().colliders[number];
   const std::string place = "/colliders/" + std::to_string(chosen_);
-  const Vec3 to = to_double(now_);
+  const Vec3 to = workspace.in_scene(now_);
   std::vector<Document::Change> changes{{place + "/" + place_key(collider.shape), to},
                                         {place + "/keys", text::Json::array()}};
   if (const Capsule* capsule = std::get_if<Capsule>(&collider.shape)) {

@@ -128,8 +128,9 @@ void Parameters::collider_path(const std::string& pointer, const Json& value) {
   const std::size_t number = std::stoul(pointer.substr(std::string("/colliders/").size()));
   if (number >= bodies.size()) return;  // not simulated yet
   Json keys = value;
-  if (draw_path("path", pointer, keys, workspace_->snapshot().time, place_of(bodies[number])))
-    change(pointer, keys);
+  const Snapshot& now = workspace_->snapshot();
+  const Vec3 place = place_of(moved(bodies[number].shape, now.origin));
+  if (draw_path("path", pointer, keys, now.time, place)) change(pointer, keys);
 }
 
 // A pin without a path is its [i, j] alone.
@@ -149,7 +150,8 @@ void Parameters::pins(const std::string& pointer, const Json& value) {
     Json keys = value[p].is_object() ? value[p]["keys"] : Json::array();
     const std::string place = text::join(pointer, std::to_string(p));
     const std::string name = "pin " + std::to_string(i) + ", " + std::to_string(j);
-    if (draw_path(name, place, keys, workspace_->snapshot().time, to_double(cloth.position(i, j))))
+    if (draw_path(name, place, keys, workspace_->snapshot().time,
+                  workspace_->in_scene(cloth.position(i, j))))
       change(place, keys.empty() ? at : Json{{"at", at}, {"keys", keys}});
   }
   ImGui::Unindent(6);

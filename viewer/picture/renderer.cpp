@@ -161,7 +161,7 @@ void Renderer::update_bodies(const Snapshot& snapshot, const Setting& setting,
     const Plane* plane = std::get_if<Plane>(&body.shape);
     if (plane && is_level(*plane)) continue;
     shrink(body, widest);
-    const Shape shape = about_its_place(body);
+    const Shape shape = about_its_place(body.shape);
     if (count < bodies_.size() && bodies_[count].shape == shape) {
       bodies_[count++].collider = body;
       continue;
@@ -174,7 +174,7 @@ void Renderer::update_bodies(const Snapshot& snapshot, const Setting& setting,
 }
 
 void Renderer::Body::draw(const Shader& shader) const {
-  shader.set("u_place", to_float(place_of(collider)));
+  shader.set("u_place", to_float(place_of(collider.shape)));
   mesh.draw();
 }
 

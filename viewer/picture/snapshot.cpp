@@ -1,8 +1,6 @@
 // Copies of the simulation's arrays, and where its colliders are.
 #include "picture/snapshot.h"
 
-#include "weft/shape.h"
-
 namespace weft::viewer {
 
 namespace {
@@ -11,34 +9,8 @@ void copy(std::span<const float> from, std::vector<float>& to) {
   to.assign(from.begin(), from.end());
 }
 
-void move_by(Vec3& p, const Vec3& by) {
-  for (std::size_t c = 0; c < 3; ++c) p[c] += by[c];
-}
-void move_by(Sphere& sphere, const Vec3& by) {
-  move_by(sphere.center, by);
-}
-void move_by(Plane& plane, const Vec3& by) {
-  move_by(plane.point, by);
-}
-void move_by(Box& box, const Vec3& by) {
-  move_by(box.center, by);
-}
-void move_by(Capsule& capsule, const Vec3& by) {
-  move_by(capsule.a, by);
-  move_by(capsule.b, by);
-}
-
-Vec3 place(const Sphere& s) {
-  return s.center;
-}
-Vec3 place(const Plane& p) {
-  return p.point;
-}
-Vec3 place(const Box& b) {
-  return b.center;
-}
-Vec3 place(const Capsule& c) {
-  return c.a;
+Vec3 negative(const Vec3& p) {
+  return {-p[0], -p[1], -p[2]};
 }
 
 void add_bounds(const Sphere& s, Bounds& bounds) {
@@ -56,9 +28,12 @@ void add_bounds(const Box& b, Bounds& bounds) {
 }  // namespace
 
 void copy_view(const View& view, const Scene& scene, Snapshot& to) {
+  to.origin = view.origin;
   to.bodies.clear();
-  for (const Collider& collider : scene.colliders)
+  for (const Collider& collider : scene.colliders) {
     to.bodies.push_back(collider_at(collider, view.time));
+    to.bodies.back().shape = moved(to.bodies.back().shape, negative(view.origin));
+  }
   to.time = view.time;
   to.cloths.resize(view.cloths.size());
   for (std::size_t c = 0; c < view.cloths.size(); ++c) {
@@ -85,22 +60,17 @@ void copy_view(const View& view, const Scene& scene, Snapshot& to) {
 }
 
 Collider collider_at(const Collider& collider, double time) {
-  Collider moved{collider.shape, collider.friction, collider.offset, {}, collider.cuts};
-  if (collider.keys.empty()) return moved;
-  std::visit([&](auto& shape) { move_by(shape, displacement(collider, time)); }, moved.shape);
-  return moved;
+  return {moved(collider.shape, displacement(collider, time)),
+          collider.friction,
+          collider.offset,
+          {},
+          collider.cuts};
 }
 
-Vec3 place_of(const Collider& collider) {
-  return std::visit([](const auto& shape) { return place(shape); }, collider.shape);
-}
-
-Shape about_its_place(const Collider& collider) {
-  Shape shape = collider.shape;
-  const Vec3 place = place_of(collider);
-  std::visit([&](auto& moved) { move_by(moved, {-place[0], -place[1], -place[2]}); }, shape);
-  if (Capsule* capsule = std::get_if<Capsule>(&shape)) capsule->b = to_double(to_float(capsule->b));
-  return shape;
+Shape about_its_place(const Shape& shape) {
+  Shape about = moved(shape, negative(place_of(shape)));
+  if (Capsule* capsule = std::get_if<Capsule>(&about)) capsule->b = to_double(to_float(capsule->b));
+  return about;
 }
 
 Bounds collider_bounds(const std::vector<Collider>& bodies) {

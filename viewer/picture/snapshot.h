@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "picture/linear.h"
+#include "weft/shape.h"
 #include "weft/simulation.h"
 
 namespace weft::viewer {
@@ -33,7 +34,9 @@ struct ClothCopy {
   Vec3f position(int i, int j) const { return {x[at(i, j)], y[at(i, j)], z[at(i, j)]}; }
 };
 
+// Everything is about the view's origin: the scene, the cloths and the bodies.
 struct Snapshot {
+  Vec3 origin{};  // m, where that is
   std::shared_ptr<const Scene> scene;
   std::uint64_t scene_serial = 0;  // rises with every scene or parameter that was set
   std::uint64_t change = 0;        // rises when the state is set without a new frame
@@ -43,16 +46,15 @@ struct Snapshot {
   double time = 0;  // s
 };
 
-// Copies the view and the colliders of the scene as simulated; keeps the memory that `to` has.
+// Copies the view and the colliders of the scene as simulated, where it stands; keeps the memory that
+// `to` has.
 void copy_view(const View& view, const Scene& scene, Snapshot& to);
 
 // The collider at `time` along its path, without keys.
 Collider collider_at(const Collider& collider, double time);
 
-// The point that a collider's keys move.
-Vec3 place_of(const Collider& collider);
-// The shape with that point at the origin, to single precision: the same all along a path.
-Shape about_its_place(const Collider& collider);
+// A shape with its place at zero, to single precision: the same all along a path.
+Shape about_its_place(const Shape& shape);
 
 // What of the colliders can be seen as a whole: all but planes.
 Bounds collider_bounds(const std::vector<Collider>& bodies);

@@ -48,8 +48,13 @@ void Player::start(Scene scene) {
   rewind_.keep(simulation_->moment());
   back_ = 0;
   ++serial_;
-  shown_scene_ = std::make_shared<const Scene>(scene_);
+  show_scene();
   next_measure_ = 0;
+}
+
+void Player::show_scene() {
+  const Vec3 origin = simulation_->view().origin;
+  shown_scene_ = std::make_shared<const Scene>(moved(scene_, {-origin[0], -origin[1], -origin[2]}));
 }
 
 void Player::restart_clock() {
@@ -85,7 +90,7 @@ void Player::change(Scene scene) {
     scene_ = std::move(scene);
     if (clock_.step() != scene_.time.frame) restart_clock();
     if (rewind_.size() == 0) rewind_.keep(simulation_->moment());
-    shown_scene_ = std::make_shared<const Scene>(scene_);
+    show_scene();
     ++serial_;
     next_measure_ = 0;
   });

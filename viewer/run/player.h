@@ -59,6 +59,7 @@ class Player {
   void attempt(Do&& action);
   void give(const Input& input);
   void start(Scene scene);
+  void show_scene();
   void restart_clock();
   void leave_past();
   void measure_sometimes();

@@ -34,7 +34,7 @@ void Log::write(const Workspace& workspace, const View& view, const Hands& hands
   text::Json faults = text::Json::array(), news = text::Json::array(), bodies = text::Json::array();
   for (const auto& [topic, text] : workspace.messages.faults()) faults.push_back(text);
   for (const Messages::News& one : workspace.messages.news()) news.push_back(one.text);
-  for (const Collider& body : s.bodies) bodies.push_back(place_of(body));
+  for (const Collider& body : s.bodies) bodies.push_back(place_of(moved(body.shape, s.origin)));
   text::Json places = text::Json::object();
   for (const auto& [name, at] : controls) places[name] = {std::lround(at.x), std::lround(at.y)};
   const Vec3f eye = workspace.camera.eye();

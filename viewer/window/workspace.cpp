@@ -131,6 +131,11 @@ void Workspace::go_back(int back) {
   session_->post([back](Player& player) { player.go_back(back); });
 }
 
+Vec3 Workspace::in_scene(Vec3f shown) const {
+  const Vec3& origin = snapshot().origin;
+  return {origin[0] + shown.x, origin[1] + shown.y, origin[2] + shown.z};
+}
+
 void Workspace::give(const Input& input) {
   session_->post([input](Player& player) { player.hand(input); });
 }

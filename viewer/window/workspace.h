@@ -47,6 +47,8 @@ class Workspace {
   // Frames from this time of the simulation on [s] wait.
   void wait_at(double time);
   const Snapshot& snapshot() const { return session_->shown().snapshot; }
+  // A point that is shown, where it stands in the scene [m].
+  Vec3 in_scene(Vec3f shown) const;
   const Vitals& vitals() const { return session_->shown().vitals; }
   const Setting& setting() const { return setting_; }
   const std::vector<ShippedScene>& scenes() const { return scenes_; }

@@ -202,6 +202,9 @@ std::vector<Fault> validate(const Scene& scene);
 double spacing_u(const Grid& grid);
 double spacing_v(const Grid& grid);
 
+// The scene with all that has a place, and all paths, moved by so much [m].
+Scene moved(Scene scene, const Vec3& by);
+
 // Mass of particle (i,j) [kg] by the cloth's masses, particle_mass or density.
 double particle_mass(const Cloth& cloth, int i, int j);
 

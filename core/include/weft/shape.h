@@ -18,6 +18,12 @@ struct ShapeMesh {
 };
 ShapeMesh triangulate(const Shape& shape);
 
+// The point that a collider's keys move: the sphere's or box's center, the plane's point, the capsule's
+// a.
+Vec3 place_of(const Shape& shape);
+// The shape moved by so much [m].
+Shape moved(Shape shape, const Vec3& by);
+
 // How far a collider has moved along its keys at `time` [m]; zero without keys. Add it to the
 // positions of triangulate().
 Vec3 displacement(const Collider& collider, double time);

@@ -50,11 +50,13 @@ struct Moment {
   };
   struct ClothMoment {
     int columns = 0, rows = 0;
-    std::vector<float> positions, velocities;  // x,y,z per particle, row-major [m], [m/s]
-    std::vector<std::array<int, 2>> held;      // particles [i, j] that cannot move
+    // x,y,z per particle, row-major: from the origin [m], [m/s]
+    std::vector<float> positions, velocities;
+    std::vector<std::array<int, 2>> held;  // particles [i, j] that cannot move
     std::vector<Torn> torn;
   };
   double time = 0;  // s
+  Vec3 origin{};    // m, what positions are counted from
   std::vector<ClothMoment> cloths;
   std::vector<std::vector<Key>> paths;  // of the colliders
   std::size_t bytes() const;
@@ -128,7 +130,7 @@ class Simulation {
   // `contacts` penetration and crossings, which cost most, are left out.
   Report report(bool contacts = true) const;
 
-  // FNV-1a hash of the bits of all positions, in scene order.
+  // FNV-1a hash of the bits of all positions, as view() shows them, in scene order.
   std::uint64_t hash() const;
 
   // Bytes of state per particle, padding included.

@@ -16,7 +16,7 @@ struct ClothView {
   int columns = 0;                    // nx
   int rows = 0;                       // ny
   int stride = 0;                     // floats from one row to the next, a multiple of 16
-  std::span<const float> x, y, z;     // position [m]
+  std::span<const float> x, y, z;     // position from the view's origin [m]
   std::span<const float> vx, vy, vz;  // velocity [m/s]; half a substep behind for `spring` methods
   std::span<const float> inverse_mass;  // 1/kg; 0 = pinned
   std::uint64_t topology_version = 0;   // rises when triangles change (tearing)
@@ -29,12 +29,15 @@ struct ClothView {
   // particle (j*stride + i), whose colour and force are its own. They change with topology_version;
   // none with the scene's tears "holes".
   std::span<const std::array<std::uint32_t, 3>> seams;
-  std::span<const std::array<float, 3>> seam_points;  // m
+  std::span<const std::array<float, 3>> seam_points;  // from the view's origin [m]
   std::span<const std::uint32_t> seam_particles;
 };
 
 struct View {
   std::vector<ClothView> cloths;
+  // m: what positions are counted from, in whole meters. Zero, unless the cloths start far from there:
+  // single precision is coarse far from zero.
+  std::array<double, 3> origin{};
   std::uint64_t version = 0;  // rises with every frame
   double time = 0;            // s since the start
 };

@@ -88,6 +88,10 @@ Vec3 place_of(const Box& box) {
   return box.center;
 }
 
+void move(Box& box, const Vec3& by) {
+  box.center = plus(box.center, by);
+}
+
 Core core_of(const Box& box, const Vec3& p) {
   Core core{{}, box.rounding};
   const std::array<Vec3, 3> axes = axes_of(box);

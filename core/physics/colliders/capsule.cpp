@@ -54,6 +54,11 @@ Vec3 place_of(const Capsule& capsule) {
   return capsule.a;
 }
 
+void move(Capsule& capsule, const Vec3& by) {
+  capsule.a = plus(capsule.a, by);
+  capsule.b = plus(capsule.b, by);
+}
+
 Core core_of(const Capsule& capsule, const Vec3& p) {
   const Vec3 e = minus(capsule.b, capsule.a);
   return {times(e, std::clamp(dot(p, e) / dot(e, e), 0.0, 1.0)), capsule.radius};

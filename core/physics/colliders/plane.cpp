@@ -83,6 +83,10 @@ Vec3 place_of(const Plane& plane) {
   return plane.point;
 }
 
+void move(Plane& plane, const Vec3& by) {
+  plane.point = plus(plane.point, by);
+}
+
 Nearest nearest_of(const Plane& plane, const Vec3& p) {
   const Vec3 n = unit_normal(plane);
   return {dot(p, n), n};

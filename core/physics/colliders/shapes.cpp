@@ -17,10 +17,18 @@ ShapeMesh triangulate(const Shape& shape) {
       shape);
 }
 
+Vec3 place_of(const Shape& shape) {
+  return std::visit([](const auto& s) { return place_of(s); }, shape);
+}
+
+Shape moved(Shape shape, const Vec3& by) {
+  std::visit([&](auto& s) { move(s, by); }, shape);
+  return shape;
+}
+
 Vec3 displacement(const Collider& collider, double time) {
   if (collider.keys.empty()) return {};
-  const Vec3 start = std::visit([](const auto& s) { return place_of(s); }, collider.shape);
-  return minus(position_at(collider.keys, time), start);
+  return minus(position_at(collider.keys, time), place_of(collider.shape));
 }
 
 double signed_distance(const Collider& collider, double time, const Vec3& point) {

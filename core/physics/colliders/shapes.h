@@ -32,12 +32,14 @@ struct Core {
 #define WEFT_SHAPE(Shape)                                    \
   ShapeConstants constants_of(const Shape& shape);           \
   Vec3 place_of(const Shape& shape);                         \
+  void move(Shape& shape, const Vec3& by);                   \
   Nearest nearest_of(const Shape& shape, const Vec3& p);     \
   Core core_of(const Shape& shape, const Vec3& p);           \
   Overlap overlap_of(const Shape& shape, const Triangle& t); \
   double feature_of(const Shape& shape);                     \
   ShapeMesh mesh_of(const Shape& shape);
-// constants_of: for the kernels; place_of: where it stands without keys; nearest_of, core_of: seen
+// constants_of: for the kernels; place_of: where it stands without keys, and move: to
+// elsewhere; nearest_of, core_of: seen
 // from p, in double; overlap_of: of the core and a triangle; feature_of: its smallest radius of
 // curvature, infinite for a plane [m]; mesh_of: triangles for drawing.
 WEFT_SHAPE(Sphere)

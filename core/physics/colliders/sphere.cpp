@@ -44,6 +44,10 @@ Vec3 place_of(const Sphere& sphere) {
   return sphere.center;
 }
 
+void move(Sphere& sphere, const Vec3& by) {
+  sphere.center = plus(sphere.center, by);
+}
+
 Nearest nearest_of(const Sphere& sphere, const Vec3& p) {
   const double length = std::hypot(p[0], p[1], p[2]);
   return {length - sphere.radius, length > 0 ? times(p, 1 / length) : Vec3{0, 1, 0}};
