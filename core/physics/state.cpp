@@ -31,7 +31,7 @@ Simd resolve(Simd simd) {
 constexpr double kAlikeMasses = 4;  // greatest over least
 std::string steady_jacobi(Scene& scene) {
   if (scene.solver.sweep != Sweep::jacobi) return "";
-  const double dt = scene.time.substeps == kAutoSubsteps ? 1 / kProjectionRate
+  const double dt = scene.time.substeps == kAutoSubsteps ? projection_substep(scene)
                                                          : scene.time.frame / scene.time.substeps;
   bool stiff = false;
   for (const Cloth& c : scene.cloths) {

@@ -19,9 +19,6 @@
 
 namespace weft {
 
-// Automatic substeps a second of methods that project.
-inline constexpr double kProjectionRate = 960;
-
 inline constexpr float kFarAway = 1e7f;  // m; nothing in a sane scene gets there
 
 // A number as notes give it.

@@ -92,7 +92,11 @@ void Simulation::State::choose_method_and_substeps() {
       build_cloths();
     }
   }
-  if (count == kAutoSubsteps) count = projection_substeps();
+  if (count == kAutoSubsteps) {
+    count = projection_substeps();
+    notes.push_back("substeps of " + number(scene.time.frame / count) +
+                    " s, so that sweeps hold up a sheet that hangs by an edge");
+  }
   Scene as_run = scene;
   as_run.solver.method = method;
   plan = describe(as_run, cloths, count);
@@ -179,7 +183,8 @@ bool Simulation::State::flies_away() const {
 
 int Simulation::State::projection_substeps() const {
   if (scene.time.substeps != kAutoSubsteps) return scene.time.substeps;
-  return std::max(1, int(std::lround(scene.time.frame * kProjectionRate)));
+  const double count = std::round(scene.time.frame / projection_substep(scene));
+  return int(std::clamp(count, 1.0, double(kMostSubsteps)));
 }
 
 // Goes on from the state as it is by another method or solver.
