@@ -85,9 +85,11 @@ inline void zero(Row3 row, int lanes) {
 
 struct Lattice {
   int columns = 0, rows = 0, stride = 0;
-  Rows x;                            // position [m]
-  Rows v;                            // velocity [m/s]
-  Rows previous;                     // positions before the substep; only where a stage needs them
+  Rows x;  // position [m]
+  Rows v;  // velocity [m/s]
+  // Earlier positions, where a stage asks for them: as predicted, or, for the second order, before the
+  // substep.
+  Rows previous;
   AlignedArray<float> inverse_mass;  // 1/kg, 0 = pinned or padding
   // 1/kg, of every particle of row j, or 0 where they differ: kernels for a plain row are faster.
   AlignedArray<float> row_inverse_mass;

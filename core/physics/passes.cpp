@@ -64,8 +64,8 @@ void Passes::run(const Substeps& given, Threads& threads, std::span<const RowSpa
   });
 }
 
-// Velocities that are made of positions at the end of a substep, and used by nobody but what
-// predicts the next, need not be written: it can make them itself.
+// What velocities gain from positions at the end of a substep, where nobody looks at them but what
+// predicts the next, need not be added: it can do that itself.
 void Passes::prepare(double dt) {
   prepared_dt_ = dt;
   for (Pass& p : passes_)

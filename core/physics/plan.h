@@ -5,11 +5,11 @@
 //
 //   spring, spring_friction:  bending (v) - springs (x, v -> forces -> v, x) - keyed_pins - colliders
 //                             - strain_limit
-//   positional, compliant:    predict (previous <- x; v, x by gravity) - keyed_pins - tethers (x)
-//                             - sweeps (x) - bending (x) - velocity (v <- (x - previous)/dt, unless
+//   positional, compliant:    predict (v, x by gravity; previous <- x) - keyed_pins - tethers (x)
+//                             - sweeps (x) - bending (x) - velocity (v += (x - previous)/dt, unless
 //                             compliant stages have changed v themselves) - colliders - strain_limit
 //
-// Where nothing follows velocity, it waits for the last substep, and predict makes v of x itself.
+// Where nothing follows velocity, it waits for the last substep, and predict adds to v itself.
 // After every stage from springs or velocity on, x - dt v is the position before the substep:
 // contact and the strain limit change x and v together.
 #pragma once

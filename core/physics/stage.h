@@ -50,7 +50,7 @@ struct Substeps {
 };
 
 // What a stage has to do with the velocities of particles: it reads or changes them as it moves
-// particles; it leaves them alone; or it makes them anew from where the substep began and ended.
+// particles; it leaves them alone; or it takes what they have gained from positions, which can wait.
 enum class Velocities { used, left_alone, from_positions };
 
 // Rows begin … end-1.

@@ -15,28 +15,31 @@ void apply_corrections(const AdvanceRow& r) {
 
 namespace {
 
-void predict_from_positions(const AdvanceRow& given) {
-  const AdvanceRow r = given;  // a copy that no store can alias
-  for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide3 x = load3(r.x, i), v = (x - load3(r.previous, i)) * wide(r.inverse_dt);
-    store3(r.previous, i, x);
-    store3(r.x, i, x + moved(v, load(r.w + i), Wide3{}, r.advance) * wide(r.advance.dt));
-  }
+// The velocity of free particles with what they were moved by since they were predicted. That is small
+// against their way in a substep: rounding of positions far from zero does not get into it.
+WEFT_INLINE Wide3 gained(const AdvanceRow& r, Wide3 x, int i) {
+  const Wide3 moved_by = x - load3(r.predicted, i);
+  return load3(r.v, i) + moved_by * select(load(r.w + i) > 0.0f, wide(r.inverse_dt), Wide{});
 }
 
 }  // namespace
 
-void predict(const AdvanceRow& r) {
-  if (r.inverse_dt > 0) return predict_from_positions(r);
+void predict(const AdvanceRow& given) {
+  const AdvanceRow r = given;  // a copy that no store can alias
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    if (r.previous.x) store3(r.previous, i, load3(r.x, i));
-    move(r.x, r.v, r.w, Wide3{}, r.advance, i);
+    const Wide3 x = load3(r.x, i);
+    const Wide3 before = r.inverse_dt > 0 ? gained(r, x, i) : load3(r.v, i);
+    const Wide3 v = moved(before, load(r.w + i), Wide3{}, r.advance);
+    const Wide3 there = x + v * wide(r.advance.dt);
+    store3(r.v, i, v);
+    store3(r.x, i, there);
+    if (r.predicted.x) store3(r.predicted, i, there);
   }
 }
 
-void velocity(const AdvanceRow& r) {
-  for (int i = 0; i < padded(r.columns); i += kLanes)
-    store3(r.v, i, (load3(r.x, i) - load3(r.previous, i)) * wide(r.inverse_dt));
+void velocity(const AdvanceRow& given) {
+  const AdvanceRow r = given;
+  for (int i = 0; i < padded(r.columns); i += kLanes) store3(r.v, i, gained(r, load3(r.x, i), i));
 }
 
 }  // namespace weft::WEFT_KERNELS

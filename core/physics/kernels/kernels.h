@@ -129,11 +129,11 @@ struct AdvanceRow {
   int columns;
   Row3 x, v;
   const float* w;
-  Row3 f;         // force [N], negated never; unused by predict
-  Row3 previous;  // predict: receives the positions before, if given
+  Row3 f;          // force [N], negated never; unused by predict
+  Row3 predicted;  // where predict took particles, if given; what velocity compares with
   Advance advance;
-  // 1/s; predict: > 0 where velocities are how far particles are from `previous`, times this. They
-  // are then neither read nor written.
+  // 1/s; predict: > 0 where velocities still lack how far free particles are from `predicted`, times
+  // this.
   float inverse_dt;
 };
 
@@ -262,8 +262,8 @@ struct KernelTable {
   void (*damped_spring_family)(const FamilyRow&);  // f += spring force and damping along it
   int (*tear)(const TearRow&);                     // returns how many have ended
   void (*integrate)(const AdvanceRow&);            // leapfrog step from f, then f <- 0
-  void (*predict)(const AdvanceRow&);              // previous <- x, v and x advanced by gravity
-  void (*velocity)(const AdvanceRow&);             // v <- (x - previous)/dt
+  void (*predict)(const AdvanceRow&);              // predicted <- x; v and x advanced by gravity
+  void (*velocity)(const AdvanceRow&);             // v <- v + (x - predicted)/dt
   void (*project)(const ProjectRows&);             // Gauss-Seidel, in place
   void (*jacobi_rows)(const JacobiRows&);
   // Jacobi: the corrections of one row's constraints, by unit inverse mass, added to the sums of rows

@@ -3,7 +3,7 @@
 //   x* = (4 x_n - x_{n-1})/3,   v* = (4 v_n - v_{n-1})/3
 //   predict x* + ⅔h v',  v' = (v* + ⅔h g)/(1 + ⅔h c)         (c: drag)
 //   constraints with (⅔h)² in the place of h²
-//   v_{n+1} = 3 (x_{n+1} - x*)/(2h)                           (v' and the corrections over ⅔h)
+//   v_{n+1} = 3 (x_{n+1} - x*)/(2h)                           v' and the corrections over ⅔h
 //
 // (Hairer, Wanner, "Solving Ordinary Differential Equations II", V.1.) A particle whose
 // velocity is no longer what the substep before left, because contact or a limit has changed it,
@@ -34,12 +34,19 @@ struct Slowed {
       : smooth(1.0f / (1.0f + r.dt * kTwoThirds * r.drag)), euler(1.0f / (1.0f + r.dt * r.drag)) {}
 };
 
-// v of the substep that has moved particles to x; which kind it was its inverse masses tell.
-WEFT_INLINE Wide3 velocity_from_star(const SecondOrderRow& r, Wide3 x, WideInt euler, int i) {
-  return (x - load3(r.star, i)) * select(euler, wide(1 / r.dt), wide(1.5f / r.dt));
+// The velocity of free particles with the corrections that have moved them to x, of either kind of
+// substep.
+WEFT_INLINE Wide3 gained(const SecondOrderRow& r, Wide3 x, WideInt free, WideInt euler, int i) {
+  const Wide inverse_step = select(euler, wide(1 / r.dt), wide(1.5f / r.dt));
+  return load3(r.v, i) + (x - load3(r.predicted, i)) * select(free, inverse_step, Wide{});
 }
 
-// kKnown: v is in memory; else nobody has touched it since the substep before.
+// Which kind the substep was its inverse masses tell.
+WEFT_INLINE WideInt was_euler(const SecondOrderRow& r, const Slowed& slowed, Wide mass, int i) {
+  return load(r.w + i) > mass * slowed.smooth;
+}
+
+// kKnown: v is what it is; else it lacks the corrections, and nobody else has touched it.
 template <bool kKnown>
 WEFT_INLINE void predict(const SecondOrderRow& given) {
   const SecondOrderRow r = given;
@@ -57,7 +64,7 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
       v = load3(r.v, i);
       smooth = known & free & equal(v, load3(r.v_end, i));
     } else {
-      v = velocity_from_star(r, x, load(r.w + i) > mass * slowed.smooth, i);
+      v = gained(r, x, free, was_euler(r, slowed, mass, i), i);
       smooth = free;
     }
     const Wide3 x_star = x + (x - load3(r.previous, i)) * wide(kThird);
@@ -67,12 +74,15 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
     const Wide3 velocity = (select(smooth, v_star, v) + g * step) * slow;
     store3(r.previous, i, x);
     store3(r.v_before, i, v);
-    const Wide3 star = select(smooth, x_star, x);
-    if (r.from_star) store3(r.star, i, star);
-    store3(r.x, i, select(free, star + velocity * step, x));
-    // Corrections will be added to v over ⅔h; an Euler step's belong over h.
-    if (!r.from_star)
+    const Wide3 there = select(free, select(smooth, x_star, x) + velocity * step, x);
+    store3(r.x, i, there);
+    if (r.from_positions) {
+      store3(r.predicted, i, there);
+      store3(r.v, i, select(free, velocity, v));
+    } else {
+      // Corrections will be added to v over ⅔h; an Euler step's belong over h.
       store3(r.v, i, select(free, velocity * select(smooth, wide(1), wide(1.5f)), v));
+    }
     store(r.w + i, mass * select(smooth, wide(slowed.smooth), wide(slowed.euler * 2.25f)));
   }
 }
@@ -88,9 +98,9 @@ void velocity_second_order(const SecondOrderRow& given) {
   const Slowed slowed(r);
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide mass = load(r.mass + i);
-    const WideInt euler = load(r.w + i) > mass * slowed.smooth;
-    const Wide3 v = r.from_star ? velocity_from_star(r, load3(r.x, i), euler, i)
-                                : load3(r.v, i) * select(euler, wide(kTwoThirds), wide(1));
+    const WideInt euler = was_euler(r, slowed, mass, i);
+    const Wide3 v = r.from_positions ? gained(r, load3(r.x, i), mass > 0.0f, euler, i)
+                                     : load3(r.v, i) * select(euler, wide(kTwoThirds), wide(1));
     store3(r.v, i, v);
     store3(r.v_end, i, v);
     store(r.w + i, mass);

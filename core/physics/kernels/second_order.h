@@ -10,18 +10,18 @@ namespace weft::physics {
 struct SecondOrderRow {
   int columns;
   Row3 x, v;
-  Row3 previous;      // x of the substep before; receives x [m]
-  Row3 v_before;      // v of the substep before; receives v [m/s]
-  Row3 star;          // receives where the substep starts from, x* [m]
-  bool from_star;     // the velocity is (x - x*) over the step, not v as it is
-  bool v_waits;       // predict: v is not known but by that
-  Row3 v_end;         // v as the substep before left it [m/s]
-  float* w;           // inverse mass, scaled while the constraints are solved [1/kg]
-  const float* mass;  // inverse mass proper [1/kg]
-  bool fresh;         // nothing is known of the substep before
-  float dt;           // s
-  float drag;         // 1/s
-  float gx, gy, gz;   // m/s²
+  Row3 previous;        // x of the substep before; receives x [m]
+  Row3 v_before;        // v of the substep before; receives v [m/s]
+  Row3 predicted;       // receives where predict takes particles [m]
+  bool from_positions;  // v lacks how far corrections move particles from there, over the step
+  bool v_waits;         // predict: that is not in v yet
+  Row3 v_end;           // v as the substep before left it [m/s]
+  float* w;             // inverse mass, scaled while the constraints are solved [1/kg]
+  const float* mass;    // inverse mass proper [1/kg]
+  bool fresh;           // nothing is known of the substep before
+  float dt;             // s
+  float drag;           // 1/s
+  float gx, gy, gz;     // m/s²
 };
 
 // The most tethers a particle has.

@@ -1,6 +1,7 @@
 // Stages "predict" and "velocity" of the methods that project positions: before the sweeps every
-// particle moves by its velocity and gravity, after them the velocity is what it moved by. Between
-// substeps where nobody else looks at velocities they are not written (passes.h).
+// particle moves by its velocity and gravity, after them the velocity gains what the sweeps moved it
+// by. Between substeps where nobody else looks at velocities that is left to the next predict
+// (passes.h).
 #include "physics/stages/stages.h"
 
 namespace weft::physics {
@@ -14,7 +15,7 @@ AdvanceRow rows_of(const ClothParts& parts, int begin, int end) {
   a.x = l.x.row(begin);
   a.v = l.v.row(begin);
   a.w = l.w(begin);
-  if (l.previous.bytes() > 0) a.previous = l.previous.row(begin);
+  if (l.previous.bytes() > 0) a.predicted = l.previous.row(begin);
   return a;
 }
 
@@ -24,7 +25,7 @@ class Predict final : public RowStage {
       : RowStage("predict", "positions by velocity and gravity", 0, parts.particles(), "particles"),
         parts_(parts),
         multipliers_(multipliers) {}
-  // Where they are not known, it makes them of positions itself.
+  // Where what the sweeps did is not in them yet, it adds that itself.
   Velocities velocities(double) const override { return Velocities::left_alone; }
   void run(int begin, int end, const Substep& s) override {
     AdvanceRow a = rows_of(parts_, begin, end);
@@ -42,7 +43,8 @@ class Predict final : public RowStage {
 class Velocity final : public RowStage {
  public:
   Velocity(const ClothParts& parts, bool compliant)
-      : RowStage("velocity", "from the change of position", 0, parts.particles(), "particles"),
+      : RowStage("velocity", "by how far the sweeps moved particles", 0, parts.particles(),
+                 "particles"),
         parts_(parts),
         compliant_(compliant) {}
   Velocities velocities(double dt) const override {

@@ -76,17 +76,18 @@ std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& correc
 struct History {
   explicit History(const Lattice& lattice);
   std::size_t bytes() const {
-    return v_before.bytes() + v_end.bytes() + star.bytes() + inverse_mass.size() * sizeof(float);
+    return v_before.bytes() + v_end.bytes() + predicted.bytes() +
+           inverse_mass.size() * sizeof(float);
   }
-  Rows v_before, v_end, star;
+  Rows v_before, v_end, predicted;
   AlignedArray<float> inverse_mass;
 };
 // The share of the substep over which constraint forces act.
 double implicit_share(const Solver& solver);
 
-// Where the velocity after the sweeps comes from: from the positions, or, where their rounding over
-// dt would show, from every correction as it is computed (which costs a line sweep a fourth more).
-// `positional` always takes the positions, the coloured sweeps of `compliant` never do.
+// Where velocities get what the sweeps did from: from how far particles were moved, or, where rounding
+// of positions over dt would show, from every correction as it is computed (which costs a line sweep a
+// fourth more). `positional` always takes the positions, the coloured sweeps of `compliant` never do.
 bool velocity_from_positions(const Solver& solver, bool compliant, double dt);
 // 1/s; what stages that move particles multiply corrections by to get their velocity: 0 = nothing.
 float velocity_gain(const Solver& solver, bool compliant, double dt);
