@@ -294,6 +294,38 @@ TEST_F(Window, BodiesMoveByKeysAndAsBallsAndTheWayBackIsKept) {
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 
+// Kilometers away from zero: shown about an origin of its own, moved and kept where it stands.
+TEST_F(Window, AFarSceneIsPlayedAsOneNearby) {
+  folder.write("far.json", R"({"weft": 1, "cloths": [{"grid": {"points": [20, 20],
+      "origin": [4000, 500, -7000]}, "pins": [[0, 0], [19, 0]]}],
+      "colliders": [{"sphere": {"center": [4000.5, 499.5, -6999.5], "radius": 0.2}}]})");
+  Screen screen(folder);
+  screen.open("far.json --paused");
+  const Json before = screen.now();
+  EXPECT_EQ(before["bodies"][0], (Json{4000.5, 499.5, -6999.5}));
+  screen.key("space");
+  screen.wait_for("paused", false);
+  screen.type("keydown Right sleep 1 keyup Right");
+  screen.wait("the sphere to move and stay", [&](const Json& now) {
+    return now["edited"] == true && now["bodies"][0] != before["bodies"][0];
+  });
+  screen.key("5");
+  screen.wait_for("tool", "ball");
+  screen.click(760, 300);
+  const Json shot = screen.wait(
+      "a ball", [&](const Json& now) { return now["bodies"].size() == 2 && now["frame"] > 20; });
+  const double centers[] = {4000, 500, -7000};
+  for (const Json& body : shot["bodies"])
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(body[k], centers[k], 20);
+  screen.key("ctrl+s");
+  screen.wait("the saved scene", [](const Json& now) { return now["edited"] == false; });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+  EXPECT_EQ(weft("check far.json"), 0);
+  const Json saved = Json::parse(folder.read("far.json"));
+  EXPECT_NEAR(saved["colliders"][0]["sphere"]["center"][1], 499.5, 0.1);
+  EXPECT_NE(saved["colliders"][0]["sphere"]["center"][0], 4000.5);
+}
+
 TEST_F(Window, WithoutDisplayOrOpenGlItSaysSo) {
   Screen screen(folder);
   const auto view = [&](const std::string& before) {
