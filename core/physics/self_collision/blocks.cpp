@@ -52,6 +52,12 @@ float dot(const float* a, const float* b) {
 
 }  // namespace
 
+std::size_t count_particles(const std::vector<Sheet>& sheets) {
+  std::size_t n = 0;
+  for (const Sheet& s : sheets) n += std::size_t(s.lattice->columns) * std::size_t(s.lattice->rows);
+  return n;
+}
+
 Blocks::Blocks(const std::vector<Sheet>& sheets, float neighbour)
     : sheets_(sheets), neighbour_(neighbour) {
   cut(sheets);

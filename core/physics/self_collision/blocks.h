@@ -29,6 +29,8 @@ struct Sheet {
   float uu, uv, vv;  // rest metric: |di u + dj v|² [m²]
   bool course;
 };
+// Of all sheets together.
+std::size_t count_particles(const std::vector<Sheet>& sheets);
 
 // Of no values.
 inline Spread nothing() {

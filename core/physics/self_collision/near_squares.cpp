@@ -13,12 +13,6 @@ constexpr float kClose = 0.25f;      // spacings that neighbours are kept apart
 constexpr float kOverstretched = 2;  // half-diagonals at rest: larger squares are torn and left out
 constexpr std::size_t kFewParticles = 4096;
 
-std::size_t count_particles(const std::vector<Sheet>& sheets) {
-  std::size_t n = 0;
-  for (const Sheet& s : sheets) n += std::size_t(s.lattice->columns) * std::size_t(s.lattice->rows);
-  return n;
-}
-
 // Only a square itself is no pair of it.
 std::vector<RestMetric> metrics_of(const std::vector<Sheet>& sheets) {
   std::vector<RestMetric> metrics;

@@ -22,12 +22,6 @@ constexpr int kMostSubstepsTouching = 12;
 constexpr int kMostSubstepsCourse = 4;  // its push acts like a spring, stable up to here
 constexpr std::size_t kFew = 4096;      // particles that one thread does faster
 
-std::size_t count_particles(const std::vector<Sheet>& sheets) {
-  std::size_t n = 0;
-  for (const Sheet& s : sheets) n += std::size_t(s.lattice->columns) * std::size_t(s.lattice->rows);
-  return n;
-}
-
 std::vector<RestMetric> rest_metrics(const std::vector<Sheet>& sheets) {
   std::vector<RestMetric> metrics;
   for (const Sheet& s : sheets) {
