@@ -119,11 +119,12 @@ TEST(OriginOf, MomentsAndStatesGoFromOneToAnother) {
   far.set_scene(busy_scene(Method::spring));
   EXPECT_EQ(far.positions(), x);
   EXPECT_EQ(far.scene(), busy_scene(Method::spring));
-  // A moment of a scene somewhere else is put where it was.
+  // A moment of a scene somewhere else is put where it was, as finely.
   Simulation near(busy_scene(Method::spring));
   near.restore(again.moment());
-  for (std::size_t n = 0; n < x.size(); ++n)
-    ASSERT_NEAR(near.positions()[n], x[n], 1e-3) << "as far as single precision goes there";
+  EXPECT_EQ(near.positions(), x);
+  EXPECT_EQ(near.scene().cloths, busy_scene(Method::spring).cloths);  // paths are the moment's
+  EXPECT_EQ(near.hash(), again.hash());
 }
 
 TEST(OriginOf, FilesTellWhereThingsStand) {

@@ -70,7 +70,6 @@ void Simulation::State::restore(const Moment& m) {
       for (const Moment::Torn& t : c.torn) torn.push_back({t.di, t.dj, t.j, t.a});
       step.topology()->set_torn(torn);
     }
-    if (is_explicit(method)) spectra[n] = spectrum_of(n);
     positions.insert(positions.end(), c.positions.begin(), c.positions.end());
     velocities.insert(velocities.end(), c.velocities.begin(), c.velocities.end());
   }
@@ -80,6 +79,8 @@ void Simulation::State::restore(const Moment& m) {
   take_substeps(began_at_);
   go_on_as(began_as_, began_with_);
   lag = is_explicit(method) ? dt / 2 : 0;
+  for (std::size_t n = 0; is_explicit(method) && n < cloths.size(); ++n)
+    spectra[n] = spectrum_of(n);
   status = Status{};
   plan_changed();
   set(positions, m.origin, velocities);
@@ -109,16 +110,12 @@ void change_pins(const Cloth& before, const Cloth& after, Moment::ClothMoment& c
 
 void Simulation::set_scene(Scene scene) {
   Simulation next(std::move(scene), state_->options);
-  const Scene& before = this->scene();
-  const Scene after = next.scene();
+  const Scene &before = this->scene(), after = next.scene();
   bool same = before.cloths.size() == after.cloths.size();
   for (std::size_t n = 0; same && n < after.cloths.size(); ++n)
     same = before.cloths[n].grid.nx == after.cloths[n].grid.nx &&
            before.cloths[n].grid.ny == after.cloths[n].grid.ny;
   if (same) {
-    // The cloths stay where they are, wherever the new scene would have them start.
-    if (next.state_->origin != state_->origin)
-      next.state_ = std::make_unique<State>(after, state_->options, state_->origin);
     Moment m = state_->moment();
     for (std::size_t n = 0; n < after.cloths.size(); ++n)
       if (before.cloths[n].pins != after.cloths[n].pins)
@@ -134,8 +131,13 @@ void Simulation::set_scene(Scene scene) {
 Moment Simulation::moment() const {
   return state_->moment();
 }
+// About the moment's origin, wherever the scene would have its own: cloths stay as fine as they were.
 void Simulation::restore(const Moment& moment) {
-  state_->restore(moment);
+  if (moment.origin == state_->origin) return state_->restore(moment);
+  auto next = std::make_unique<State>(scene(), state_->options, moment.origin);
+  next->restore(moment);
+  next->changes += state_->changes;
+  state_ = std::move(next);
 }
 
 }  // namespace weft

@@ -157,19 +157,18 @@ Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Family>& famili
 }
 
 double projection_substep(const Scene& scene) {
-  constexpr double kLongest = 1.0 / 960;  // s
   constexpr double kSag = 0.02;
   constexpr double kJacobi = 0.3;  // of what a Gauss-Seidel sweep does: it takes means
   const Vec3& a = scene.gravity;
   const double g = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
   const Solver& solver = scene.solver;
-  if (solver.sweep == Sweep::line || solver.tethers || !(g > 0)) return kLongest;
+  if (solver.sweep == Sweep::line || solver.tethers || !(g > 0)) return kLongestProjection;
   const double sweeps = solver.iterations * (solver.sweep == Sweep::jacobi ? kJacobi : 1);
-  double dt = kLongest;
+  double dt = kLongestProjection;
   for (const Cloth& c : scene.cloths) {
-    const double points_per_meter =
+    const double points_over_spacing =
         std::max(c.grid.nx / spacing_u(c.grid), c.grid.ny / spacing_v(c.grid));
-    double needed = std::sqrt(kSag * sweeps / (2 * g * points_per_meter));
+    double needed = std::sqrt(kSag * sweeps / (2 * g * points_over_spacing));
     if (solver.method != Method::positional) {
       double lightest = particle_mass(c, 0, 0);
       for (const double mass : c.masses) lightest = std::min(lightest, mass);

@@ -26,11 +26,14 @@ struct Spectrum {
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Family>& families,
                            const Lattice& lattice, bool damped);
 
+// s, of methods that project; about what a sheet of 1 m with 32 x 32 points needs.
+inline constexpr double kLongestProjection = 1.0 / 960;
+
 // Methods that project are stable at any substep, but a sweep of Gauss-Seidel or Jacobi passes a pull on
 // over one constraint alone: each is as stiff as a substep can make it, m/(2 dt²), and a sheet of n
 // points, h apart, that hangs by its edge stretches there by 2 n g dt²/h. The longest substep that keeps
 // this to 2 %, or lets one sweep do all that the material's own stiffness asks for, k dt² = m; at most
-// 1/960 s.
+// kLongestProjection.
 double projection_substep(const Scene& scene);
 
 }  // namespace weft::physics

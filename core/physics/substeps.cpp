@@ -94,8 +94,9 @@ void Simulation::State::choose_method_and_substeps() {
   }
   if (count == kAutoSubsteps) {
     count = projection_substeps();
-    notes.push_back("substeps of " + number(scene.time.frame / count) +
-                    " s, so that sweeps hold up a sheet that hangs by an edge");
+    if (projection_substep(scene) < kLongestProjection)
+      notes.push_back("substeps of " + number(scene.time.frame / count) +
+                      " s, so that sweeps hold up a sheet that hangs by an edge");
   }
   Scene as_run = scene;
   as_run.solver.method = method;

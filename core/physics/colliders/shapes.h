@@ -38,9 +38,8 @@ struct Core {
   Overlap overlap_of(const Shape& shape, const Triangle& t); \
   double feature_of(const Shape& shape);                     \
   ShapeMesh mesh_of(const Shape& shape);
-// constants_of: for the kernels; place_of: where it stands without keys, and move: to
-// elsewhere; nearest_of, core_of: seen
-// from p, in double; overlap_of: of the core and a triangle; feature_of: its smallest radius of
+// constants_of: for the kernels; place_of: where it stands without keys; move: to elsewhere;
+// nearest_of, core_of: seen from p, in double; overlap_of: of the core and a triangle; feature_of: its smallest radius of
 // curvature, infinite for a plane [m]; mesh_of: triangles for drawing.
 WEFT_SHAPE(Sphere)
 WEFT_SHAPE(Plane)
