@@ -99,6 +99,31 @@ TEST(ContactTunnel, SmallCollidersDoNotSlipBetweenParticles) {
     }
 }
 
+// The nearer a body comes to a held corner, the longer the lever of the triangle's other corners.
+TEST(ContactTunnel, BodiesThatPassAHeldCornerFlingNothing) {
+  for (const double miss : {0.0, 0.001, 0.01})
+    for (const int substeps : {1, 4, 16}) {
+      Scene scene;
+      scene.gravity = {0, 0, 0};
+      scene.time.substeps = substeps;
+      scene.solver.method = Method::compliant;
+      scene.cloths.push_back(flat_sheet(5, 0.4, {0.2, 0, 0.2}));
+      scene.cloths[0].stiffness = {3, 1, 0.2};
+      scene.cloths[0].pins = {{0, 0, {}}};
+      scene.colliders.push_back(
+          collider_of(Box{{miss, 0.1, miss}, {0.01, 0.01, 0.01}, {20, 30, 0}, 0}, 0.5));
+      scene.colliders[0].keys = {{0, {miss, 0.1, miss}}, {0.1, {miss, -0.3, miss}}};
+      Simulation simulation(scene);
+      for (int frame = 0; frame < 12; ++frame) {
+        simulation.advance_frame();
+        for (const double x : simulation.positions())
+          ASSERT_LT(std::abs(x), 1) << miss << " m, " << substeps << " substeps, frame " << frame;
+        for (const double v : simulation.velocities())
+          ASSERT_LT(std::abs(v), 40) << miss << " m, " << substeps << " substeps, frame " << frame;
+      }
+    }
+}
+
 TEST(ContactTunnel, LargeCollidersNeedNoTriangles) {
   Held held(Sphere{{0, 0.5, 0}, 0.4}, {});
   const Simulation simulation(held.scene);

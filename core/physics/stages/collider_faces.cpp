@@ -3,7 +3,8 @@
 //
 // The point p = Σ b_k x_k of a triangle deepest in the collider is lifted out by `depth` along the
 // normal there, each corner by its share:  x_k += w_k b_k / (Σ w b²) n depth.  It rubs like a
-// particle: p's velocity into the surface is lost, friction shortens the rest.
+// particle: p's velocity into the surface is lost, friction shortens the rest. Beside a held corner the
+// others are long levers; none is moved by more than kMostLever times the depth at once.
 #include <algorithm>
 #include <cmath>
 
@@ -18,6 +19,7 @@ constexpr int kMostPlaces = 16;   // on the way of a fast collider
 constexpr double kSlack = 1e-3;   // of an edge: a triangle may be as deep
 constexpr double kDeep = 1e-2;    // of an edge: one that was as deep is looked at again at once
 constexpr int kTurns = 8;         // of one triangle in a substep
+constexpr double kMostLever = 2;  // the greatest share of a corner; 1.37 where masses are equal
 
 using Weights = std::array<double, 3>;
 
@@ -202,22 +204,25 @@ class ColliderFaces final : public RowStage {
     if (touch.depth <= kSlack * edge_) return false;
     touch.normal = plus(plus(times(axes_[0], touch.normal[0]), times(axes_[1], touch.normal[1])),
                         times(axes_[2], touch.normal[2]));
-    double mobility = 0;
+    std::array<double, 3> share;
+    double mobility = 0, greatest = 0;
     Vec3 speed{};
     for (int k = 0; k < 3; ++k) {
-      mobility += l.w(j[k], i[k]) * touch.weights[k] * touch.weights[k];
+      share[k] = l.w(j[k], i[k]) * touch.weights[k];
+      mobility += share[k] * touch.weights[k];
+      greatest = std::max(greatest, share[k]);
       speed = plus(speed, times(v[k], touch.weights[k]));
     }
     if (mobility <= 0) return false;
+    const bool lever = greatest > kMostLever * mobility;
+    const double scale = lever ? kMostLever / greatest : 1 / mobility;
     const auto [moved, gained] = rub(r, touch, speed);
-    for (int k = 0; k < 3; ++k) {
-      const double share = l.w(j[k], i[k]) * touch.weights[k] / mobility;
+    for (int k = 0; k < 3; ++k)
       for (int m = 0; m < 3; ++m) {
-        l.x.at(m, j[k], i[k]) = float(l.x.at(m, j[k], i[k]) + share * moved[m]);
-        l.v.at(m, j[k], i[k]) = float(l.v.at(m, j[k], i[k]) + share * gained[m]);
+        l.x.at(m, j[k], i[k]) = float(l.x.at(m, j[k], i[k]) + scale * share[k] * moved[m]);
+        l.v.at(m, j[k], i[k]) = float(l.v.at(m, j[k], i[k]) + scale * share[k] * gained[m]);
       }
-    }
-    return touch.depth > kDeep * edge_;
+    return !lever && touch.depth > kDeep * edge_;
   }
 
   Vec3 into_shape(const Vec3& p) const {
