@@ -49,6 +49,44 @@ TEST(ContactHand, PinsComeAndGo) {
   EXPECT_TRUE(simulation.status().ok);
 }
 
+// What air and hands put into a free sheet, by every method: as much as into springs.
+TEST(ContactHand, EveryMethodTakesPushesAlike) {
+  const auto momentum = [](const Solver& solver, bool wind, int substeps) {
+    Scene scene;
+    scene.gravity = {0, 0, 0};
+    scene.time.substeps = substeps;
+    scene.solver = solver;
+    scene.cloths.push_back(flat_sheet(11, 0.5, {0, 0, 0}));
+    scene.cloths[0].stiffness = {100, 100, 20};
+    if (wind) scene.wind = {{3, 4, 0}, 0.6, 0.3, 0};
+    Simulation simulation(scene);
+    if (!wind) simulation.grab(0, 5, 5, {0, 1, 0}, 5);
+    advance(simulation, 4.0 / 60);
+    double sum = 0;
+    for (std::size_t p = 0; p < 121; ++p) sum += at(simulation.velocities(), p)[1] / 121;
+    return sum;
+  };
+  const double blown = momentum({}, true, 64), pulled = momentum({}, false, 64);
+  EXPECT_GT(blown, 1);
+  EXPECT_GT(pulled, 1);
+  for (const Method method : {Method::positional, Method::compliant})
+    for (const Sweep sweep : {Sweep::gauss_seidel, Sweep::jacobi, Sweep::line})
+      for (const int order : {1, 2}) {
+        Solver solver;
+        solver.method = method;
+        solver.sweep = sweep;
+        solver.order = order;
+        if (order == 2 && (method == Method::positional || sweep == Sweep::jacobi)) continue;
+        const std::string which = std::to_string(int(method)) + ", sweep " +
+                                  std::to_string(int(sweep)) + ", order " + std::to_string(order);
+        // Substeps with velocities from positions, and without.
+        for (const int substeps : {16, 64})
+          EXPECT_NEAR(momentum(solver, true, substeps), blown, 0.05 * blown) << which;
+        // A sheet that gives less follows a pull faster.
+        EXPECT_NEAR(momentum(solver, false, 64), pulled, 0.1 * pulled) << which;
+      }
+}
+
 // A flat sheet in a wind at an angle: the momentum that it gains is that of a flat plate.
 TEST(ContactHand, WindPushesLikeOnAFlatPlate) {
   Scene scene;

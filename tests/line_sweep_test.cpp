@@ -46,7 +46,7 @@ Sheet crumpled(int nx, int ny, Family family, double gradient = 0) {
 
 void sweep(Sheet& s, Simd simd, const LineOptions& options, int threads = 1) {
   const std::vector<StartInside> no_colliders;
-  const ClothParts parts{s.scene,    s.scene.cloths[0],  s.lattice,
+  const ClothParts parts{s.scene,    s.scene.cloths[0],  s.scene.solver.method, s.lattice,
                          s.families, kernel_table(simd), no_colliders};
   Threads pool(threads);
   make_line(parts, options)->run_alone(s.lattice.rows, {kDt, kDt, 0}, pool);

@@ -22,7 +22,7 @@ ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::ui
       seed_(seed),
       families_(families_of(cloth_)),
       lattice_(make_lattice(cloth_, cloth_index, seed, keeps_previous(scene.solver, method))),
-      parts_{scene, cloth_, lattice_, families_, kernels, starts_} {
+      parts_{scene, cloth_, method_, lattice_, families_, kernels, starts_} {
   for (const Collider& c : scene.colliders) starts_.push_back(start_inside(lattice_, c));
   const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                [](const Collider& c) { return c.cuts; });

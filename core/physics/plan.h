@@ -3,12 +3,14 @@
 //
 // A frame is `substeps` substeps; a substep of one cloth is, in this order,
 //
-//   spring, spring_friction:  bending (v) - springs (x, v -> forces -> v, x) - keyed_pins - colliders
+//   spring, spring_friction:  bending (v) - springs (x, v -> forces -> v, x) - wind - keyed_pins
+//                             - colliders - strain_limit
+//   positional, compliant:    predict (v, x by gravity; previous <- x) - wind (x) - keyed_pins
+//                             - tethers (x) - sweeps (x) - bending (x) - velocity (v += (x - previous)
+//                             /dt, unless the stages before have changed v themselves) - colliders
 //                             - strain_limit
-//   positional, compliant:    predict (v, x by gravity; previous <- x) - keyed_pins - tethers (x)
-//                             - sweeps (x) - bending (x) - velocity (v += (x - previous)/dt, unless
-//                             compliant stages have changed v themselves) - colliders - strain_limit
 //
+// A hand's stages come right after springs or predict.
 // Where nothing follows velocity, it waits for the last substep, and predict adds to v itself.
 // After every stage from springs or velocity on, x - dt v is the position before the substep:
 // contact and the strain limit change x and v together.
@@ -78,11 +80,6 @@ class ClothStep {
   std::unique_ptr<Seams> seams_;
   std::unique_ptr<Passes> passes_;
 };
-
-// Whether a method integrates springs as forces, and so has a stability limit.
-inline bool is_explicit(Method m) {
-  return m == Method::spring || m == Method::spring_friction;
-}
 
 // The description that `weft explain` prints.
 Plan describe(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths,

@@ -133,7 +133,7 @@ struct AdvanceRow {
   Row3 predicted;  // where predict took particles, if given; what velocity compares with
   Advance advance;
   // 1/s; predict: > 0 where velocities still lack how far free particles are from `predicted`, times
-  // this.
+  // this. push: > 0 where velocities gain at once, else they get it from positions.
   float inverse_dt;
 };
 

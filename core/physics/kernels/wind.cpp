@@ -87,7 +87,7 @@ void wind(const WindRow& given) {
 void push(const AdvanceRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide3 gained = load3(r.f, i) * (load(r.w + i) * r.advance.dt);
-    store3(r.v, i, load3(r.v, i) + gained);
+    if (r.inverse_dt > 0) store3(r.v, i, load3(r.v, i) + gained);
     store3(r.x, i, load3(r.x, i) + gained * wide(r.advance.dt));
     store3(r.f, i, Wide3{});
   }

@@ -12,17 +12,34 @@ namespace weft::physics {
 
 constexpr double kStiffer = 4;  // than the cloth's links, at most
 
+double Grab::held_stiffness() const {
+  double stiffest = 0;
+  for (const Family& f : parts_.families) stiffest = std::max(stiffest, f.stiffness);
+  return stiffest > 0 ? std::min(stiffness, kStiffer * stiffest) : stiffness;
+}
+
+double Grab::energy() const {
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double e = target[k] - parts_.lattice.x.at(k, row, column);
+    square += e * e;
+  }
+  return 0.5 * held_stiffness() * square;
+}
+
+Velocities Grab::velocities(double dt) const {
+  return push_of(parts_, dt).velocities ? Velocities::used : Velocities::left_alone;
+}
+
 void Grab::run(int j, const Substep& s) {
   if (j != row) return;
   Lattice& l = parts_.lattice;
-  const double w = l.w(row, column), dt = s.dt;
+  const Push pushed = push_of(parts_, s.dt);
+  const double w = l.w(row, column), dt = pushed.dt;
   if (w <= 0) return;
-  double stiffest = 0, strongest = 0;  // N/m, N
-  for (const Family& f : parts_.families) {
-    stiffest = std::max(stiffest, f.stiffness);
-    strongest = std::max(strongest, 2 * f.stiffness * f.rest);
-  }
-  const double k_held = stiffest > 0 ? std::min(stiffness, kStiffer * stiffest) : stiffness;
+  double strongest = 0;  // N
+  for (const Family& f : parts_.families) strongest = std::max(strongest, 2 * f.stiffness * f.rest);
+  const double k_held = held_stiffness();
   const double c = 2 * std::sqrt(k_held / w);
   const double share = dt * w / (1 + dt * dt * w * k_held + dt * w * c);
   double gains[3], square = 0;
@@ -36,7 +53,7 @@ void Grab::run(int j, const Substep& s) {
   for (int k = 0; k < 3; ++k) {
     float &x = l.x.at(k, row, column), &v = l.v.at(k, row, column);
     const double gained = cut * gains[k];
-    v = float(v + gained);
+    if (pushed.velocities) v = float(v + gained);
     x = float(x + dt * gained);
   }
 }

@@ -9,6 +9,8 @@ class Grab final : public RowStage {
  public:
   explicit Grab(const ClothParts& parts)
       : RowStage("grab", "a particle drawn to a target", 0, 1, "particles"), parts_(parts) {}
+  double energy() const;  // J; in the spring as it is stretched now
+  Velocities velocities(double dt) const override;
   void run(int j, const Substep& s) override;
 
   int column = 0, row = 0;
@@ -16,6 +18,8 @@ class Grab final : public RowStage {
   double stiffness = 0;  // N/m
 
  private:
+  double held_stiffness() const;
+
   ClothParts parts_;
 };
 

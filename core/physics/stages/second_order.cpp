@@ -117,6 +117,13 @@ float velocity_gain(const Solver& solver, bool compliant, double dt) {
   return float(1 / (dt * implicit_share(solver)));
 }
 
+Push push_of(const ClothParts& parts, double dt) {
+  const Solver& solver = parts.scene.solver;
+  if (is_explicit(parts.method)) return {dt, true};
+  const bool waits = velocity_from_positions(solver, parts.method == Method::compliant, dt);
+  return {dt * implicit_share(solver), !waits};
+}
+
 double implicit_share(const Solver& solver) {
   return solver.order == 2 ? 2.0 / 3.0 : 1.0;
 }

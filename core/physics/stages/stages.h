@@ -20,10 +20,16 @@ struct StartInside {
 };
 StartInside start_inside(const Lattice& lattice, const Collider& collider);
 
+// Whether a method integrates springs as forces, and so has a stability limit.
+inline bool is_explicit(Method m) {
+  return m == Method::spring || m == Method::spring_friction;
+}
+
 // What every stage of one cloth refers to; outlives the stages.
 struct ClothParts {
   const Scene& scene;
   const Cloth& cloth;
+  const Method& method;  // that runs: the scene's, or a stable one in its place
   Lattice& lattice;
   const std::vector<Family>& families;
   const KernelTable& kernels;
@@ -91,6 +97,14 @@ double implicit_share(const Solver& solver);
 bool velocity_from_positions(const Solver& solver, bool compliant, double dt);
 // 1/s; what stages that move particles multiply corrections by to get their velocity: 0 = nothing.
 float velocity_gain(const Solver& solver, bool compliant, double dt);
+
+// How a force pushes particles that have just been moved (by springs or predict): as constraints do,
+// for the same share of the substep, and on velocities where these do not get it from positions.
+struct Push {
+  double dt;        // s, for which it acts
+  bool velocities;  // they gain it at once
+};
+Push push_of(const ClothParts& parts, double dt);
 std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
                                                     Multipliers* multipliers);
 std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history);

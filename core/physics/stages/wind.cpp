@@ -44,6 +44,10 @@ class WindStage final : public RowStage {
     }
   }
 
+  // What it reads, predict has brought up to date.
+  Velocities velocities(double dt) const override {
+    return push_of(parts_, dt).velocities ? Velocities::used : Velocities::left_alone;
+  }
   void reserve_slots(int slots) override { force_ = Rows(2 * slots, parts_.lattice.stride); }
   std::size_t bytes() const override { return force_.bytes(); }
 
@@ -63,7 +67,9 @@ class WindStage final : public RowStage {
     a.v = l.v.row(j);
     a.w = l.w(j);
     a.f = force(j);
-    a.advance.dt = float(s.dt);
+    const Push pushed = push_of(parts_, s.dt);
+    a.advance.dt = float(pushed.dt);
+    a.inverse_dt = pushed.velocities ? float(1 / pushed.dt) : 0;
     parts_.kernels.push(a);
   }
 
