@@ -3,6 +3,7 @@
 
 #include "contact_scenes.h"
 #include "machines.h"
+#include "weft/read_scene.h"
 
 namespace weft {
 namespace {
@@ -85,6 +86,92 @@ TEST(ContactHand, EveryMethodTakesPushesAlike) {
         // A sheet that gives less follows a pull faster.
         EXPECT_NEAR(momentum(solver, false, 64), pulled, 0.1 * pulled) << which;
       }
+}
+
+// Somebody at a shipped scene: pulls at its cloth, moves its first body, carries its pins about.
+struct Person {
+  enum Does { kPull, kPush, kCarry };
+  Scene scene;
+  Simulation simulation;
+  Vec3 start{};
+  double side = 0;  // of the sheet, m
+
+  explicit Person(Scene given) : scene(given), simulation(given) {
+    for (int frame = 0; frame < 20; ++frame) simulation.advance_frame();
+    const Grid& g = scene.cloths[0].grid;
+    start = at(simulation.positions(), std::size_t(g.ny / 2) * g.nx + g.nx / 3);
+    side = std::hypot(g.u[0], g.u[1], g.u[2]);
+  }
+  void move(Does does, const Vec3& offset, const Vec3& velocity) {
+    const Grid& g = scene.cloths[0].grid;
+    const Vec3 target{start[0] + offset[0], start[1] + offset[1], start[2] + offset[2]};
+    if (does == kPull) simulation.grab(0, g.nx / 3, g.ny / 2, target);
+    if (does == kPush) simulation.move_collider(0, target);
+    if (does == kCarry) simulation.carry(0, velocity);
+    simulation.advance_frame();
+  }
+  void let_go() {
+    simulation.release();
+    simulation.carry(0, {});
+  }
+};
+
+Scene with_lines(Scene scene) {
+  scene.solver.method = Method::compliant;
+  scene.solver.sweep = Sweep::line;
+  scene.time.substeps = 8;
+  return scene;
+}
+
+// What a hand puts in is no energy from nowhere, while it does and after: nothing falls back.
+TEST(ContactHand, StrokesLeaveTheMethodAlone) {
+  for (const char* name : {"swing", "inextensible", "seed1_friction", "seed1_positional", "tug"})
+    for (const bool lines : {false, true})
+      for (const auto does : {Person::kPull, Person::kPush, Person::kCarry}) {
+        const Scene scene = read_scene(name).scene;
+        if (does == Person::kPush && scene.colliders.empty()) continue;
+        Person person(lines ? with_lines(scene) : scene);
+        const int substeps = person.simulation.substeps();
+        const std::string which =
+            name + std::string(lines ? ", lines, " : ", ") + std::to_string(int(does));
+        for (int frame = 0; frame < 60; ++frame) {
+          // About one and a half strokes a second, half the sheet's side to and fro.
+          const double phase = 0.15 * frame, l = person.side;
+          person.move(does,
+                      {0.5 * l * std::sin(phase), 0.3 * l * std::sin(1.7 * phase),
+                       0.4 * l * std::sin(0.8 * phase)},
+                      {4 * l * std::cos(phase), 3 * l * std::cos(1.7 * phase),
+                       2 * l * std::cos(0.8 * phase)});
+          ASSERT_LT(person.simulation.substeps(), 1.5 * substeps) << which;
+          ASSERT_FALSE(person.simulation.plan().fallback) << which;
+        }
+        person.let_go();
+        advance(person.simulation, person.simulation.time() + 3);
+        EXPECT_FALSE(person.simulation.plan().fallback)
+            << which << ": " << person.simulation.plan().notes.back();
+        EXPECT_LT(person.simulation.substeps(), 1.5 * substeps) << which;
+      }
+}
+
+// A hand that tears about beyond all reason heats springs up until they take more substeps, or another
+// method; when all is calm again the run goes on as it began.
+TEST(ContactHand, WhatItAskedForPasses) {
+  Scene scene = read_scene("swing").scene;
+  scene.cloths[0].drag = 2;
+  Person person(scene);
+  const int began = person.simulation.substeps();
+  bool fell_back = false;
+  for (int frame = 0; frame < 90; ++frame) {
+    const double l = frame % 2 == 0 ? person.side : -person.side;
+    person.move(Person::kPull, {l, -l, l}, {});
+    fell_back |= person.simulation.plan().fallback;
+  }
+  EXPECT_TRUE(fell_back);
+  person.let_go();
+  advance(person.simulation, person.simulation.time() + 10);
+  EXPECT_FALSE(person.simulation.plan().fallback);
+  EXPECT_LT(person.simulation.substeps(), 1.2 * began);
+  EXPECT_GT(person.simulation.plan().dt_limit, 0);
 }
 
 // A flat sheet in a wind at an angle: the momentum that it gains is that of a flat plate.

@@ -176,10 +176,9 @@ bool gained(const Scene& scene, Method method, const ClothStep& step, const Rows
 void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, double time,
                        double dt) {
   *this = {};
-  double mass = 0;
   for (const auto& step : cloths) {
     const Lattice& l = step->lattice();
-    mass += free_mass(l);
+    free_mass_ += free_mass(l);
     const auto held = [&](const Rows& x) {
       const double tethers = scene.solver.tethers ? tether_energy(*step, x, dt) : 0;
       return elastic(scene, method, *step, x, dt) + tethers;
@@ -190,10 +189,12 @@ void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, 
   look(scene, cloths, false);
   highest_ = potential_;
   fall_ = 0;
-  const double driven =
-      kDrivenSpeed + fastest_drive(scene, 0, std::numeric_limits<double>::infinity());
-  put_in_ += kinetic_ + 0.5 * mass * kStillness * kStillness;
-  driven_floor_ = 0.5 * mass * driven * driven;
+  put_in_ += kinetic_ + 0.5 * free_mass_ * kStillness * kStillness;
+  fastest_ = fastest_drive(scene, 0, std::numeric_limits<double>::infinity());
+}
+
+void EnergyGuard::drive(double speed) {
+  fastest_ = std::max(fastest_, speed);
 }
 
 void EnergyGuard::look(const Scene& scene, const Cloths& cloths, bool driven) {
@@ -218,8 +219,8 @@ double EnergyGuard::reduction() const {
 }
 
 double EnergyGuard::bound() const {
-  const double kept = put_in_ + fall_;
-  return kBound * (driven_ ? std::max(kept, driven_floor_) : kept);
+  const double kept = put_in_ + fall_, speed = kDrivenSpeed + fastest_;
+  return kBound * (driven_ ? std::max(kept, 0.5 * free_mass_ * speed * speed) : kept);
 }
 
 }  // namespace weft::physics

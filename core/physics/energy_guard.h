@@ -5,10 +5,11 @@
 //
 // Stiff springs turn the rounding of positions into motion, substep by substep: that is allowed for.
 // A projected constraint counts as a spring of at most the inertia of its ends over dt², all that a
-// sweep makes of it, and of its positional share. Where something else does work (pins and colliders
-// on paths, wind, a hand, contact of the sheet with itself), the motion may also come to kBound times
-// that of a sheet that is 10 m/s faster than what drives it. A run that keeps its energy stays near a
-// quarter of the bound.
+// sweep makes of it, and of its positional share. The spring that a hand pulls with puts in what moving
+// its far end stores in it. Where something else does work (pins and bodies on paths or carried by a
+// hand, wind, contact of the sheet with itself), the motion may also come to kBound times that of a
+// sheet that is 10 m/s faster than what drives it. A run that keeps its energy stays near a quarter of
+// the bound.
 #pragma once
 
 #include <memory>
@@ -31,6 +32,10 @@ class EnergyGuard {
   // Counts what the state holds that a run begins with, or goes on from after it was set.
   void open(const Scene& scene, Method method,
             const std::vector<std::unique_ptr<ClothStep>>& cloths, double time, double dt);
+  // Something that a hand moves goes at so many m/s from now on.
+  void drive(double speed);
+  // So much more energy is there to move the sheets [J].
+  void put_in(double energy) { put_in_ += energy; }
   // Looks at the end of a frame; `driven`: something but gravity did work in it.
   void look(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths, bool driven);
   // Whether the motion last looked at is within the bound.
@@ -43,11 +48,12 @@ class EnergyGuard {
  private:
   double bound() const;
 
-  double put_in_ = 0;        // J; of the start, and by rounding since
-  double rounding_ = 0;      // J; what stiff springs make of the rounding of positions in a substep
-  double driven_floor_ = 0;  // J; motion that is nothing special where something does work
-  double highest_ = 0;       // J; potential of gravity
-  double released_ = 0;      // J; by gravity so far
+  double put_in_ = 0;     // J; of the start, and by rounding since
+  double rounding_ = 0;   // J; what stiff springs make of the rounding of positions in a substep
+  double free_mass_ = 0;  // kg
+  double fastest_ = 0;    // m/s; what drives the sheets, at most
+  double highest_ = 0;    // J; potential of gravity
+  double released_ = 0;   // J; by gravity so far
   // J; of the frame last looked at: motion, potential, what gravity has released.
   double kinetic_ = 0, potential_ = 0, fall_ = 0;
   bool driven_ = false;

@@ -20,6 +20,12 @@ ClothStep& Simulation::State::step_with(int cloth, int i, int j) {
   return step;
 }
 
+// A hand does something to a cloth, or to all.
+void Simulation::State::touch(int cloth) {
+  wake(cloth);
+  since_hand_ = 0;
+}
+
 // The stages of a cloth have changed: their times start anew, and the plan tells what runs now.
 void Simulation::State::plan_changed() {
   for (std::size_t c = 0; c < cloths.size(); ++c) {
@@ -51,17 +57,19 @@ void Simulation::State::grab(int cloth, int i, int j, const Vec3& target, double
     step.add_stage(std::move(stage));
     plan_changed();
   }
-  wake(cloth);
+  touch(cloth);
+  const double stored = grab_->column == i && grab_->row == j ? grab_->energy() : 0;
   grab_->column = i;
   grab_->row = j;
   grab_->target = minus(target, origin);
   grab_->stiffness = stiffness;
+  guard_.put_in(std::max(0.0, grab_->energy() - stored));
   if (is_explicit(method)) follow_stretch(stretched_limit());
 }
 
 void Simulation::State::release() {
   if (!grab_) return;
-  wake(grabbed_);
+  touch(grabbed_);
   cloths[std::size_t(grabbed_)]->remove_stage(grab_);
   grab_ = nullptr;
   plan_changed();
@@ -71,7 +79,7 @@ void Simulation::State::carry(int cloth, const Vec3& velocity) {
   ClothStep& step = step_with(cloth, 0, 0);
   if (!std::all_of(velocity.begin(), velocity.end(), [](double u) { return std::isfinite(u); }))
     throw std::invalid_argument("held particles are carried at a finite velocity");
-  wake(cloth);
+  touch(cloth);
   Carry*& stage = carried_[std::size_t(cloth)];
   const bool rests = velocity == Vec3{};
   if (!stage && !rests) {
@@ -80,7 +88,10 @@ void Simulation::State::carry(int cloth, const Vec3& velocity) {
     step.add_stage(std::move(made));
     plan_changed();
   }
-  if (stage && !rests) stage->begin(double(frame) * scene.time.frame, velocity);
+  if (stage && !rests) {
+    stage->begin(double(frame) * scene.time.frame, velocity);
+    guard_.drive(stage->speed());
+  }
   if (!stage || !rests) return;
   step.remove_stage(stage);
   stage = nullptr;
@@ -95,7 +106,7 @@ void Simulation::State::carry(int cloth, const Vec3& velocity) {
 void Simulation::State::hold(int cloth, int i, int j, bool held) {
   ClothStep& step = step_with(cloth, i, j);
   Lattice& l = step.lattice();
-  wake(cloth);
+  touch(cloth);
   l.set_inverse_mass(j, i, held ? 0 : float(1 / particle_mass(step.cloth(), i, j)));
   if (held)
     for (int k = 0; k < 3; ++k) l.v.at(k, j, i) = 0;
@@ -103,7 +114,7 @@ void Simulation::State::hold(int cloth, int i, int j, bool held) {
   for (const auto& stage : step.stages()) stage->restart();
   // One particle more that can move raises the largest frequency, if at all.
   if (!held && is_explicit(method)) spectra[std::size_t(cloth)] = spectrum_of(std::size_t(cloth));
-  guard_.open(scene, method, cloths, double(frame) * scene.time.frame, dt);
+  open_guard();
   ++changes;
 }
 
@@ -115,8 +126,10 @@ void Simulation::State::move_collider(int collider, const Vec3& target) {
   const Collider& c = where_it_stands().colliders[std::size_t(collider)];
   const double now = double(frame) * scene.time.frame;
   const Vec3 from = c.keys.empty() ? place_of(c.shape) : position_at(c.keys, now);
-  wake();
+  touch();
   set_path(std::size_t(collider), {{now, from}, {now + scene.time.frame, target}});
+  const Vec3 way = minus(target, from);
+  guard_.drive(std::sqrt(dot(way, way)) / scene.time.frame);
 }
 
 // A collider goes another way, by keys where it stands.
@@ -168,7 +181,7 @@ int Simulation::State::cut(const Vec3& begin, const Vec3& end, double width) {
         }
     }
     if (found.empty()) continue;
-    wake();
+    touch();
     if (!step->topology()) {
       step->allow_tearing();
       plan_changed();

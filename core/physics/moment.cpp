@@ -76,6 +76,8 @@ void Simulation::State::restore(const Moment& m) {
   for (std::size_t n = 0; n < m.paths.size(); ++n) set_path(n, m.paths[n]);
   frame = std::llround(m.time / scene.time.frame);
   finer_ = 1;
+  failed_by_hand_ = failed_by_itself_ = false;
+  since_hand_ = kCalm;
   take_substeps(began_at_);
   go_on_as(began_as_, began_with_);
   lag = is_explicit(method) ? dt / 2 : 0;

@@ -74,6 +74,9 @@ Simulation::State::State(Scene given, const Options& given_options, const Vec3& 
   began_with_ = scene.solver;
   began_at_ = substeps;
   if (!changed.empty()) fall_back(changed);
+  began_fallen_back_ = plan.fallback;
+  began_notes_ = plan.notes;
+  began_guard_ = guard_;
   frame_ms.reserve(std::size_t(std::clamp(scene.time.seconds / scene.time.frame, 1.0, 1e6)) + 1);
 }
 
@@ -150,9 +153,14 @@ void Simulation::State::stagger(const double* now) {
 void Simulation::State::advance_frame() {
   if (!status.ok) return;
   const auto start = std::chrono::steady_clock::now();
+  since_hand_ = grab_ || carried() ? 0 : std::min(since_hand_ + scene.time.frame, kCalm);
+  if (hand_has_passed()) begin_again();
   for (std::size_t c = 0; c < cloths.size(); ++c)
     if (carried_[c]) wake(int(c));
   if (rest) rest->begin_frame(double(frame) * scene.time.frame);
+  // What has been put in stays in when what did it is gone.
+  if (was_driven_ && !driven()) open_guard();
+  was_driven_ = driven();
   save();
   run_frame();
   while (too_coarse()) run_frame();
@@ -246,7 +254,7 @@ void Simulation::State::set(std::span<const double> positions, const Vec3& from,
     stagger(velocities.data());
     follow_stretch(stretched_limit());
   }
-  guard_.open(scene, method, cloths, double(frame) * scene.time.frame, dt);
+  open_guard();
   ++changes;
 }
 

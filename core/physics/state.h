@@ -20,6 +20,7 @@
 namespace weft {
 
 inline constexpr float kFarAway = 1e7f;  // m; nothing in a sane scene gets there
+inline constexpr double kCalm = 1;       // s; what a hand did has passed by then
 
 // A number as notes give it.
 inline std::string number(double v) {
@@ -91,12 +92,19 @@ struct Simulation::State {
   std::vector<physics::Carry*> carried_;           // in the plan of each cloth; null while it rests
   int since_collision_ = 0, until_collision_ = 1;  // substeps
   physics::EnergyGuard guard_;
-  double limit_ = 0;  // s; the stability limit at the end of the last frame (explicit)
-  int finer_ = 1;     // times as many substeps as are due, since a frame failed
+  bool was_driven_ = false;  // in the frame before
+  double limit_ = 0;         // s; the stability limit at the end of the last frame (explicit)
+  int finer_ = 1;            // times as many substeps as are due, since a frame failed
   // As the run began, before any of its frames failed.
   Method began_as_;
   Solver began_with_;
   int began_at_ = 1;  // substeps a frame
+  bool began_fallen_back_ = false;
+  std::vector<std::string> began_notes_;
+  physics::EnergyGuard began_guard_;
+  // Frames that failed soon after a hand did something say little of the frames to come.
+  double since_hand_ = kCalm;  // s, at most kCalm
+  bool failed_by_hand_ = false, failed_by_itself_ = false;
 
   physics::Spectrum spectrum_of(std::size_t cloth) const;
   void choose_method_and_substeps();
@@ -108,18 +116,23 @@ struct Simulation::State {
   double stretched_limit() const;
   int substeps_within(double limit) const;
   void follow_stretch(double limit);
+  bool carried() const;
   bool driven() const;
+  void open_guard();
   bool blown() const { return scene.wind.drag > 0 || scene.wind.lift > 0; }
   int projection_substeps() const;
   bool finest() const;
   bool flies_away() const;
   bool too_coarse();
+  bool hand_has_passed() const;
+  void begin_again();
   void go_on_as(Method as, const Solver& solver);
   bool overshot() const;
   void calm();
   void fall_back(const std::string& note);
   void restart_stages();
   void wake(int cloth = -1);
+  void touch(int cloth = -1);
   bool asleep(std::size_t cloth) const { return rest && rest->rows(cloth).empty(); }
   void run_frame();
   physics::ClothStep& step_with(int cloth, int i, int j);

@@ -111,7 +111,7 @@ void Simulation::State::choose_method_and_substeps() {
     lag = dt / 2;
     stagger();
   }
-  guard_.open(scene, method, cloths, 0, dt);
+  open_guard();
 }
 
 void Simulation::State::take_substeps(int count) {
@@ -153,6 +153,7 @@ bool Simulation::State::too_coarse() {
   const int finer = hopeless ? substeps : 2 * substeps;
   if (hopeless && flies_away()) return false;
   restore();
+  (since_hand_ < kCalm ? failed_by_hand_ : failed_by_itself_) = true;
   if (hopeless) {
     Solver steady = scene.solver;
     steady.sweep = Sweep::gauss_seidel;
@@ -173,6 +174,23 @@ bool Simulation::State::too_coarse() {
   }
   restart_stages();
   return true;
+}
+
+// Whether all that failed was a hand's doing, and the sheets move no more than they might without it.
+bool Simulation::State::hand_has_passed() const {
+  if (!failed_by_hand_ || failed_by_itself_ || since_hand_ < kCalm) return false;
+  EnergyGuard guard = began_guard_;
+  guard.look(scene, cloths, driven());
+  return guard.holds();
+}
+
+// As the run began, from the state as it is.
+void Simulation::State::begin_again() {
+  plan.notes = began_notes_;
+  plan.notes.push_back("up to frame " + std::to_string(frame) +
+                       " what a hand did took more substeps, or another method");
+  plan.fallback = began_fallen_back_;
+  restore(moment());
 }
 
 // Whether something was so fast at the frame's start that it leaves all bounds by any method.
@@ -213,7 +231,7 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
 bool Simulation::State::overshot() const {
   // Squared lengths in those at rest: much, or so much that has doubled within the frame.
   constexpr float kStretched = 1.25f * 1.25f, kNoticed = 1.01f * 1.01f;
-  if (grab_ || self_collision || blown() || !scene.colliders.empty()) return false;
+  if (grab_ || carried() || self_collision || blown() || !scene.colliders.empty()) return false;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
     const ClothStep& step = *cloths[c];
@@ -246,9 +264,20 @@ void Simulation::State::calm() {
   guard_.accept(substeps);
 }
 
+void Simulation::State::open_guard() {
+  guard_.open(scene, method, cloths, double(frame) * scene.time.frame, dt);
+  for (const Carry* carry : carried_)
+    if (carry) guard_.drive(carry->speed());
+  if (grab_) guard_.put_in(grab_->energy());
+}
+
+bool Simulation::State::carried() const {
+  return std::any_of(carried_.begin(), carried_.end(), [](const Carry* c) { return c; });
+}
+
 bool Simulation::State::driven() const {
   const auto moves = [](const auto& thing) { return !thing.keys.empty(); };
-  return grab_ || self_collision || rest || blown() ||
+  return grab_ || carried() || self_collision || rest || blown() ||
          std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
          std::any_of(scene.cloths.begin(), scene.cloths.end(), [&](const Cloth& c) {
            return std::any_of(c.pins.begin(), c.pins.end(), moves);

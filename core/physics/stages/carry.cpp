@@ -1,6 +1,10 @@
 // x = x(t₀) + (t - t₀) u, v = u for every particle that is held.
 #include "physics/stages/carry.h"
 
+#include <cmath>
+
+#include "physics/colliders/shapes.h"
+
 namespace weft::physics {
 
 void Carry::begin(double time, const Vec3& velocity) {
@@ -13,6 +17,10 @@ void Carry::begin(double time, const Vec3& velocity) {
     for (int i = 0; i < l.columns; ++i)
       if (l.w(j, i) == 0)
         by_row_[std::size_t(j)].push_back({i, {l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)}});
+}
+
+double Carry::speed() const {
+  return std::sqrt(dot(velocity_, velocity_));
 }
 
 void Carry::run(int j, const Substep& s) {

@@ -12,6 +12,7 @@ class Carry final : public RowStage {
         parts_(parts) {}
   // From `time` [s] on all that is held now moves at `velocity` [m/s].
   void begin(double time, const Vec3& velocity);
+  double speed() const;  // m/s
   void run(int j, const Substep& s) override;
 
  private:
