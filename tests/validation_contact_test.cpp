@@ -73,6 +73,33 @@ TEST(ValidationContact, InclineSlidesAtTheClosedFormsRate) {
   }
 }
 
+// Substeps so short that a particle at rest moves by less than its position is rounded to.
+TEST(ValidationContact, FrictionIsTheSameInShortSubsteps) {
+  const double a = 30 * M_PI / 180, mu = 0.3;
+  for (const Method method : {Method::spring, Method::compliant}) {
+    Scene scene;
+    scene.time.substeps = 2000;
+    scene.solver.method = method;
+    const Vec3 place{0.41, 0.73, 0.3};
+    scene.cloths.emplace_back();
+    scene.cloths[0].grid = {4,           4, place, {0.1 * std::cos(a), -0.1 * std::sin(a), 0},
+                            {0, 0, 0.1}, 0};
+    scene.cloths[0].stiffness = {50, 20, 0};
+    scene.colliders.push_back(collider_of(Plane{place, {std::sin(a), std::cos(a), 0}}, mu));
+    Simulation simulation(scene);
+    advance(simulation, 0.5);
+    double speed = 0;
+    for (std::size_t p = 0; p < 16; ++p) {
+      const Vec3 v = at(simulation.velocities(), p);
+      speed += (v[0] * std::cos(a) - v[1] * std::sin(a)) / 16;
+    }
+    expect({"patch on an incline",
+            std::string("30°, μ = 0.3, substeps of 8.3 µs, ") + name_of(method) + ": acceleration",
+            9.81 * (std::sin(a) - mu * std::cos(a)), 0.01, "m/s²"},
+           speed / simulation.time());
+  }
+}
+
 TEST(ValidationContact, MovingSurfaceDragsClothAlong) {
   Scene scene = incline(0, 0.5, 0.5, Method::spring);
   scene.colliders[0].keys = {{0, {0, 0, 0}}, {2, {1, 0, 0}}};

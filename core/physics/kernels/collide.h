@@ -9,7 +9,8 @@
 // Coulomb: a particle below the surface is lifted onto it along the normal n by `depth`, loses its
 // velocity into the surface, and its tangential motion relative to the surface, t, shrinks by
 // friction: all of it while |t| <= μ_s p, else by μ_d p, never reversed (seed 003). p, the normal
-// impulse over the mass and times dt, is the depth, or on impact the way lost into the surface.
+// impulse over the mass and times dt, is the way lost into the surface. The depth would be the same,
+// but in short substeps it is the rounding of positions.
 // Course: the correction from the position before is scaled by 1 - μ (seeds 001 and 004).
 //
 // A particle that went right through is found by following its path, seen from the collider, in
@@ -40,7 +41,7 @@ WEFT_INLINE void rub(const CollideRow& r, int i, WideInt touching, Wide depth, W
   const Wide into = dot(relative, n);
   const Wide3 tangential = relative - n * into;
   const Wide distance = sqrt(max(dot(tangential, tangential), wide(kTinySquare))) * r.dt;
-  const Wide pressed = max(depth, into * -r.dt);
+  const Wide pressed = max(into * -r.dt, Wide{});
   const Wide slide = max(Wide{}, 1.0f - r.friction_dynamic * pressed / distance);
   const Wide keep = select(distance <= r.friction_static * pressed, Wide{}, slide);
   const Wide3 rubbed = tangential * keep;

@@ -234,7 +234,7 @@ class ColliderFaces final : public RowStage {
     const double into = dot(speed, touch.normal);
     const Vec3 tangential = minus(speed, times(touch.normal, into));
     const double distance = std::sqrt(dot(tangential, tangential)) * r.dt;
-    const double pressed = std::max(touch.depth, -into * r.dt);
+    const double pressed = std::max(0.0, -into * r.dt);
     const double rubbed = distance <= r.friction_static * pressed
                               ? 1
                               : std::min(1.0, r.friction_dynamic * pressed / distance);
