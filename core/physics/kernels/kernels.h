@@ -133,7 +133,7 @@ struct AdvanceRow {
   Row3 predicted;  // where predict took particles, if given; what velocity compares with
   Advance advance;
   // 1/s; predict: > 0 where velocities still lack how far free particles are from `predicted`, times
-  // this. push: > 0 where velocities gain at once, else they get it from positions.
+  // this.
   float inverse_dt;
 };
 
@@ -219,18 +219,33 @@ struct Gust {
   float at;          // phase at x = 0, in turns
 };
 
-// Air on the triangles between a row and the next; their forces go to both rows' f.
+// What air does to each particle of a row, added up over its triangles: forces [N], and how they
+// resist, A/3 drag (u·n) and A/3 lift |u| [kg/s] (wind.cpp).
+struct AirRow {
+  Row3 f;
+  float *drag, *lift;
+};
+
+// Air on the triangles between a row and the next.
 struct WindRow {
   int columns;
   ConstRow3 x, x_next, v, v_next;
-  const float *w, *w_next;
-  Row3 f, f_next;    // N, added to
-  float dt;          // s, that the air pushes for
-  float steps;       // how many substeps that is; the force is that of all of them
+  AirRow air, air_next;
   float wx, wy, wz;  // m/s
   float drag, lift;  // kg/m³
   float gust_speed;  // m/s; 0: none
   Gust gusts[kGusts];
+};
+
+// Moves a row by what air has done to it, and starts its sums anew.
+struct PushRow {
+  int columns;
+  Row3 x, v;
+  const float* w;
+  AirRow air;
+  float time;       // s, that the air pushes for
+  float dt;         // s; how far positions follow the velocity that is gained
+  bool velocities;  // gain at once, else they get it from positions
 };
 
 struct LineStrip;  // kernels/line.h
@@ -283,7 +298,7 @@ struct KernelTable {
   RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
   RowReach (*below_faces[kShapes])(const FacesRow&);
   void (*wind)(const WindRow&);
-  void (*push)(const AdvanceRow&);             // v += dt f/m, x with it, then f <- 0
+  void (*push)(const PushRow&);
   void (*block_bounds)(const BlockRows&);      // how a block lies and moves
   NearFound (*near_pairs)(const NearSearch&);  // who is in range of whom
   int (*pairs_within)(const PairsWithin&);     // returns how many are

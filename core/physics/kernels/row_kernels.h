@@ -99,7 +99,7 @@ physics::RowEnergy row_energy(const physics::EnergyRow&);
 float greatest_square(const physics::FarRows&);
 double stretch_energy(const physics::StretchRow&);
 void wind(const physics::WindRow&);
-void push(const AdvanceRow&);
+void push(const physics::PushRow&);
 void block_bounds(const physics::BlockRows&);
 physics::NearFound near_pairs(const physics::NearSearch&);
 int pairs_within(const physics::PairsWithin&);

@@ -3,15 +3,18 @@
 //
 //   F = A [drag (u·n)² n + lift (u·n) |u| (n - û (û·n))]
 //
-// (drag and lift of a flat plate; Wilson et al. 2014, "Simulating wind effects on cloth"). A force
-// that would take more than the whole relative motion within one substep is softened: F/(1 + q),
-// q the share of the motion that it and the five other triangles at a particle would take.
+// (drag and lift of a flat plate; Wilson et al. 2014, "Simulating wind effects on cloth"), a third of
+// it at each corner. A particle gains  w T ΣF / (1 + a + b²),  a = w T Σ A/3 drag (u·n),  b = w T Σ A/3
+// lift |u|:  by drag, as much as in the exact motion of a plate against still air; by both, never more
+// than the whole relative motion.
 #include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {
 
+using physics::AirRow;
 using physics::Gust;
+using physics::PushRow;
 using physics::WindRow;
 
 constexpr float kTinySquare = 1e-20f;
@@ -37,9 +40,19 @@ WEFT_INLINE Wide3 gust(const WindRow& r, Wide3 x) {
   return Wide3{sum[0], sum[1], sum[2]} * wide(r.gust_speed * 0.5f);
 }
 
-// A third of the force on the triangle a, b, c with velocities' sum v3 and inverse masses' sum w3.
-WEFT_INLINE Wide3 third_of_force(const WindRow& r, Wide3 air, Wide3 a, Wide3 b, Wide3 c, Wide3 v3,
-                                 Wide w3) {
+// What a triangle does to each of its corners.
+struct Third {
+  Wide3 force;
+  Wide drag, lift;
+};
+
+WEFT_INLINE Third operator+(const Third& a, const Third& b) {
+  return {a.force + b.force, a.drag + b.drag, a.lift + b.lift};
+}
+
+// Of the triangle a, b, c with velocities' sum v3.
+WEFT_INLINE Third third_of(const WindRow& r, WideInt inside, Wide3 air, Wide3 a, Wide3 b, Wide3 c,
+                           Wide3 v3) {
   const Wide third = wide(1.0f / 3.0f);
   const Wide3 doubled = cross(b - a, c - a);
   const Wide size = sqrt(max(dot(doubled, doubled), wide(kTinySquare)));
@@ -49,47 +62,59 @@ WEFT_INLINE Wide3 third_of_force(const WindRow& r, Wide3 air, Wide3 a, Wide3 b, 
   const Wide into = abs(along);
   const Wide square = max(dot(u, u), wide(kTinySquare)), speed = sqrt(square);
   const Wide3 across = n - u * (into / square);
-  const Wide area = size * 0.5f;
-  const Wide taken = (r.drag * into + r.lift * speed) * area * w3 * (r.dt * 6.0f / 9.0f);
-  const Wide scale = area * into * third * r.steps / (1.0f + taken);
-  return n * (scale * (r.drag * into)) + across * (scale * (r.lift * speed));
+  const Wide area = select(inside, size * (0.5f / 3.0f), Wide{});
+  const Wide drag = area * (r.drag * into), lift = area * (r.lift * speed);
+  return {n * (into * drag) + across * (into * lift), drag, lift};
+}
+
+class Delayed {
+ public:
+  WEFT_INLINE Third next(const Third& t) {
+    return {force_.next(t.force), drag_.next(t.drag), lift_.next(t.lift)};
+  }
+
+ private:
+  Delay3<1> force_;
+  Delay<1> drag_, lift_;
+};
+
+WEFT_INLINE void add(const AirRow& air, int i, const Third& t) {
+  store3(air.f, i, load3(air.f, i) + t.force);
+  store(air.drag + i, load(air.drag + i) + t.drag);
+  store(air.lift + i, load(air.lift + i) + t.lift);
 }
 
 }  // namespace
 
 void wind(const WindRow& given) {
   const WindRow r = given;
-  Delay3<1> own_right, next_right;
+  Delayed own_right, next_right;
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const WideInt inside = lanes_below(r.columns - 1 - i);
     const Wide3 x00 = load3(r.x, i), x10 = load3(r.x, i + 1);
     const Wide3 x01 = load3(r.x_next, i), x11 = load3(r.x_next, i + 1);
     const Wide3 v10 = load3(r.v, i + 1), v01 = load3(r.v_next, i);
-    const Wide w10 = load(r.w + i + 1), w01 = load(r.w_next + i);
     // Both triangles of a square feel the air in the middle of the edge between them.
     Wide3 air = wide3(r.wx, r.wy, r.wz);
     if (r.gust_speed > 0) air = air + gust(r, (x10 + x01) * wide(0.5f));
-    const Wide3 first = select(
-        inside,
-        third_of_force(r, air, x00, x10, x01, load3(r.v, i) + v10 + v01, load(r.w + i) + w10 + w01),
-        Wide3{});
-    const Wide3 second =
-        select(inside,
-               third_of_force(r, air, x10, x11, x01, v10 + load3(r.v_next, i + 1) + v01,
-                              w10 + load(r.w_next + i + 1) + w01),
-               Wide3{});
-    const Wide3 both = first + second;
-    store3(r.f, i, load3(r.f, i) + (first + own_right.next(both)));
-    store3(r.f_next, i, load3(r.f_next, i) + (both + next_right.next(second)));
+    const Third first = third_of(r, inside, air, x00, x10, x01, load3(r.v, i) + v10 + v01);
+    const Third second =
+        third_of(r, inside, air, x10, x11, x01, v10 + load3(r.v_next, i + 1) + v01);
+    const Third both = first + second;
+    add(r.air, i, first + own_right.next(both));
+    add(r.air_next, i, both + next_right.next(second));
   }
 }
 
-void push(const AdvanceRow& r) {
+void push(const PushRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide3 gained = load3(r.f, i) * (load(r.w + i) * r.advance.dt);
-    if (r.inverse_dt > 0) store3(r.v, i, load3(r.v, i) + gained);
-    store3(r.x, i, load3(r.x, i) + gained * wide(r.advance.dt));
-    store3(r.f, i, Wide3{});
+    const Wide time = load(r.w + i) * r.time;
+    const Wide drag = time * load(r.air.drag + i), lift = time * load(r.air.lift + i);
+    const Wide3 gained = load3(r.air.f, i) * (time / (1.0f + drag + lift * lift));
+    if (r.velocities) store3(r.v, i, load3(r.v, i) + gained);
+    store3(r.x, i, load3(r.x, i) + gained * wide(r.dt));
+    store3(r.air.f, i, Wide3{});
+    for (float* sum : {r.air.drag, r.air.lift}) store(sum + i, Wide{});
   }
 }
 

@@ -48,43 +48,48 @@ class WindStage final : public RowStage {
   Velocities velocities(double dt) const override {
     return push_of(parts_, dt).velocities ? Velocities::used : Velocities::left_alone;
   }
-  void reserve_slots(int slots) override { force_ = Rows(2 * slots, parts_.lattice.stride); }
-  std::size_t bytes() const override { return force_.bytes(); }
+  void reserve_slots(int slots) override {
+    force_ = Rows(2 * slots, parts_.lattice.stride);
+    resistance_ = Rows(2 * slots, parts_.lattice.stride);
+  }
+  std::size_t bytes() const override { return force_.bytes() + resistance_.bytes(); }
 
   void start(const Substep& s) override {
-    for (int k = 0; k < 2; ++k) zero(force_.row(2 * s.slot + k), parts_.lattice.stride);
+    for (int k = 0; k < 2; ++k)
+      for (Rows* rows : {&force_, &resistance_})
+        zero(rows->row(2 * s.slot + k), parts_.lattice.stride);
   }
 
   void run(int j, const Substep& s) override {
     const int steps = substeps_pushed(s);
     if (steps == 0) return;
     Lattice& l = parts_.lattice;
-    const auto force = [&](int row) { return force_.row(2 * s.slot + row % 2); };
-    if (j + 1 < l.rows) parts_.kernels.wind(wind_row(j, s, steps, force(j), force(j + 1)));
-    AdvanceRow a{};
-    a.columns = l.columns;
-    a.x = l.x.row(j);
-    a.v = l.v.row(j);
-    a.w = l.w(j);
-    a.f = force(j);
+    if (j + 1 < l.rows) parts_.kernels.wind(wind_row(j, s));
     const Push pushed = push_of(parts_, s.dt);
-    a.advance.dt = float(pushed.dt);
-    a.inverse_dt = pushed.velocities ? float(1 / pushed.dt) : 0;
-    parts_.kernels.push(a);
+    parts_.kernels.push({l.columns, l.x.row(j), l.v.row(j), l.w(j), air(j, s),
+                         float(steps * pushed.dt), float(pushed.dt), pushed.velocities});
   }
 
  private:
-  // For how many substeps this one pushes; 0: one before it has done so.
+  // For how many substeps this one pushes; 0: another one does. It is the one whose end, where it
+  // finds the sheet, is nearest to the middle of them all, or the one before.
   int substeps_pushed(const Substep& s) const {
     const double frame = parts_.scene.time.frame;
     const int all = int(std::lround(frame / s.dt));
     const int together = std::clamp(int(kPush / s.dt), 1, all);
     const double start = std::floor((s.time - 0.5 * s.dt) / frame) * frame;
     const int number = int(std::lround((s.time - start) / s.dt)) - 1;  // in the frame
-    return number % together == 0 ? std::min(together, all - number) : 0;
+    const int first = number / together * together, steps = std::min(together, all - first);
+    return number == first + (steps - 1) / 2 ? steps : 0;
   }
 
-  WindRow wind_row(int j, const Substep& s, int steps, Row3 f, Row3 f_next) {
+  AirRow air(int row, const Substep& s) {
+    const int k = 2 * s.slot + row % 2;
+    const Row3 resistance = resistance_.row(k);
+    return {force_.row(k), resistance.x, resistance.y};
+  }
+
+  WindRow wind_row(int j, const Substep& s) {
     Lattice& l = parts_.lattice;
     const Wind& wind = parts_.scene.wind;
     WindRow r{};
@@ -93,12 +98,8 @@ class WindStage final : public RowStage {
     r.x_next = l.x.row(j + 1);
     r.v = l.v.row(j);
     r.v_next = l.v.row(j + 1);
-    r.w = l.w(j);
-    r.w_next = l.w(j + 1);
-    r.f = f;
-    r.f_next = f_next;
-    r.dt = float(steps * s.dt);
-    r.steps = float(steps);
+    r.air = air(j, s);
+    r.air_next = air(j + 1, s);
     r.wx = float(wind.velocity[0]);
     r.wy = float(wind.velocity[1]);
     r.wz = float(wind.velocity[2]);
@@ -116,7 +117,7 @@ class WindStage final : public RowStage {
 
   ClothParts parts_;
   std::array<Wave, kGusts> waves_;
-  Rows force_;  // two rows in turn per slot
+  Rows force_, resistance_;  // two rows in turn per slot; of the resistance, drag and lift
 };
 
 }  // namespace
