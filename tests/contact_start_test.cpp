@@ -65,6 +65,19 @@ TEST(ContactStart, ThicknessAboveTheSpacingSaysWhatItDoes) {
   EXPECT_LT(simulation.report().strain.max, 0.01);
 }
 
+TEST(ContactStart, ThicknessBelowHalfADiagonalSaysThatItLeaks) {
+  Scene scene = with(Sphere{{0, -1, 0}, 0.1});
+  const Grid& g = scene.cloths[0].grid;
+  const double half_diagonal = std::hypot(spacing_u(g), spacing_v(g)) / 2;
+  for (const auto mode : {SelfCollisionMode::particles, SelfCollisionMode::surface})
+    for (const double share : {0.99, 1.01}) {
+      scene.cloths[0].self_collision = {mode, share * half_diagonal, 0.3,
+                                        SelfCollisionResponse::stiff};
+      const bool told = notes_of(Simulation(scene)).find("half the diagonal") != std::string::npos;
+      EXPECT_EQ(told, mode == SelfCollisionMode::particles && share < 1) << share;
+    }
+}
+
 // A sheet through the middle of every shape is told of, and lifted off within a few frames, without
 // flying off or tearing itself apart.
 TEST(ContactStart, SheetsInsideCollidersAreMovedOutGently) {

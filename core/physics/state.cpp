@@ -122,6 +122,14 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
       notes.push_back(which + ": the thickness of " + number(cloth.self_collision.thickness) +
                       " m is above the spacing of " + number(spacing) +
                       " m; particles nearer than the thickness on the flat sheet do not meet");
+    // Half the diagonal of a square is as far as a particle gets from all others.
+    const double widest = 0.5 * std::hypot(spacing_u(cloth.grid), spacing_v(cloth.grid));
+    if (cloth.self_collision.mode == SelfCollisionMode::particles && !surface &&
+        cloth.self_collision.thickness < widest)
+      notes.push_back(which + ": the thickness of " + number(cloth.self_collision.thickness) +
+                      " m is below " + number(widest) +
+                      " m, half the diagonal of a square: particles can pass between others (mode "
+                      "surface lets nothing through)");
   }
   if (!self_collision) return;
   if (const SelfContact::Overlaps o = self_collision->overlaps(); o.pairs > 0)
