@@ -115,6 +115,26 @@ TEST(Friction, SlidesAtTheRateOfTheDynamicCoefficient) {
   }
 }
 
+// Springs tell of velocities at the time of the positions, half a substep on from their own: what lies
+// still on a ball and a floor is still, however much it is pulled down in a substep.
+TEST(Contact, WhatRestsHasNoVelocity) {
+  for (const int substeps : {1, 4}) {
+    Scene scene = read_scene("pbr100").scene;
+    scene.time.substeps = substeps;
+    scene.cloths[0].drag = 1;
+    Simulation simulation(scene);
+    advance(simulation, 30);
+    const auto velocities = simulation.velocities();
+    double square = 0, fastest = 0;
+    for (const double v : velocities) {
+      square += v * v;
+      fastest = std::max(fastest, std::abs(v));
+    }
+    EXPECT_LT(std::sqrt(square / 10000), 1e-3) << substeps;
+    EXPECT_LT(fastest, 0.01) << substeps;
+  }
+}
+
 // Where a particle set loose near the top of a smooth ball leaves it [degrees].
 double leaving_angle(int substeps) {
   Scene scene;

@@ -10,6 +10,7 @@
 #include "physics/colliders/shapes.h"
 #include "physics/energy.h"
 #include "physics/stages/colliders.h"
+#include "physics/support.h"
 
 namespace weft {
 
@@ -138,15 +139,22 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
                     number(o.deepest) + " m; they are pushed apart");
 }
 
+// What a cloth's particles are accelerated by as they lie, bodies that they touch included [m/s²].
+void Simulation::State::accelerations_now(std::size_t cloth, std::vector<Vec3>& a) const {
+  const ClothStep& step = *cloths[cloth];
+  accelerations(scene, step.cloth(), step.families(), step.lattice(), step.bend_links(),
+                method == Method::spring_friction, a);
+  support(scene, double(frame) * scene.time.frame, dt, step.lattice(), a);
+}
+
 // v <- v - a lag: velocities of explicit springs are taken to where they lie behind the positions.
 // `now` gives all velocities in double in place of v, so that what velocities() told comes back
 // exactly.
 void Simulation::State::stagger(const double* now) {
   std::vector<Vec3> a;
-  for (auto& step : cloths) {
-    Lattice& l = step->lattice();
-    accelerations(scene, step->cloth(), step->families(), l, step->bend_links(),
-                  method == Method::spring_friction, a);
+  for (std::size_t n = 0; n < cloths.size(); ++n) {
+    Lattice& l = cloths[n]->lattice();
+    accelerations_now(n, a);
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i)
         for (int c = 0; c < 3; ++c) {

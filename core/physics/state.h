@@ -45,6 +45,7 @@ struct Simulation::State {
   Moment moment() const;
   void restore(const Moment& moment);
   std::size_t backup_bytes() const;
+  void accelerations_now(std::size_t cloth, std::vector<Vec3>& a) const;
 
   // As simulated, about the origin; only move_collider(), restore() and go_on_as() change it. And where
   // it stands, unless that is the same.
