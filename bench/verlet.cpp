@@ -80,7 +80,7 @@ std::vector<Springs> springs_of(const weft::Cloth& cloth) {
 }
 
 // A particle below a surface is put onto it; its velocity loses the part into the surface and, by
-// Coulomb's law, as much of the part along it as the normal correction allows.
+// Coulomb's law, as much of the part along it as what it loses allows.
 void touch(const weft::Friction& friction, double depth, double h, const weft::Vec3& n,
            weft::Vec3& x, weft::Vec3& v) {
   double into = 0, along = 0;
@@ -88,9 +88,9 @@ void touch(const weft::Friction& friction, double depth, double h, const weft::V
   weft::Vec3 t;
   for (std::size_t c = 0; c < 3; ++c) t[c] = v[c] - into * n[c];
   along = norm(t);
-  const bool sticks = along * h <= friction.statik * depth;
-  const double keep =
-      sticks || along == 0 ? 0 : std::max(0.0, 1 - friction.dynamic * depth / (along * h));
+  const double lost = std::max(0.0, -into);
+  const bool sticks = along <= friction.statik * lost;
+  const double keep = sticks || along == 0 ? 0 : std::max(0.0, 1 - friction.dynamic * lost / along);
   for (std::size_t c = 0; c < 3; ++c) {
     x[c] += depth * n[c] + (keep - 1) * t[c] * h;
     v[c] = keep * t[c] + std::max(0.0, into) * n[c];
