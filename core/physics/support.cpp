@@ -12,10 +12,9 @@ namespace {
 constexpr double kRounding = 1e-6;  // m, and of the distance from zero
 constexpr double kAtRest = 1e-2;    // of what a substep adds to the velocity into the surface
 
-// What is left of an acceleration `a` at a surface with normal n.
+// What is left of an acceleration `a` into a surface with normal n.
 Vec3 supported(const Friction& friction, const Vec3& a, const Vec3& n) {
   const double into = dot(a, n);
-  if (into >= 0) return a;
   const Vec3 along = minus(a, times(n, into));
   if (friction.model == FrictionModel::course) return times(along, 1 - friction.dynamic);
   const double size = std::sqrt(dot(along, along));
