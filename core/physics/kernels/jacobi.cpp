@@ -16,11 +16,9 @@ struct JacobiLaw {
   template <PlainFamily F>
   WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
     constexpr bool kNextNear = F == kAntidiagonal, kNextFar = F == kRight || F == kDiagonal;
-    const std::ptrdiff_t far = F == kRight || F == kRight2 ? b.here
-                               : F == kDown2               ? b.below2
-                                                           : b.below;
-    const Wide wa = load(r.w + b.here + (kNextNear ? 1 : 0));
-    const Wide wb = load(r.w + far + (kNextFar ? 1 : F == kRight2 ? 2 : 0));
+    const float* const far = F == kRight || F == kRight2 ? b.x : F == kDown2 ? b.below2 : b.below;
+    const Wide wa = load(r.w + (b.x - r.x.x) + (kNextNear ? 1 : 0));
+    const Wide wb = load(r.w + (far - r.x.x) + (kNextFar ? 1 : F == kRight2 ? 2 : 0));
     const Wide inertia = (wa + wb) * r.weight + r.constraints[b.constants + F].compliance;
     // Two pinned ends of a rigid constraint have nothing to move.
     return select(inertia > 0.0f, (length - r.rest[F]) / (inertia * length), Wide{});
@@ -29,10 +27,14 @@ struct JacobiLaw {
   WEFT_INLINE static Wide3 pull(const Rows&, const Block&, Wide3 edge, Wide quotient, Wide) {
     return edge * quotient;
   }
-  WEFT_INLINE static void finish(const Rows& r, Wide3 sum, std::ptrdiff_t lane) {
+  WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 sum) {
+    const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
     const Wide3 change = sum * load(r.w + lane);
-    store3(r.x, lane, load3(r.x, lane) + change);
-    if (r.inverse_dt > 0) store3(r.v, lane, load3(r.v, lane) + change * wide(r.inverse_dt));
+    store_planes(b.x, plane, load_planes(b.x, plane) + change);
+    if (r.inverse_dt > 0) {
+      float* const v = r.v.x + lane;
+      store_planes(v, plane, load_planes(v, plane) + change * wide(r.inverse_dt));
+    }
   }
 };
 

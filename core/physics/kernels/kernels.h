@@ -47,7 +47,8 @@ struct Advance {
 
 // The six families of a plain cloth at once for rows begin … end-1 (kernels/plain_rows.h). Row j is
 // finished, and what its constraints do to rows j+1 and j+2 is carried to those; calls for successive
-// ranges of rows carry on from each other.
+// ranges of rows carry on from each other. The component arrays of x and v lie equally far apart, and
+// those of the carries.
 inline constexpr int kPlainFamilies = 6;
 struct PlainRows {
   int begin, end, rows;

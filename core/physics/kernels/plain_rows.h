@@ -10,7 +10,7 @@
 //   Law::quotient<F>(rows, block, length)         of family F: by the one division it needs
 //   Law::pull<F>(rows, block, edge, quotient, edge·velocity)
 //                                                 on the near end; the far end gets its negative
-//   Law::finish(rows, sum, lane)                  moves a block by the sum of its pulls
+//   Law::finish(rows, block, sum)                 moves a block by the sum of its pulls
 #pragma once
 
 #include <cstddef>
@@ -40,60 +40,83 @@ WEFT_INLINE void pin_order(Wide3& v) {
 enum PlainFamily { kRight, kDown, kDiagonal, kAntidiagonal, kRight2, kDown2, kFamilies };
 static_assert(kFamilies == physics::kPlainFamilies);
 
-// Where a block of lanes lies: the offsets of its first lane in the arrays, in the same column one
-// and two rows below, and in the row.
+// Where a block of lanes lies: its first lane in component x of the positions, of the same column
+// one and two rows below, and of what the rows one and two above do to it.
 struct Block {
-  std::ptrdiff_t here, below, below2;
-  int i;
-  int parity;                // of the row: which of the two carries from two rows above
+  float* x;
+  const float *below, *below2;
+  float *carry, *carry2;
+  int i;                     // the lane in the row
   std::ptrdiff_t constants;  // number of the row's first family
 };
 
 // The first block of row j. Rows past the last stand for themselves; their springs have no stiffness.
 WEFT_INLINE Block first_block(const physics::PlainRows& s, int j) {
-  const std::ptrdiff_t here = std::ptrdiff_t(j) * s.stride;
-  const std::ptrdiff_t last = std::ptrdiff_t(s.rows - 1) * s.stride;
-  const std::ptrdiff_t below = here + s.stride, below2 = below + s.stride;
-  return {here,  below < last ? below : last,  below2 < last ? below2 : last, 0,
-          j % 2, std::ptrdiff_t(j) * kFamilies};
+  float* const x = s.x.x + std::ptrdiff_t(j) * s.stride;
+  const float* const last = s.x.x + std::ptrdiff_t(s.rows - 1) * s.stride;
+  const bool has_below = j + 1 < s.rows, has_below2 = j + 2 < s.rows;
+  return {x,
+          has_below ? x + s.stride : last,
+          has_below2 ? x + 2 * std::ptrdiff_t(s.stride) : last,
+          s.carry[0].x,
+          s.carry[1 + j % 2].x,
+          0,
+          std::ptrdiff_t(j) * kFamilies};
 }
 
-WEFT_INLINE void advance(Block& b) {
-  b.here += kLanes;
-  b.below += kLanes;
-  b.below2 += kLanes;
-  b.i += kLanes;
+template <int N>
+WEFT_INLINE Block blocks_on(Block b) {
+  constexpr int lanes = N * kLanes;
+  return {b.x + lanes,      b.below + lanes, b.below2 + lanes, b.carry + lanes,
+          b.carry2 + lanes, b.i + lanes,     b.constants};
+}
+WEFT_INLINE Block before(const Block& b) {
+  return blocks_on<-1>(b);
+}
+WEFT_INLINE Block after(const Block& b) {
+  return blocks_on<1>(b);
 }
 
 // The fused kernel works block by block, row after row. Each of the six springs of a block passes
 // four stations: square (edge and squared length), root, quotient (for a spring k l/|e|) and pull.
-// Stations of different springs are interleaved, with pull four springs behind square, so that the
-// divider always has work and nothing waits for it: the order of the statements is the schedule.
+// While one spring is squared, the root of the one before is drawn, and the one before that gets its
+// quotient and pulls: so the divider always has work and little waits for it. The order of the
+// statements is the schedule.
+//
+// What goes to the next lane of the block's own row is summed up before it is shifted: hence the order
+// of the springs.
 //
 // The delays need no reset between rows: past a row's last spring they hold zeros.
+inline constexpr PlainFamily kOrder[] = {kRight, kAntidiagonal, kDown, kDiagonal, kRight2, kDown2};
+
 template <class Law>
 struct Pipeline {
   using Rows = typename Law::Rows;
 
+  std::ptrdiff_t plane, carry_plane;  // floats from one component to the next
   Wide3 edge[kFamilies];
   Wide length[kFamilies];  // squared length, then length, then the quotient
   Wide rate[kFamilies];    // edge · its ends' difference in velocity
   Wide3 own, below;        // pull on the block in `pull`, and on the row below it (negated)
-  Delay3<1> right, diagonal, antidiagonal;
+  Delay3<1> to_right, diagonal;
   Delay3<2> right2;
+
+  WEFT_INLINE Wide3 velocity(const Rows& s, const float* x) const {
+    return load_planes(s.v.x + (x - s.x.x), plane);
+  }
 
   template <PlainFamily F>
   WEFT_INLINE void square(const Rows& s, const Block& b) {
-    const std::ptrdiff_t near = F == kAntidiagonal ? b.here + 1 : b.here;
-    std::ptrdiff_t far = b.below;  // kDown, kAntidiagonal
-    if constexpr (F == kRight) far = b.here + 1;
-    if constexpr (F == kRight2) far = b.here + 2;
-    if constexpr (F == kDiagonal) far = b.below + 1;
-    if constexpr (F == kDown2) far = b.below2;
-    edge[F] = load3(s.x, far) - load3(s.x, near);
+    const float* const near = F == kAntidiagonal ? b.x + 1 : b.x;
+    const float* const far = F == kRight      ? b.x + 1
+                             : F == kRight2   ? b.x + 2
+                             : F == kDiagonal ? b.below + 1
+                             : F == kDown2    ? b.below2
+                                              : b.below;
+    edge[F] = load_planes(far, plane) - load_planes(near, plane);
     length[F] = max(dot(edge[F], edge[F]), wide(kTiny));
     pin_order(length[F]);
-    if constexpr (Law::kRates) rate[F] = dot(edge[F], load3(s.v, far) - load3(s.v, near));
+    if constexpr (Law::kRates) rate[F] = dot(edge[F], velocity(s, far) - velocity(s, near));
   }
   template <PlainFamily F>
   WEFT_INLINE void root() {
@@ -105,89 +128,61 @@ struct Pipeline {
     length[F] = Law::template quotient<F>(s, b, length[F]);
     pin_order(length[F]);
   }
-  // Pull of family F on its near end; lanes past the last constraint of the row are zero.
+  // What family F does to the block, to its right and below. kLast: lanes past the last constraint
+  // of the row are zero.
   template <PlainFamily F, bool kLast>
-  WEFT_INLINE Wide3 pull(const Rows& s, const Block& b) const {
+  WEFT_INLINE void pull(const Rows& s, const Block& b) {
     Wide3 f = Law::template pull<F>(s, b, edge[F], length[F], rate[F]);
-    if constexpr (Law::kTorn) f = select(lanes_at(s.alive[F] + b.here), f, Wide3{});
-    if constexpr (!kLast || F == kDown || F == kDown2) return f;
-    return select(lanes_below(s.columns - (F == kRight2 ? 2 : 1) - b.i), f, Wide3{});
+    if constexpr (Law::kTorn) f = select(lanes_at(s.alive[F] + (b.x - s.x.x)), f, Wide3{});
+    if constexpr (kLast && F != kDown && F != kDown2)
+      f = select(lanes_below(s.columns - (F == kRight2 ? 2 : 1) - b.i), f, Wide3{});
+    if constexpr (F == kRight) {
+      own = f;
+    } else if constexpr (F == kAntidiagonal) {
+      own = own + to_right.next(f - own);
+      below = f;
+    } else if constexpr (F == kDown) {
+      own = own + f;
+      below = below + f;
+    } else if constexpr (F == kDiagonal) {
+      own = own + f - load_planes(b.carry, carry_plane);
+      store_planes(b.carry, carry_plane, below + diagonal.next(f));
+    } else if constexpr (F == kRight2) {
+      own = own + (f - right2.next(f));
+    } else {
+      own = own + (f - load_planes(b.carry2, carry_plane));
+      store_planes(b.carry2, carry_plane, f);
+    }
+    pin_order(own);
+    if constexpr (F == kAntidiagonal || F == kDown) pin_order(below);
   }
 
-  template <bool kLast>
-  WEFT_INLINE void pull_right(const Rows& s, const Block& b) {
-    const Wide3 f = pull<kRight, kLast>(s, b);
-    own = f - right.next(f);
-    pin_order(own);
+  // Squares spring number N of block b while earlier ones, of it or of the block before, go on.
+  // A block that has all its pulls moves. kALast, kBLast: the row's last constraint two to the right
+  // lies in or before the block.
+  template <int N, bool kA, bool kALast, bool kB, bool kBLast>
+  WEFT_INLINE void step(const Rows& s, const Block& a, const Block& b) {
+    constexpr bool kOfA = N < 2;
+    constexpr PlainFamily kPulled = kOrder[(N + 4) % 6];
+    if constexpr (kOfA ? kA : kB) quotient<kPulled>(s, kOfA ? a : b);
+    if constexpr (kB) square<kOrder[N]>(s, b);
+    if constexpr (N < 1 ? kA : kB) root<kOrder[(N + 5) % 6]>();
+    if constexpr (kOfA ? kA : kB) pull<kPulled, (kOfA ? kALast : kBLast)>(s, kOfA ? a : b);
+    if constexpr (kPulled == kDown2 && kA) Law::finish(s, a, own);
   }
-  template <bool kLast>
-  WEFT_INLINE void pull_right2(const Rows& s, const Block& b) {
-    const Wide3 f = pull<kRight2, kLast>(s, b);
-    own = own + (f - right2.next(f));
-    pin_order(own);
-  }
-  template <bool kLast>
-  WEFT_INLINE void pull_down(const Rows& s, const Block& b) {
-    below = pull<kDown, kLast>(s, b);
-    own = own + below;
-    pin_order(own);
-  }
-  template <bool kLast>
-  WEFT_INLINE void pull_diagonal(const Rows& s, const Block& b) {
-    const Wide3 f = pull<kDiagonal, kLast>(s, b);
-    own = own + f;
-    below = below + diagonal.next(f);
-    pin_order(own);
-    pin_order(below);
-  }
-  template <bool kLast>
-  WEFT_INLINE void pull_antidiagonal(const Rows& s, const Block& b) {
-    const Wide3 f = pull<kAntidiagonal, kLast>(s, b);
-    below = below + f;
-    own = own + antidiagonal.next(f) - load3(s.carry[0], b.i);
-    store3(s.carry[0], b.i, below);
-    pin_order(own);
-  }
-  template <bool kLast>
-  WEFT_INLINE void pull_down2(const Rows& s, const Block& b) {
-    const Wide3 f = pull<kDown2, kLast>(s, b);
-    own = own + (f - load3(s.carry[1 + b.parity], b.i));
-    store3(s.carry[1 + b.parity], b.i, f);
-    pin_order(own);
+
+  // Squares block b and gives it its first four pulls, while the block before, a, gets the other two
+  // and moves.
+  template <bool kA, bool kALast, bool kB, bool kBLast>
+  WEFT_INLINE void turn(const Rows& s, const Block& a, const Block& b) {
+    step<0, kA, kALast, kB, kBLast>(s, a, b);
+    step<1, kA, kALast, kB, kBLast>(s, a, b);
+    step<2, kA, kALast, kB, kBLast>(s, a, b);
+    step<3, kA, kALast, kB, kBLast>(s, a, b);
+    step<4, kA, kALast, kB, kBLast>(s, a, b);
+    step<5, kA, kALast, kB, kBLast>(s, a, b);
   }
 };
-
-// Squares block b and gives it its first two pulls, while the block before, a, gets the other four
-// and moves. a_last and b_last: the row's last spring to the right lies in or before the block.
-template <bool kA, bool kALast, bool kB, bool kBLast, class Law>
-WEFT_INLINE void turn(Pipeline<Law>& p, const typename Law::Rows& s, const Block& a,
-                      const Block& b) {
-  if constexpr (kA) p.template quotient<kDiagonal>(s, a);
-  if constexpr (kB) p.template square<kRight>(s, b);
-  if constexpr (kA) p.template root<kDown2>();
-  if constexpr (kA) p.template pull_down<kALast>(s, a);
-  if constexpr (kA) p.template quotient<kAntidiagonal>(s, a);
-  if constexpr (kB) p.template square<kRight2>(s, b);
-  if constexpr (kB) p.template root<kRight>();
-  if constexpr (kA) p.template pull_diagonal<kALast>(s, a);
-  if constexpr (kA) p.template quotient<kDown2>(s, a);
-  if constexpr (kB) p.template square<kDown>(s, b);
-  if constexpr (kB) p.template root<kRight2>();
-  if constexpr (kA) p.template pull_antidiagonal<kALast>(s, a);
-  if constexpr (kB) p.template quotient<kRight>(s, b);
-  if constexpr (kB) p.template square<kDiagonal>(s, b);
-  if constexpr (kB) p.template root<kDown>();
-  if constexpr (kA) p.template pull_down2<kALast>(s, a);
-  if constexpr (kA) Law::finish(s, p.own, a.here);
-  if constexpr (kB) p.template quotient<kRight2>(s, b);
-  if constexpr (kB) p.template square<kAntidiagonal>(s, b);
-  if constexpr (kB) p.template root<kDiagonal>();
-  if constexpr (kB) p.template pull_right<kBLast>(s, b);
-  if constexpr (kB) p.template quotient<kDown>(s, b);
-  if constexpr (kB) p.template square<kDown2>(s, b);
-  if constexpr (kB) p.template root<kAntidiagonal>();
-  if constexpr (kB) p.template pull_right2<kBLast>(s, b);
-}
 
 template <class Law>
 WEFT_INLINE void plain_rows(const typename Law::Rows& given) {
@@ -195,29 +190,33 @@ WEFT_INLINE void plain_rows(const typename Law::Rows& given) {
   // A block is whole when all its constraints two to the right exist.
   const auto last = [&](const Block& b) { return b.i + kLanes + 2 > s.columns; };
   Pipeline<Law> p{};
-  Block a = first_block(s, s.begin), b = a;
-  if (last(a))
-    turn<false, false, true, true>(p, s, a, a);
+  p.plane = s.x.y - s.x.x;
+  p.carry_plane = s.carry[0].y - s.carry[0].x;
+  Block b = first_block(s, s.begin);
+  if (last(b))
+    p.template turn<false, false, true, true>(s, b, b);
   else
-    turn<false, false, true, false>(p, s, a, a);
-  advance(b);
-  for (int j = s.begin; j < s.end; ++j) {
-    if (j > s.begin) b = first_block(s, j);
-    for (; b.i < s.columns; advance(b)) {
-      if (last(b)) {
-        if (last(a))
-          turn<true, true, true, true>(p, s, a, b);
-        else
-          turn<true, false, true, true>(p, s, a, b);
-      } else if (last(a)) {
-        turn<true, true, true, false>(p, s, a, b);
-      } else {
-        turn<true, false, true, false>(p, s, a, b);
-      }
-      a = b;
+    p.template turn<false, false, true, false>(s, b, b);
+  for (int j = s.begin;;) {
+    for (b = after(b); !last(b); b = after(b))
+      p.template turn<true, false, true, false>(s, before(b), b);
+    for (; b.i < s.columns; b = after(b)) {
+      if (last(before(b)))
+        p.template turn<true, true, true, true>(s, before(b), b);
+      else
+        p.template turn<true, false, true, true>(s, before(b), b);
     }
+    const Block a = before(b);
+    if (++j == s.end) {
+      p.template turn<true, true, false, false>(s, a, a);
+      return;
+    }
+    b = first_block(s, j);
+    if (last(b))
+      p.template turn<true, true, true, true>(s, a, b);
+    else
+      p.template turn<true, true, true, false>(s, a, b);
   }
-  turn<true, true, false, false>(p, s, a, a);
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -30,6 +30,16 @@ WEFT_INLINE void store3(Row3 r, std::ptrdiff_t i, Wide3 v) {
   store(r.z + i, v.z);
 }
 
+// Components whose arrays lie `plane` floats apart, from that of x on.
+WEFT_INLINE Wide3 load_planes(const float* x, std::ptrdiff_t plane) {
+  return {load(x), load(x + plane), load(x + 2 * plane)};
+}
+WEFT_INLINE void store_planes(float* x, std::ptrdiff_t plane, Wide3 v) {
+  store(x, v.x);
+  store(x + plane, v.y);
+  store(x + 2 * plane, v.z);
+}
+
 // Delay3<N> for any N up to 16 known only at run time: through a buffer that holds the lanes before.
 class LongDelay3 {
  public:
@@ -58,11 +68,8 @@ WEFT_INLINE int padded(int count) {
 
 // c v + kick (f/m + g); nothing is added where the inverse mass w is 0, that of a pinned particle.
 WEFT_INLINE Wide3 moved(Wide3 v, Wide w, Wide3 f, const Advance& a) {
-  const WideInt free = w > 0.0f;
-  const Wide w_kick = w * a.kick;
-  const Wide3 gained{select(free, wide(a.gx), Wide{}), select(free, wide(a.gy), Wide{}),
-                     select(free, wide(a.gz), Wide{})};
-  return v * wide(a.drag) + (f * w_kick + gained);
+  const Wide3 gained = f * (w * a.kick) + wide3(a.gx, a.gy, a.gz);
+  return v * wide(a.drag) + select(w > 0.0f, gained, Wide3{});
 }
 
 // v <- c v + kick (f/m + g), x <- x + dt v.

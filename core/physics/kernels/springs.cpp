@@ -28,8 +28,12 @@ struct SpringLaw {
     else
       return edge * (c.k - quotient);
   }
-  WEFT_INLINE static void finish(const Rows& r, Wide3 force, std::ptrdiff_t lane) {
-    move(r.x, r.v, r.w, force, r.advance, lane);
+  WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 force) {
+    const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
+    const Wide3 velocity =
+        moved(load_planes(r.v.x + lane, plane), load(r.w + lane), force, r.advance);
+    store_planes(r.v.x + lane, plane, velocity);
+    store_planes(b.x, plane, load_planes(b.x, plane) + velocity * wide(r.advance.dt));
   }
 };
 

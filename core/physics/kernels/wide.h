@@ -135,7 +135,12 @@ class Delay {
  public:
   WEFT_INLINE Wide next(Wide block) {
     if constexpr (N < kLanes) {
+#if WEFT_LANES == 16
+      const Wide r =
+          (Wide)_mm512_maskz_alignr_epi32(0xffff, (__m512i)block, (__m512i)before_[0], kLanes - N);
+#else
       const Wide r = align(before_[0], block, std::make_integer_sequence<int, kLanes>{});
+#endif
       before_[0] = block;
       return r;
     } else {
