@@ -31,13 +31,19 @@ TEST(SelfContact, CourseSheetFoldsAndRestsAThicknessApart) {
 TEST(SelfContact, CourseRuleIsStillThere) {
   Scene scene = read_scene("selfCollision").scene;
   scene.cloths[0].self_collision.response = SelfCollisionResponse::course;
-  Simulation simulation(scene);
-  advance(simulation, 4);
-  const auto p = simulation.report().penetration;
-  const char* const law = "sheet that folds onto itself, by the course's rule, after 4 s";
-  expect({law, "scene selfCollision: crossings", 0, 0, "triangle pairs"}, double(p.crossings));
+  const double thickness = scene.cloths[0].self_collision.thickness;
+  const auto crossings = [](const Simulation& simulation) {
+    return double(simulation.report().penetration.crossings);
+  };
+  const auto overlap = [&](const Simulation& simulation) {
+    return simulation.report().penetration.self_max / thickness;
+  };
+  const char* const law =
+      "sheet that folds onto itself, by the course's rule, after 4 s, median of five starts";
+  expect({law, "scene selfCollision: crossings", 0, 0, "triangle pairs"},
+         median_of_starts(scene, 4, crossings));
   expect({law, "scene selfCollision: greatest overlap", 0, 0.2, "of the thickness"},
-         p.self_max / scene.cloths[0].self_collision.thickness);
+         median_of_starts(scene, 4, overlap));
 }
 
 }  // namespace
