@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sheets.h"
 #include "weft/read_scene.h"
 #include "weft/shape.h"
 #include "weft/simulation.h"
@@ -104,6 +105,56 @@ TEST(SetScene, GoesOnWithOtherValues) {
   EXPECT_EQ(simulation.scene().cloths[0].stiffness.structural, 20000);
   EXPECT_EQ(held(simulation), 1);
   run(simulation, 30);
+}
+
+// A ball put into the middle of a swinging sheet, and then made larger, pushes it aside as gently as
+// one that is there from the start.
+TEST(SetScene, CollidersPutIntoAClothMoveItGently) {
+  for (const auto& [method, sweep] : {std::pair{Method::spring, Sweep::gauss_seidel},
+                                      std::pair{Method::compliant, Sweep::gauss_seidel},
+                                      std::pair{Method::compliant, Sweep::line}}) {
+    Scene scene = read_scene("swing").scene;
+    scene.solver.method = method;
+    scene.solver.sweep = sweep;
+    scene.cloths[0].drag = 1;
+    Simulation simulation(scene);
+    run(simulation, 30);
+    const Grid& grid = scene.cloths[0].grid;
+    const Vec3 middle = position(simulation, grid.nx / 2, grid.ny / 2);
+    double fastest = 0, longest = 0;
+    for (const double radius : {0.1, 0.2, 0.3}) {
+      scene.colliders = {{.shape = Sphere{middle, radius}, .friction = {}, .keys = {}}};
+      simulation.set_scene(scene);
+      for (int frame = 0; frame < 12; ++frame) {
+        simulation.advance_frame();
+        for (const double v : simulation.velocities()) fastest = std::max(fastest, std::abs(v));
+        longest = std::max(longest, simulation.report().strain.max);
+      }
+    }
+    std::printf("method %d, sweep %d: fastest %.1f m/s, longest %.0f %%\n", int(method), int(sweep),
+                fastest, 100 * longest);
+    EXPECT_LT(fastest, 20);
+    EXPECT_LT(longest, 0.3);
+    EXPECT_LT(simulation.report().penetration.collider_max, 1e-4);
+  }
+}
+
+// While it does, a moment goes on alike in another simulation.
+TEST(SetScene, MomentsKnowWhatCollidersHaveMet) {
+  Scene scene = curtain();
+  Simulation simulation(scene);
+  run(simulation, 20);
+  scene.colliders[0].shape = Sphere{position(simulation, 6, 5), 0.2};
+  simulation.set_scene(scene);
+  run(simulation, 5);
+  const Moment moment = simulation.moment();
+  EXPECT_GT(moment.cloths[0].inside[0].particle, 0.1);
+  Simulation other(scene);
+  for (Simulation* s : {&simulation, &other}) {
+    s->restore(moment);
+    run(*s, 8);
+  }
+  EXPECT_EQ(simulation.hash(), other.hash());
 }
 
 TEST(SetScene, StartsAnewWithAnotherGridAndRefusesFaults) {

@@ -142,6 +142,13 @@ void Simulation::State::set_path(std::size_t collider, std::vector<Key> keys) {
     for (const auto& stage : step->stages()) stage->follow(c);
 }
 
+// Whatever lies inside a collider now is moved out as gently as at a start.
+void Simulation::State::meet(std::size_t collider) {
+  for (auto& step : cloths)
+    step->meet(collider, start_inside(step->cloth(), step->lattice(), scene.colliders[collider],
+                                      double(frame) * scene.time.frame));
+}
+
 namespace {
 
 // Least squared distance between segments p + s d and q + t e, 0 <= s, t <= 1 (Ericson 5.1.9).

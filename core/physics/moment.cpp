@@ -14,7 +14,8 @@ std::size_t Moment::bytes() const {
   std::size_t bytes = sizeof *this;
   for (const ClothMoment& c : cloths)
     bytes += sizeof c + (c.positions.size() + c.velocities.size()) * sizeof(float) +
-             c.held.size() * sizeof c.held[0] + c.torn.size() * sizeof(Torn);
+             c.held.size() * sizeof c.held[0] + c.torn.size() * sizeof(Torn) +
+             c.inside.size() * sizeof(Inside);
   for (const std::vector<Key>& keys : paths) bytes += keys.size() * sizeof(Key);
   return bytes;
 }
@@ -25,7 +26,7 @@ Moment Simulation::State::moment() const {
   m.origin = origin;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     const Lattice& l = cloths[n]->lattice();
-    Moment::ClothMoment c{l.columns, l.rows, {}, {}, {}, {}};
+    Moment::ClothMoment c{l.columns, l.rows, {}, {}, {}, {}, {}};
     c.positions.reserve(3 * std::size_t(l.columns) * l.rows);
     c.velocities.reserve(c.positions.capacity());
     for (const Vec3& v : velocities_now(*this, n))
@@ -38,6 +39,8 @@ Moment Simulation::State::moment() const {
     if (const Topology* topology = cloths[n]->topology())
       for (const Topology::Torn& t : topology->torn_list())
         c.torn.push_back({t.di, t.dj, t.j, t.a});
+    for (const StartInside& start : cloths[n]->starts())
+      c.inside.push_back({start.time, start.deepest_particle, start.deepest_triangle});
     m.cloths.push_back(std::move(c));
   }
   for (const Collider& c : where_it_stands().colliders) m.paths.push_back(c.keys);
@@ -50,7 +53,8 @@ void Simulation::State::restore(const Moment& m) {
     const Lattice& l = cloths[n]->lattice();
     const std::size_t values = 3 * std::size_t(l.columns) * l.rows;
     fits = m.cloths[n].columns == l.columns && m.cloths[n].rows == l.rows &&
-           m.cloths[n].positions.size() == values && m.cloths[n].velocities.size() == values;
+           m.cloths[n].positions.size() == values && m.cloths[n].velocities.size() == values &&
+           m.cloths[n].inside.size() == scene.colliders.size();
   }
   if (!fits || !(m.time >= 0)) throw std::invalid_argument("the moment is of another scene");
   std::vector<double> positions, velocities;
@@ -73,7 +77,13 @@ void Simulation::State::restore(const Moment& m) {
     positions.insert(positions.end(), c.positions.begin(), c.positions.end());
     velocities.insert(velocities.end(), c.velocities.begin(), c.velocities.end());
   }
-  for (std::size_t n = 0; n < m.paths.size(); ++n) set_path(n, m.paths[n]);
+  for (std::size_t n = 0; n < m.paths.size(); ++n) {
+    set_path(n, m.paths[n]);
+    for (std::size_t c = 0; c < cloths.size(); ++c) {
+      const Moment::Inside& inside = m.cloths[c].inside[n];
+      cloths[c]->meet(n, {inside.time, 0, 0, inside.particle, inside.triangle});
+    }
+  }
   frame = std::llround(m.time / scene.time.frame);
   finer_ = 1;
   failed_by_hand_ = failed_by_itself_ = false;
@@ -124,7 +134,11 @@ void Simulation::set_scene(Scene scene) {
         change_pins(before.cloths[n], after.cloths[n], m.cloths[n]);
     m.paths.clear();
     for (const Collider& c : after.colliders) m.paths.push_back(c.keys);
+    for (Moment::ClothMoment& c : m.cloths) c.inside.resize(after.colliders.size());
     next.restore(m);
+    for (std::size_t k = 0; k < after.colliders.size(); ++k)
+      if (k >= before.colliders.size() || before.colliders[k] != after.colliders[k])
+        next.state_->meet(k);
     next.state_->changes += state_->changes;
   }
   *this = std::move(next);

@@ -23,12 +23,18 @@ ClothStep::ClothStep(const Scene& scene, int cloth_index, Method method, std::ui
       families_(families_of(cloth_)),
       lattice_(make_lattice(cloth_, cloth_index, seed, keeps_previous(scene.solver, method))),
       parts_{scene, cloth_, method_, lattice_, families_, kernels, starts_} {
-  for (const Collider& c : scene.colliders) starts_.push_back(start_inside(lattice_, c));
+  for (const Collider& c : scene.colliders) starts_.push_back(start_inside(cloth_, lattice_, c, 0));
   const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                [](const Collider& c) { return c.cuts; });
   if (cut || cloth_.tear_strain > 0) make_topology();
   choose_stages();
   make_passes();
+}
+
+void ClothStep::meet(std::size_t collider, const StartInside& inside) {
+  starts_[collider] = inside;
+  const Collider& c = parts_.scene.colliders[collider];
+  for (const auto& stage : stages_) stage->follow(c);
 }
 
 // The same stages with masks.

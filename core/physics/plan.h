@@ -36,6 +36,8 @@ class ClothStep {
   const Cloth& cloth() const { return cloth_; }
   // Of every collider of the scene.
   const std::vector<StartInside>& starts() const { return starts_; }
+  // The cloth meets a collider anew.
+  void meet(std::size_t collider, const StartInside& inside);
   Lattice& lattice() { return lattice_; }
   const Lattice& lattice() const { return lattice_; }
   const std::vector<Family>& families() const { return families_; }

@@ -108,13 +108,16 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
     const std::string which = "cloth " + std::to_string(c);
     for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
       const StartInside& start = cloths[c]->starts()[k];
-      if (start.particles == 0) continue;
+      if (start.particles == 0 && start.triangles == 0) continue;
       const bool course = scene.colliders[k].friction.model == FrictionModel::course;
-      notes.push_back(which + " starts inside collider " + std::to_string(k) + ": " +
-                      std::to_string(start.particles) + " particles, up to " +
-                      number(start.deepest) + " m deep; " +
-                      (course ? "they are put out at once, as the course does"
-                              : "moved out over " + std::to_string(kPulledFrames) + " frames"));
+      const double deepest = std::max(start.deepest_particle, start.deepest_triangle);
+      notes.push_back(
+          which + " starts inside collider " + std::to_string(k) + ": " +
+          std::to_string(start.particles) + " particles, " +
+          (start.triangles > 0 ? std::to_string(start.triangles) + " triangles, " : "") + "up to " +
+          number(deepest) + " m deep; " +
+          (course ? "they are put out at once, as the course does"
+                  : "moved out over " + std::to_string(kPulledFrames) + " frames"));
     }
     const Cloth& cloth = scene.cloths[c];
     const double spacing = std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));

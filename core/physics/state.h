@@ -44,6 +44,8 @@ struct Simulation::State {
   void set_path(std::size_t collider, std::vector<Key> keys);
   Moment moment() const;
   void restore(const Moment& moment);
+  // A collider has been put where cloths may be.
+  void meet(std::size_t collider);
   std::size_t backup_bytes() const;
   void accelerations_now(std::size_t cloth, std::vector<Vec3>& a) const;
 

@@ -48,12 +48,18 @@ struct Moment {
   struct Torn {  // a constraint that is gone, by its family's offset on the grid
     int di, dj, j, a;
   };
+  // How far the deepest particle and triangle of a cloth lay inside a collider when the two met [m], and
+  // when that was [s]: for ten frames from then the collider grows to its size.
+  struct Inside {
+    double time = 0, particle = 0, triangle = 0;
+  };
   struct ClothMoment {
     int columns = 0, rows = 0;
     // x,y,z per particle, row-major: from the origin [m], [m/s]
     std::vector<float> positions, velocities;
     std::vector<std::array<int, 2>> held;  // particles [i, j] that cannot move
     std::vector<Torn> torn;
+    std::vector<Inside> inside;  // of every collider
   };
   double time = 0;  // s
   Vec3 origin{};    // m, what positions are counted from
@@ -121,7 +127,8 @@ class Simulation {
   Moment moment() const;
   void restore(const Moment& moment);
   // Goes on with another scene: cloths whose grids have the same points keep their state, pins that
-  // differ between the scenes are set, colliders that differ take the new scene's place and keys.
+  // differ between the scenes are set, colliders that differ take the new scene's place and keys; what
+  // they meet there is moved out gently, as at a start.
   // Otherwise it starts anew. What is grabbed or carried is let go. Throws as the constructor does,
   // and then nothing has changed.
   void set_scene(Scene scene);

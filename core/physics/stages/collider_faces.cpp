@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/path.h"
 #include "physics/stages/colliders.h"
 
 namespace weft::physics {
@@ -116,25 +117,48 @@ Touch first_touch(const Shape& shape, double offset, const Corners& end, int pla
   return {};
 }
 
+// A shape in its own axes: a box is looked at there.
+struct Upright {
+  Shape shape;
+  std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+
+  explicit Upright(const Shape& given) : shape(given) {
+    if (auto* box = std::get_if<Box>(&shape)) {
+      const ShapeConstants turned = constants_of(*box);
+      for (int k = 0; k < 3; ++k)
+        axes[k] = {turned.turn[3 * k], turned.turn[3 * k + 1], turned.turn[3 * k + 2]};
+      box->rotation = {};
+    }
+  }
+  Vec3 into(const Vec3& p) const { return {dot(axes[0], p), dot(axes[1], p), dot(axes[2], p)}; }
+  Vec3 out_of(const Vec3& p) const {
+    return plus(plus(times(axes[0], p[0]), times(axes[1], p[1])), times(axes[2], p[2]));
+  }
+};
+
+// m, the longest side of a flat triangle.
+double edge_of(const Grid& grid) {
+  return std::hypot(spacing_u(grid), spacing_v(grid));
+}
+
+// Whether a collider could slip through the cloth between its particles.
+bool caught_by_triangles(const Cloth& cloth, const Collider& collider) {
+  if (collider.friction.model == FrictionModel::course) return false;
+  const double feature = std::visit([](const auto& s) { return feature_of(s); }, collider.shape);
+  return feature + collider.offset <= kSmall * edge_of(cloth.grid);
+}
+
 class ColliderFaces final : public RowStage {
  public:
-  ColliderFaces(const ClothParts& parts, const Collider& collider, double edge)
+  ColliderFaces(const ClothParts& parts, const Collider& collider)
       : RowStage("collider_faces", "triangles of the sheet against its small features", 1,
                  2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1),
                  "triangles"),
         parts_(parts),
-        collider_(parts, collider),
+        collider_(parts, collider, true),
         far_(parts, collider_.fastest()),
         upright_(collider.shape),
-        edge_(edge) {
-    // A box is looked at in its own axes.
-    if (auto* box = std::get_if<Box>(&upright_)) {
-      const ShapeConstants turned = constants_of(*box);
-      for (int k = 0; k < 3; ++k)
-        axes_[k] = {turned.turn[3 * k], turned.turn[3 * k + 1], turned.turn[3 * k + 2]};
-      box->rotation = {};
-    }
-  }
+        edge_(edge_of(parts.cloth.grid)) {}
 
   void reserve_slots(int slots) override { bound_ = Rows(slots, parts_.lattice.stride); }
   std::size_t bytes() const override { return bound_.bytes(); }
@@ -185,9 +209,9 @@ class ColliderFaces final : public RowStage {
     double longest = 0;
     for (int k = 0; k < 3; ++k) {
       v[k] = minus({l.v.at(0, j[k], i[k]), l.v.at(1, j[k], i[k]), l.v.at(2, j[k], i[k])}, u);
-      c.x[k] = into_shape(
+      c.x[k] = upright_.into(
           minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place));
-      c.path[k] = into_shape(times(v[k], r.dt));
+      c.path[k] = upright_.into(times(v[k], r.dt));
       longest = std::max(longest, std::sqrt(dot(c.path[k], c.path[k])));
     }
     Touch touch = std::visit(
@@ -200,10 +224,9 @@ class ColliderFaces final : public RowStage {
           found.depth += found.depth > 0 ? kSlack * edge_ : 0;
           return found;
         },
-        upright_);
+        upright_.shape);
     if (touch.depth <= kSlack * edge_) return false;
-    touch.normal = plus(plus(times(axes_[0], touch.normal[0]), times(axes_[1], touch.normal[1])),
-                        times(axes_[2], touch.normal[2]));
+    touch.normal = upright_.out_of(touch.normal);
     std::array<double, 3> share;
     double mobility = 0, greatest = 0;
     Vec3 speed{};
@@ -225,10 +248,6 @@ class ColliderFaces final : public RowStage {
     return !lever && touch.depth > kDeep * edge_;
   }
 
-  Vec3 into_shape(const Vec3& p) const {
-    return {dot(axes_[0], p), dot(axes_[1], p), dot(axes_[2], p)};
-  }
-
   // Changes of position and velocity of the touching point, as a particle's in collide.h.
   static std::pair<Vec3, Vec3> rub(const CollideRow& r, const Touch& touch, const Vec3& speed) {
     const double into = dot(speed, touch.normal);
@@ -246,20 +265,55 @@ class ColliderFaces final : public RowStage {
   ClothParts parts_;
   MovingCollider collider_;
   OutOfReach far_;
-  Shape upright_;
-  std::array<Vec3, 3> axes_{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  Upright upright_;
   double edge_;  // m, longest of a flat triangle
   Rows bound_;
 };
 
 }  // namespace
 
+void find_triangles_inside(const Cloth& cloth, const Lattice& l, const Collider& collider,
+                           StartInside& found) {
+  if (collider.cuts || !caught_by_triangles(cloth, collider)) return;
+  const double edge = edge_of(cloth.grid);
+  const Upright upright(collider.shape);
+  const Vec3 place = collider.keys.empty()
+                         ? std::visit([](const auto& s) { return place_of(s); }, collider.shape)
+                         : position_at(collider.keys, found.time);
+  const auto look = [&](const std::array<int, 3>& j, const std::array<int, 3>& i) {
+    Corners c{};
+    bool moves = false;
+    for (int k = 0; k < 3; ++k) {
+      c.x[k] = minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place);
+      c.x[k] = upright.into(c.x[k]);
+      moves |= l.w(j[k], i[k]) > 0;
+    }
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 side = minus(c.x[(k + 1) % 3], c.x[k]);
+      longest = std::max(longest, std::sqrt(dot(side, side)));
+    }
+    const double depth = std::visit(
+        [&](const auto& shape) {
+          // No point of a triangle is further from a corner than its longest side.
+          if (!moves || nearest_of(shape, c.x[0]).distance > collider.offset + longest) return 0.0;
+          return collider.offset - deepest_on(shape, c, collider.offset, edge).nearest.distance;
+        },
+        upright.shape);
+    found.deepest_triangle = std::max(found.deepest_triangle, depth);
+    found.triangles += depth > kTouchingStart;
+  };
+  for (int j = 0; j + 1 < l.rows; ++j)
+    for (int i = 0; i + 1 < l.columns; ++i) {
+      look({j, j, j + 1}, {i, i + 1, i});
+      look({j, j + 1, j + 1}, {i + 1, i + 1, i});
+    }
+  if (found.triangles == 0) found.deepest_triangle = 0;
+}
+
 std::unique_ptr<RowStage> make_collider_faces(const ClothParts& parts, const Collider& collider) {
-  if (collider.friction.model == FrictionModel::course) return nullptr;
-  const double edge = std::hypot(spacing_u(parts.cloth.grid), spacing_v(parts.cloth.grid));
-  const double feature = std::visit([](const auto& s) { return feature_of(s); }, collider.shape);
-  if (feature + collider.offset > kSmall * edge) return nullptr;
-  return std::make_unique<ColliderFaces>(parts, collider, edge);
+  if (!caught_by_triangles(parts.cloth, collider)) return nullptr;
+  return std::make_unique<ColliderFaces>(parts, collider);
 }
 
 }  // namespace weft::physics

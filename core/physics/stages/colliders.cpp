@@ -8,8 +8,6 @@
 namespace weft::physics {
 namespace {
 
-constexpr double kTouching = 1e-4;  // m; sheets that lie on a surface start no deeper
-
 const char* const kShapeNames[kShapes] = {"sphere", "plane", "capsule", "box"};
 
 std::string detail_of(const Collider& c) {
@@ -48,27 +46,28 @@ class ColliderStage final : public RowStage {
 
 }  // namespace
 
-StartInside start_inside(const Lattice& l, const Collider& collider) {
+StartInside start_inside(const Cloth& cloth, const Lattice& l, const Collider& collider,
+                         double time) {
   StartInside found;
+  found.time = time;
   if (collider.cuts) return found;
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i) {
       const Vec3 x{l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)};
-      const double depth = l.w(j, i) > 0 ? collider.offset - signed_distance(collider, 0, x) : 0;
-      found.deepest = std::max(found.deepest, depth);
-      found.particles += depth > kTouching;
+      const double depth = l.w(j, i) > 0 ? collider.offset - signed_distance(collider, time, x) : 0;
+      found.deepest_particle = std::max(found.deepest_particle, depth);
+      found.particles += depth > kTouchingStart;
     }
-  if (found.particles == 0) found.deepest = 0;
+  if (found.particles == 0) found.deepest_particle = 0;
+  find_triangles_inside(cloth, l, collider, found);
   return found;
 }
 
-MovingCollider::MovingCollider(const ClothParts& parts, const Collider& collider)
-    : collider_(collider) {
-  const StartInside& start = parts.starts[std::size_t(&collider - parts.scene.colliders.data())];
-  if (start.particles > 0 && collider.friction.model == FrictionModel::coulomb) {
-    deepest_ = start.deepest;
-    pulled_ = kPulledFrames * parts.scene.time.frame;
-  }
+MovingCollider::MovingCollider(const ClothParts& parts, const Collider& collider, bool by_triangles)
+    : collider_(collider),
+      start_(parts.start_in(collider)),
+      by_triangles_(by_triangles),
+      growth_(kPulledFrames * parts.scene.time.frame) {
   CollideRow& r = constants_;
   r.friction_static = float(collider.friction.statik);
   r.friction_dynamic = float(collider.friction.dynamic);
@@ -92,7 +91,13 @@ void MovingCollider::follow_keys() {
     const Vec3 e = minus(b.position, a.position);
     along = std::max(along, std::sqrt(dot(e, e)) / (b.time - a.time));
   }
-  fastest_ = along + (pulled_ > 0 ? deepest_ / pulled_ : 0);
+  fastest_ = along + deepest() / growth_;
+}
+
+double MovingCollider::deepest() const {
+  if (collider_.friction.model == FrictionModel::course) return 0;
+  return by_triangles_ ? std::max(start_.deepest_particle, start_.deepest_triangle)
+                       : start_.deepest_particle;
 }
 
 CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s) const {
@@ -104,7 +109,8 @@ CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s)
   r.w = l.w(j);
   r.dt = float(s.dt);
   r.inverse_dt = float(1 / s.dt);
-  if (s.time < pulled_) r.offset -= float(deepest_ * (1 - s.time / pulled_));
+  const double grown = (s.time - start_.time) / growth_;
+  if (grown < 1) r.offset -= float(deepest() * (1 - grown));
   if (collider_.keys.empty()) return r;
   const Vec3 c = position_at(collider_.keys, s.time);
   const Vec3 u = velocity_over(collider_.keys, s.time, s.dt);

@@ -7,29 +7,34 @@
 
 namespace weft::physics {
 
-// Frames over which a collider that holds particles at the start grows to its size.
+// Frames over which a collider that holds part of a sheet when they first meet grows to its size.
 inline constexpr int kPulledFrames = 10;
 
-// A collider in motion, as the kernels take it. Particles that start inside it would be torn from
-// their neighbours if they were put onto its surface at once: it begins as much smaller as the
-// deepest of them lies below the surface.
+// A collider in motion, as the kernels take it. What is inside when it meets the cloth would be torn
+// from its neighbours if it were put onto the surface at once: the collider begins as much smaller as
+// the deepest of it lies below the surface.
 class MovingCollider {
  public:
-  MovingCollider(const ClothParts& parts, const Collider& collider);
+  // by_triangles: triangles, too, are kept out.
+  MovingCollider(const ClothParts& parts, const Collider& collider, bool by_triangles = false);
   // The collider at the end of the substep, and row j of the cloth.
   CollideRow row(const ClothParts& parts, int j, const Substep& s) const;
-  // Greatest speed along its keys, and of its growth at the start [m/s].
+  // Greatest speed along its keys, and of its growth [m/s].
   double fastest() const { return fastest_; }
-  // Takes up keys that have changed.
+  // Takes up keys, and what is inside, when they have changed.
   void follow_keys();
   const Collider& collider() const { return collider_; }
   std::size_t shape() const { return collider_.shape.index(); }
 
  private:
+  double deepest() const;  // m below the surface when they met
+
   const Collider& collider_;
   CollideRow constants_{};
   double fastest_ = 0;
-  double deepest_ = 0, pulled_ = 0;  // m below the surface at the start; s, until it has grown
+  const StartInside& start_;
+  const bool by_triangles_;
+  const double growth_;  // s, until it has grown
 };
 
 // Rows that cannot touch a collider before a time. A particle at distance c, of speed s towards the

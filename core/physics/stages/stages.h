@@ -13,12 +13,21 @@ namespace weft::physics {
 
 class Topology;
 
-// Free particles of a cloth that start inside a collider, and how deep at most [m].
+// What of a cloth lies inside a collider and can move when the two first meet, at the start or when the
+// collider is put where the cloth is: particles, and triangles where those catch the collider, and how
+// deep at most [m].
 struct StartInside {
-  std::int64_t particles = 0;
-  double deepest = 0;
+  double time = 0;  // s
+  std::int64_t particles = 0, triangles = 0;
+  double deepest_particle = 0, deepest_triangle = 0;
 };
-StartInside start_inside(const Lattice& lattice, const Collider& collider);
+StartInside start_inside(const Cloth& cloth, const Lattice& lattice, const Collider& collider,
+                         double time);
+// Adds the triangles.
+void find_triangles_inside(const Cloth& cloth, const Lattice& lattice, const Collider& collider,
+                           StartInside& found);
+// Sheets that lie on a surface start no deeper [m].
+inline constexpr double kTouchingStart = 1e-4;
 
 // Whether a method integrates springs as forces, and so has a stability limit.
 inline bool is_explicit(Method m) {
@@ -35,6 +44,9 @@ struct ClothParts {
   const KernelTable& kernels;
   const std::vector<StartInside>& starts;  // of every collider
   const Topology* topology = nullptr;      // null: the cloth cannot tear
+  const StartInside& start_in(const Collider& collider) const {
+    return starts[std::size_t(&collider - scene.colliders.data())];
+  }
   std::int64_t particles() const { return std::int64_t(lattice.columns) * lattice.rows; }
   std::int64_t constraints() const;
 };
