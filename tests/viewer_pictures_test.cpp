@@ -68,11 +68,14 @@ Decoded decode(const fs::path& path) {
 TEST(Pictures, EveryLookIsAsKept) {
   const fs::path out = fs::temp_directory_path() / "weft_viewer_kept.png";
   int looks = 0;
-  for (const auto& entry : fs::directory_iterator(WEFT_SOURCE_DIR "/tests/pictures")) {
+  const fs::path folder = WEFT_SOURCE_DIR "/tests/pictures";
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() != ".png") continue;
     const std::string look = entry.path().stem().string();
-    ASSERT_EQ(run("swing --headless --frames 25 --size 160x120 --shader " + look + " --out " +
-                  out.string()),
-              0)
+    ASSERT_EQ(
+        run((folder / "scene.json").string() + " --headless --frames 25 --size 160x120 --shader " +
+            look + " --out " + out.string()),
+        0)
         << look;
     const Decoded kept = decode(entry.path()), now = decode(out);
     ASSERT_EQ(kept.rgb.size(), 3u * 160 * 120) << look;
