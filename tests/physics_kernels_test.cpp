@@ -81,19 +81,25 @@ void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
   for (int n = 0; n < 3; ++n) r.carry[n] = p.carry.row(n);
 }
 
-// Rows begin … end-1 of the patch with the six families of a plain cloth.
-void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int begin, int end) {
+// Rows begin … end-1 of the patch with the six families of a plain cloth; given overlong, springs past
+// tear_length are told of.
+void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int begin, int end,
+                 float tear_length = 0, std::uint8_t* overlong = nullptr) {
   std::vector<SpringConstants> springs;
   for (int j = 0; j < kRows; ++j) {
     const std::pair<int, SpringConstants> of_each[kPlainFamilies] = {
         {0, {70, 63, 0.4f}}, {1, {71, 60, 0.4f}}, {1, {40, 57, 0.4f}},
         {1, {41, 56, 0.4f}}, {0, {20, 41, 0.4f}}, {2, {20, 39, 0.4f}}};
-    for (const auto& [dj, c] : of_each) springs.push_back(j + dj < kRows ? c : SpringConstants{});
+    for (const auto& [dj, c] : of_each) {
+      springs.push_back(j + dj < kRows ? c : SpringConstants{});
+      if (overlong && j + dj < kRows) springs.back().taut = (damped ? 1 : c.kl) / tear_length;
+    }
   }
   SpringRows r{};
   fill(r, p, begin, end, torn);
   r.springs = springs.data();
   r.damped = damped;
+  r.overlong = overlong;
   r.advance = advance();
   k.spring_rows(r);
 }
@@ -152,6 +158,13 @@ void add_springs(std::vector<Case>& cases) {
                [=](const KernelTable& k, Patch& p, int begin, int end) {
                  spring_rows(k, p, damped, torn, begin, end);
                });
+  for (const bool damped : {false, true})
+    add_rows(cases, std::string("spring_rows, watched") + (damped ? ", damped" : ""),
+             [=](const KernelTable& k, Patch& p, int begin, int end) {
+               std::uint8_t overlong[kRows] = {};
+               spring_rows(k, p, damped, true, begin, end, 2, overlong);
+               for (int j = begin; j < end; ++j) p.lambda[j % p.columns] += overlong[j];
+             });
   for (const auto& [di, dj] : kOffsets) {
     const std::string at = " (" + std::to_string(di) + "," + std::to_string(dj) + ")";
     const auto springs = [di = di, dj = dj](auto kernel) {
@@ -315,7 +328,47 @@ TEST_P(WideKernels, EqualTheScalarOnesBitForBit) {
 INSTANTIATE_TEST_SUITE_P(, WideKernels, testing::Values(Simd::sse2, Simd::avx2, Simd::avx512),
                          [](const auto& test) { return simd_name(test.param); });
 
-// The test above compares nothing if a kernel does nothing.
+// Whether row j of the patch has a spring that is not torn and longer than `length`.
+bool has_longer(const Patch& p, int j, double length) {
+  const int offsets[kPlainFamilies][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}, {0, 2}};
+  for (int f = 0; f < kPlainFamilies; ++f) {
+    const auto [di, dj] = offsets[f];
+    for (int a = 0; a + std::abs(di) < p.columns && j + dj < kRows; ++a) {
+      const int near = a + std::max(0, -di), far = near + di;
+      double square = 0;
+      for (int axis = 0; axis < 3; ++axis)
+        square += std::pow(double(p.x.at(axis, j + dj, far)) - p.x.at(axis, j, near), 2);
+      if (p.alive[std::size_t(f * kRows + j) * p.stride + a] && std::sqrt(square) > length)
+        return true;
+    }
+  }
+  return false;
+}
+
+TEST(Kernels, SpringsTellWhichRowsHaveOverlongOnes) {
+  int told = 0, asked = 0;
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+    if (!simd_available(simd)) continue;
+    for (int columns = 2; columns <= 70; ++columns)
+      for (const float length : {2.0f, 3.0f, 3.5f, 4.0f})
+        for (const bool damped : {false, true}) {
+          const Patch before(columns, 7.5f);
+          Patch patch(columns, 7.5f);
+          std::uint8_t overlong[kRows] = {};
+          spring_rows(kernel_table(simd), patch, damped, true, 0, kRows, length, overlong);
+          for (int j = 0; j < kRows; ++j) {
+            ASSERT_EQ(bool(overlong[j]), has_longer(before, j, length))
+                << simd_name(simd) << ", " << columns << " columns, row " << j << ", " << length;
+            told += overlong[j];
+            ++asked;
+          }
+        }
+  }
+  EXPECT_GT(told, asked / 10);
+  EXPECT_LT(told, asked - asked / 10);
+}
+
+// The bits above compare nothing if a kernel does nothing.
 TEST(Kernels, EachChangesSomething) {
   for (const Case& test : all_cases()) {
     bool numbers = true;

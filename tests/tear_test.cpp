@@ -1,5 +1,8 @@
 // Tearing: by strain, by cutters, by a caller; triangles follow; the same bits for any threads.
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <set>
 
 #include "contact_scenes.h"
 #include "machines.h"
@@ -66,6 +69,54 @@ TEST(Tear, OverloadedClothTearsAndFallsApart) {
         EXPECT_LT(std::hypot(view.x[a] - view.x[b], view.y[a] - view.y[b], view.z[a] - view.z[b]),
                   0.1);
       }
+  }
+}
+
+// A constraint too long at the end of two substeps in a row is gone after the second, and every other
+// one is there.
+TEST(Tear, WhatIsTooLongTearsAtOnce) {
+  for (const Method method : {Method::spring, Method::spring_friction, Method::compliant}) {
+    Scene scene = hung(20, method);
+    Cloth& cloth = scene.cloths[0];
+    cloth.tear_strain = 0.1;
+    scene.time.frame = 2e-4;
+    scene.time.substeps = 1;
+    for (int n = 0; n < 20; ++n)
+      cloth.pins.push_back({n, 19, {{0, {n / 19.0 - 0.5, -1, 0}}, {1, {n / 19.0 - 0.5, -9, 0}}}});
+    Simulation simulation(scene);
+    const auto too_long = [&](const ClothView& view) {
+      std::vector<std::array<int, 4>> list;
+      const int offsets[6][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}, {0, 2}};
+      for (const auto& [di, dj] : offsets)
+        for (int j = 0; j + dj < 20; ++j)
+          for (int i = std::max(0, -di); i + std::max(0, di) < 20; ++i) {
+            const int a = j * view.stride + i, b = a + dj * view.stride + di;
+            const double length =
+                std::hypot(view.x[a] - view.x[b], view.y[a] - view.y[b], view.z[a] - view.z[b]);
+            if (length > 1.1001 * std::hypot(di, dj) / 19) list.push_back({di, dj, i, j});
+          }
+      return list;
+    };
+    std::vector<std::array<int, 4>> before;
+    std::size_t torn = 0;
+    for (int n = 0; n < 400; ++n) {
+      simulation.advance_frame();
+      const auto now = too_long(simulation.view().cloths[0]);
+      std::set<std::array<int, 4>> gone;
+      const Moment moment = simulation.moment();
+      for (const Moment::Torn& t : moment.cloths[0].torn)
+        gone.insert({t.di, t.dj, t.a + std::max(0, -t.di), t.j});
+      for (const auto& c : now) {
+        const bool twice = std::find(before.begin(), before.end(), c) != before.end();
+        ASSERT_TRUE(!twice || gone.count(c))
+            << n << ": " << c[0] << ' ' << c[1] << ' ' << c[2] << ' ' << c[3];
+      }
+      before = now;
+      torn = gone.size();
+    }
+    std::printf("%d: %zu torn\n", int(method), torn);
+    EXPECT_GT(torn, 19u);
+    EXPECT_LT(torn, 1500u);
   }
 }
 

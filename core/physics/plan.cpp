@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "physics/stages/plain_rows.h"
+
 namespace weft::physics {
 namespace {
 
@@ -55,6 +57,7 @@ void ClothStep::choose_anew(Method method) {
   multipliers_.reset();
   corrections_.reset();
   history_.reset();
+  overlong_.clear();
   choose_stages();
   make_passes();
   for (; !added.empty(); added.pop_back()) add_stage(std::move(added.back()));
@@ -96,6 +99,9 @@ void ClothStep::choose_stages() {
   const ClothParts& parts = parts_;
   const Method method = method_;
   const Solver& solver = parts.scene.solver;
+  if (cloth_.tear_strain > 0 && is_explicit(method) && is_plain(parts))
+    overlong_.resize(std::size_t(lattice_.rows));
+  parts_.overlong = overlong_.empty() ? nullptr : overlong_.data();
   auto bending = make_bending(parts, method);
   if (is_explicit(method)) {
     if (bending) stages_.push_back(std::move(bending));
@@ -164,7 +170,7 @@ std::size_t ClothStep::bytes() const {
   std::size_t bytes = lattice_.bytes() + (multipliers_ ? multipliers_->bytes() : 0) +
                       (corrections_ ? corrections_->bytes() : 0) +
                       (history_ ? history_->bytes() : 0);
-  if (topology_) bytes += topology_->bytes();
+  if (topology_) bytes += topology_->bytes() + overlong_.size();
   if (seams_) bytes += seams_->bytes();
   for (const auto& s : stages_) bytes += s->bytes();
   return bytes;

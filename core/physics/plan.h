@@ -76,6 +76,7 @@ class ClothStep {
   std::unique_ptr<Multipliers> multipliers_;
   std::unique_ptr<Rows> corrections_;
   std::unique_ptr<History> history_;
+  std::vector<std::uint8_t> overlong_;
   Stages stages_;
   std::vector<const Stage*> added_;
   std::unique_ptr<Topology> topology_;

@@ -12,7 +12,7 @@ namespace {
 template <bool kMayTear>
 struct JacobiLaw {
   using Rows = physics::JacobiRows;
-  static constexpr bool kRates = false, kTorn = kMayTear;
+  static constexpr bool kRates = false, kTorn = kMayTear, kWatched = false;
   template <PlainFamily F>
   WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
     constexpr bool kNextNear = F == kAntidiagonal, kNextFar = F == kRight || F == kDiagonal;

@@ -36,6 +36,7 @@ struct SpringConstants {
   float k = 0;        // stiffness [N/m]
   float kl = 0;       // stiffness times rest length [N]
   float damping = 0;  // along the spring [N·s/m]
+  float taut = 0;     // kl over the length past which it tears [N/m], of damped springs 1 over it
 };
 
 // v <- drag v + kick (f/m + g), x <- x + dt v, pinned particles (inverse mass 0) unmoved.
@@ -67,6 +68,9 @@ struct SpringRows : PlainRows {
   // Six for each row: (1,0) (0,1) (1,1) (-1,1) (2,0) (0,2); zero where row j+dj does not exist.
   const SpringConstants* springs;
   bool damped;  // whether springs have damping
+  // Of every row: set to 1 where a spring that is not torn is past its tear length at the start; null:
+  // nobody asks.
+  std::uint8_t* overlong;
   Advance advance;
 };
 

@@ -6,10 +6,13 @@
 //
 //   Law::Rows                                     the kernel's argument, a PlainRows
 //   Law::kTorn                                    whether constraints may have died (PlainRows::alive)
+//   Law::kWatched                                 whether the law asks for constraints that are too long
 //   Law::kRates                                   whether pulls depend on velocities
 //   Law::quotient<F>(rows, block, length)         of family F: by the one division it needs
 //   Law::pull<F>(rows, block, edge, quotient, edge·velocity)
 //                                                 on the near end; the far end gets its negative
+//   Law::too_long<F>(rows, block, quotient)       of kWatched laws: which are
+//   Law::tell(rows, row)                          that some of a row are, of those that are alive
 //   Law::finish(rows, block, sum)                 moves a block by the sum of its pulls
 #pragma once
 
@@ -98,6 +101,7 @@ struct Pipeline {
   Wide length[kFamilies];  // squared length, then length, then the quotient
   Wide rate[kFamilies];    // edge · its ends' difference in velocity
   Wide3 own, below;        // pull on the block in `pull`, and on the row below it (negated)
+  WideInt overlong;        // lanes of constraints too long in this row
   Delay3<1> to_right, diagonal;
   Delay3<2> right2;
 
@@ -133,7 +137,11 @@ struct Pipeline {
   template <PlainFamily F, bool kLast>
   WEFT_INLINE void pull(const Rows& s, const Block& b) {
     Wide3 f = Law::template pull<F>(s, b, edge[F], length[F], rate[F]);
-    if constexpr (Law::kTorn) f = select(lanes_at(s.alive[F] + (b.x - s.x.x)), f, Wide3{});
+    if constexpr (Law::kTorn) {
+      const WideInt alive = lanes_at(s.alive[F] + (b.x - s.x.x));
+      f = select(alive, f, Wide3{});
+      if constexpr (Law::kWatched) overlong |= alive & Law::template too_long<F>(s, b, length[F]);
+    }
     if constexpr (kLast && F != kDown && F != kDown2)
       f = select(lanes_below(s.columns - (F == kRight2 ? 2 : 1) - b.i), f, Wide3{});
     if constexpr (F == kRight) {
@@ -168,7 +176,14 @@ struct Pipeline {
     if constexpr (kB) square<kOrder[N]>(s, b);
     if constexpr (N < 1 ? kA : kB) root<kOrder[(N + 5) % 6]>();
     if constexpr (kOfA ? kA : kB) pull<kPulled, (kOfA ? kALast : kBLast)>(s, kOfA ? a : b);
-    if constexpr (kPulled == kDown2 && kA) Law::finish(s, a, own);
+    if constexpr (kPulled == kDown2 && kA) {
+      Law::finish(s, a, own);
+      if constexpr (Law::kWatched && kALast)
+        if (any(overlong)) {
+          Law::tell(s, a.constants / kFamilies);
+          overlong = WideInt{};
+        }
+    }
   }
 
   // Squares block b and gives it its first four pulls, while the block before, a, gets the other two

@@ -11,10 +11,13 @@
 namespace weft::WEFT_KERNELS {
 namespace {
 
-template <bool kDamped, bool kMayTear>
+enum class Tear { never, torn, watched };
+
+template <bool kDamped, Tear kTear>
 struct SpringLaw {
   using Rows = SpringRows;
-  static constexpr bool kRates = kDamped, kTorn = kMayTear;
+  static constexpr bool kRates = kDamped, kTorn = kTear != Tear::never,
+                        kWatched = kTear == Tear::watched;
   template <PlainFamily F>
   WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
     return (kDamped ? 1.0f : r.springs[b.constants + F].kl) / length;
@@ -28,6 +31,11 @@ struct SpringLaw {
     else
       return edge * (c.k - quotient);
   }
+  template <PlainFamily F>
+  WEFT_INLINE static WideInt too_long(const Rows& r, const Block& b, Wide quotient) {
+    return quotient < r.springs[b.constants + F].taut;
+  }
+  WEFT_INLINE static void tell(const Rows& r, std::ptrdiff_t row) { r.overlong[row] = 1; }
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 force) {
     const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
     const Wide3 velocity =
@@ -37,16 +45,12 @@ struct SpringLaw {
   }
 };
 
-}  // namespace
-
-void spring_rows(const SpringRows& r) {
-  if (r.damped)
-    r.alive[0] ? plain_rows<SpringLaw<true, true>>(r) : plain_rows<SpringLaw<true, false>>(r);
-  else
-    r.alive[0] ? plain_rows<SpringLaw<false, true>>(r) : plain_rows<SpringLaw<false, false>>(r);
+template <bool kDamped>
+void spring_rows_of(const SpringRows& r) {
+  if (!r.alive[0]) return plain_rows<SpringLaw<kDamped, Tear::never>>(r);
+  if (!r.overlong) return plain_rows<SpringLaw<kDamped, Tear::torn>>(r);
+  plain_rows<SpringLaw<kDamped, Tear::watched>>(r);
 }
-
-namespace {
 
 // f_near += F, f_far -= F for every spring of the family. Within one row the difference of
 // neighbouring springs is taken first, so that the sum has the same order at every width.
@@ -82,6 +86,9 @@ WEFT_INLINE void add_family(const FamilyRow& r) {
 
 }  // namespace
 
+void spring_rows(const SpringRows& r) {
+  r.damped ? spring_rows_of<true>(r) : spring_rows_of<false>(r);
+}
 void spring_family(const FamilyRow& r) {
   if (r.alive) return add_family<false, true>(r);
   add_family<false, false>(r);

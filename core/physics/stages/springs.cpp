@@ -17,11 +17,17 @@ class PlainSprings final : public PlainRowsStage {
                            (damped ? " with damping" : "") + ", leapfrog step",
                        parts),
         damped_(damped),
-        springs_(std::size_t(parts.lattice.rows) * kPlainFamilies) {
+        springs_(std::size_t(parts.lattice.rows) * kPlainFamilies),
+        cannot_tell_(parts.overlong ? std::size_t(parts.lattice.rows) : 0) {
     for (int j = 0; j < parts.lattice.rows; ++j)
-      for (int f = 0; f < kPlainFamilies; ++f)
-        springs_[std::size_t(j) * kPlainFamilies + f] =
-            spring_constants(parts.cloth, parts.families[f], j);
+      for (int f = 0; f < kPlainFamilies; ++f) {
+        const Family& family = parts.families[f];
+        SpringConstants& c = springs_[std::size_t(j) * kPlainFamilies + f];
+        c = spring_constants(parts.cloth, family, j);
+        if (!parts.overlong || j + family.dj >= parts.lattice.rows) continue;
+        c.taut = (damped ? 1 : c.kl) / tear_length(parts.cloth, family);
+        if (!(c.taut > 0)) cannot_tell_[j] = 1;
+      }
   }
   std::size_t bytes() const override {
     return PlainRowsStage::bytes() + springs_.size() * sizeof(SpringConstants);
@@ -31,6 +37,9 @@ class PlainSprings final : public PlainRowsStage {
     fill(r, begin, end, s);
     r.springs = springs_.data();
     r.damped = damped_;
+    r.overlong = parts_.overlong;
+    if (r.overlong)
+      std::copy(cannot_tell_.begin() + begin, cannot_tell_.begin() + end, r.overlong + begin);
     r.advance = advance_of(parts_, s);
     parts_.kernels.spring_rows(r);
   }
@@ -38,6 +47,8 @@ class PlainSprings final : public PlainRowsStage {
  private:
   bool damped_;
   std::vector<SpringConstants> springs_;
+  std::vector<std::uint8_t>
+      cannot_tell_;  // rows whose springs do not know their lengths: no stiffness
 };
 
 // Any families, one kernel call each: levels, subsets.

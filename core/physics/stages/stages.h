@@ -44,6 +44,8 @@ struct ClothParts {
   const KernelTable& kernels;
   const std::vector<StartInside>& starts;  // of every collider
   const Topology* topology = nullptr;      // null: the cloth cannot tear
+  // By row, written by the springs: whether a constraint was too long; null: they do not tell.
+  std::uint8_t* overlong = nullptr;
   const StartInside& start_in(const Collider& collider) const {
     return starts[std::size_t(&collider - scene.colliders.data())];
   }
@@ -61,6 +63,10 @@ std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped);
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, struct Multipliers* multipliers);
 std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant);
 std::unique_ptr<RowStage> make_keyed_pins(const ClothParts& parts);
+// m, past which a constraint tears.
+inline float tear_length(const Cloth& cloth, const Family& family) {
+  return float(family.rest * (1 + cloth.tear_strain));
+}
 std::unique_ptr<RowStage> make_tear(const ClothParts& parts, Topology& topology);
 std::unique_ptr<RowStage> make_cut(const ClothParts& parts, const Collider& collider,
                                    Topology& topology);

@@ -14,6 +14,8 @@ int longest_reach(const std::vector<Family>& families) {
   return reach;
 }
 
+// Where the springs say which rows had a constraint too long at the start of the substep, the others
+// need no look.
 class TearStage final : public RowStage {
  public:
   TearStage(const ClothParts& parts, Topology& topology)
@@ -22,6 +24,7 @@ class TearStage final : public RowStage {
         parts_(parts),
         topology_(topology) {}
   void run(int j, const Substep&) override {
+    if (parts_.overlong && !parts_.overlong[j]) return;
     Lattice& l = parts_.lattice;
     const auto from = [&](int row, int column) {
       const Row3 r = l.x.row(row);
@@ -31,7 +34,7 @@ class TearStage final : public RowStage {
       if (j + f.dj >= l.rows) continue;
       const int torn =
           parts_.kernels.tear({f.per_row(l.columns), from(j, f.near()), from(j + f.dj, f.far()),
-                               f.links->row(j), float(f.rest * (1 + parts_.cloth.tear_strain))});
+                               f.links->row(j), tear_length(parts_.cloth, f)});
       if (torn > 0) topology_.died(j, torn);
     }
   }
