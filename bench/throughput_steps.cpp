@@ -24,9 +24,10 @@ constexpr Way kWays[] = {
     {"compliant_line", weft::Method::compliant, weft::Sweep::line},
 };
 
-// As many as fit a time slice of the machine, to outweigh what a frame costs beside its substeps.
-int substeps_of(int n) {
-  return n <= 100 ? 32 : n <= 400 ? 16 : 8;
+// About as many as a frame is given; of explicit springs it needs some hundreds.
+int substeps_of(int n, weft::Method method) {
+  const bool springs = method == weft::Method::spring || method == weft::Method::spring_friction;
+  return (n <= 100 ? 32 : n <= 400 ? 16 : 8) * (springs ? 5 : 1);
 }
 
 bool has_stage(const weft::Plan& plan, const std::string& word) {
@@ -36,7 +37,7 @@ bool has_stage(const weft::Plan& plan, const std::string& word) {
 }
 
 void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int threads) {
-  const int substeps = substeps_of(n);
+  const int substeps = substeps_of(n, way.method);
   weft::Scene scene = stepping_scene(n, substeps);
   scene.solver.method = way.method;
   scene.solver.sweep = way.sweep;
@@ -53,7 +54,7 @@ void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int t
   simulation.advance_frame();  // makes room for what the run needs
   const double ns = fastest_ns(state, [&] { simulation.advance_frame(); });
   if (!simulation.status().ok) state.SkipWithError(simulation.status().text.c_str());
-  const weft::Report r = simulation.report();
+  const weft::Report r = simulation.report(false);
   const auto& c = r.constraints;
   count_work(state, simd, ns,
              {double(substeps), double(r.particles), double(c.structural + c.shear + c.bend)});

@@ -80,7 +80,8 @@ Layout random_layout(Random& random) {
   Layout s;
   s.rows = 1 + below(below(2) ? 300 : 12);
   for (int q = 1 + below(9); q > 0; --q) s.reaches.push_back(below(3) ? below(3) : below(9));
-  for (int frame = 0; frame < 3; ++frame) s.substeps.push_back(1 + below(below(3) ? 25 : 1));
+  for (int frame = 0; frame < 3; ++frame)
+    s.substeps.push_back(1 + below(below(3) ? (below(4) ? 25 : 100) : 1));
   s.row_bytes = std::size_t(1 + below(3) * 60000 + below(2000));
   s.row_nanoseconds = below(2) ? 1 : below(20000);
   return s;

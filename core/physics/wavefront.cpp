@@ -20,13 +20,15 @@ constexpr int kSharedHeight = 16;  // so that all threads are busy to the end of
 constexpr double kTaskNanoseconds = 12000;
 constexpr double kSharedNanoseconds = 4000;  // and sharing out where nobody has to be woken
 
+// Substeps of a chunk: shorter ones have threads hand rows to each other too often.
+constexpr int kShortChunk = 2;
+
 constexpr int kNone = -1;  // no tile
 
 }  // namespace
 
 struct Wavefront::Run {
   const Substeps& substeps;
-  int chunks;
   std::span<const RowSpan> awake;
 };
 
@@ -40,7 +42,7 @@ Wavefront::Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_by
 }
 
 // One thread and a lattice that fits the cache: one tile a substep. Else tiles as tall as the cache
-// allows, or as a task is worth, and as many substeps a chunk as its lean permits.
+// allows, or as a task is worth, and as many substeps a chunk as its lean and the frame permit.
 void Wavefront::choose_tiles(int count, int threads) {
   const int reach = std::max(reach_, 1);
   const bool fits = row_bytes_ * rows_ <= kTileBytes;
@@ -56,11 +58,14 @@ void Wavefront::choose_tiles(int count, int threads) {
       height_ = std::min(height_, std::max(std::min(rows_ / (4 * threads), kSharedHeight), reach));
     height_ = std::clamp(height_, 1, rows_);
     chunk_substeps_ = std::clamp(height_ / reach, 1, 8);
-    const double tile = row_nanoseconds_ * height_;
-    if (threads > 1)
+    if (threads > 1) {
+      const double tile = row_nanoseconds_ * height_;
+      const int worth = std::min(8, int(std::ceil(kTaskNanoseconds / tile)));
+      // At both ends of a frame threads wait for each other, the longer the longer chunks are.
       chunk_substeps_ =
-          std::max(chunk_substeps_, std::min(8, int(std::ceil(kTaskNanoseconds / tile))));
-    chunk_substeps_ = std::min(chunk_substeps_, count);
+          std::min(std::max(chunk_substeps_, worth), std::max(count / (4 * threads), kShortChunk));
+    }
+    chunk_substeps_ = std::clamp(count / threads, 1, chunk_substeps_);
   }
   offset_.clear();
   int offset = 0;
@@ -69,9 +74,32 @@ void Wavefront::choose_tiles(int count, int threads) {
       if (s + q > 0) offset += stages_[q]->reach;
       offset_.push_back(offset);
     }
-  tiles_ = (rows_ + offset + height_ - 1) / height_;
-  span_ = (offset + stages_.front()->reach + height_ - 1) / height_;
   ring_ = threads > 1 ? threads + 1 : 1;
+  choose_chunks(count, threads);
+}
+
+// Chunks grow evenly up to the longest and shrink again at the end.
+void Wavefront::choose_chunks(int count, int threads) {
+  chunks_.clear();
+  most_tiles_ = 0;
+  const auto length = [&](int n) { return std::max(1, chunk_substeps_ * n / threads); };
+  int rising = 1;
+  for (; rising < threads && count >= 2 * length(rising) + chunk_substeps_; ++rising) {
+    add_chunk(length(rising));
+    count -= 2 * length(rising);
+  }
+  const int between = (count + chunk_substeps_ - 1) / chunk_substeps_;
+  for (int n = 0; n < between; ++n) add_chunk(count * (n + 1) / between - count * n / between);
+  while (--rising > 0) add_chunk(length(rising));
+}
+
+void Wavefront::add_chunk(int count) {
+  const int first = chunks_.empty() ? 0 : chunks_.back().first + chunks_.back().count;
+  const int offset = offset_[count * stages_.size() - 1];
+  const int tiles = (rows_ + offset + height_ - 1) / height_;
+  const int span = (offset + stages_.front()->reach + height_ - 1) / height_;
+  chunks_.push_back({first, count, tiles, span, std::max(0, tiles - 1 - span)});
+  most_tiles_ = std::max(most_tiles_, tiles);
 }
 
 void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake) {
@@ -82,18 +110,18 @@ void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const 
   if (substeps.dt != prepared_dt_)
     for (RowStage* s : stages_) s->prepare(substeps.dt);
   prepared_dt_ = substeps.dt;
-  const Run r{substeps, (substeps.count + chunk_substeps_ - 1) / chunk_substeps_, awake};
+  const Run r{substeps, awake};
   if (const int slots = chunk_substeps_ * ring_; slots > slots_) {
     for (RowStage* s : stages_) s->reserve_slots(slots);
     slots_ = slots;
   }
   if (apart)
-    return threads.share(std::size_t(tiles_),
+    return threads.share(std::size_t(most_tiles_),
                          at_once == 1 || row_nanoseconds_ * rows_ < kSharedNanoseconds,
                          [&](std::size_t k) { run_tile(r, int(k), 0); });
-  if (at_once > 1 && tiles_ > 1) return run_parallel(r, threads);
-  for (int c = 0; c < r.chunks; ++c)
-    for (int k = 0; k < tiles_; ++k) run_tile(r, k, c);
+  if (at_once > 1 && most_tiles_ > 1) return run_parallel(r, threads);
+  for (int c = 0; c < int(chunks_.size()); ++c)
+    for (int k = 0; k < chunks_[c].tiles; ++k) run_tile(r, k, c);
 }
 
 void Wavefront::run_rows(const Run& r, RowStage& stage, RowSpan rows, const Substep& substep) {
@@ -107,11 +135,10 @@ void Wavefront::run_rows(const Run& r, RowStage& stage, RowSpan rows, const Subs
 }
 
 void Wavefront::run_tile(const Run& r, int tile, int chunk) const {
-  const int first = chunk * chunk_substeps_;
-  const int last = std::min(first + chunk_substeps_, r.substeps.count);
+  const auto [first, count, tiles, span, last] = chunks_[chunk];
   std::size_t level = 0;
-  for (int s = first; s < last; ++s) {
-    const Substep substep = r.substeps.at(s, chunk % ring_ * chunk_substeps_ + (s - first));
+  for (int s = 0; s < count; ++s) {
+    const Substep substep = r.substeps.at(first + s, chunk % ring_ * chunk_substeps_ + s);
     for (std::size_t q = 0; q < stages_.size(); ++q, ++level) {
       const int begin = std::max(0, tile * height_ - offset_[level]);
       const int end = std::min(rows_, (tile + 1) * height_ - offset_[level]);
@@ -132,22 +159,22 @@ void Wavefront::run_tile(const Run& r, int tile, int chunk) const {
 // Every tile counts the tiles it still waits for. Whoever finishes the last of them goes on with it,
 // and puts others that have become ready into a queue, for whoever comes next.
 void Wavefront::run_parallel(const Run& r, Threads& threads) {
-  const int all = tiles_ * r.chunks;
-  if (all > room_) {
-    waits_ = std::make_unique<std::atomic<int>[]>(all);
-    queue_ = std::make_unique<std::atomic<int>[]>(all);
-    room_ = all;
+  const int chunks = int(chunks_.size());
+  if (const int room = chunks * most_tiles_; room > room_) {
+    waits_ = std::make_unique<std::atomic<int>[]>(room);
+    queue_ = std::make_unique<std::atomic<int>[]>(room);
+    room_ = room;
   }
-  for (int c = 0; c < r.chunks; ++c)
-    for (int k = 0; k < tiles_; ++k) {
+  all_ = 0;
+  for (int c = 0; c < chunks; ++c)
+    for (int k = 0; k < chunks_[c].tiles; ++k, ++all_) {
       const bool left = k > 0;
-      const bool before = c > 0 && k + span_ < tiles_;
-      const bool before_all = c > 0 && k == std::max(0, tiles_ - 1 - span_) && !before;
+      const bool before = c > 0 && k <= chunks_[c - 1].last;
       const bool slot = c >= ring_ && k == 0;
-      waits_[c * tiles_ + k].store(left + before + before_all + slot, std::memory_order_relaxed);
-      queue_[c * tiles_ + k].store(kNone, std::memory_order_relaxed);
+      waits_[c * most_tiles_ + k].store(left + before + slot, std::memory_order_relaxed);
+      queue_[all_].store(kNone, std::memory_order_relaxed);
     }
-  left_.store(all, std::memory_order_relaxed);
+  left_.store(all_, std::memory_order_relaxed);
   taken_.store(0, std::memory_order_relaxed);
   queue_[0].store(0, std::memory_order_relaxed);
   queued_.store(1, std::memory_order_relaxed);
@@ -156,8 +183,7 @@ void Wavefront::run_parallel(const Run& r, Threads& threads) {
 
 // One thread's part: tiles from the queue, in the order in which they became ready.
 void Wavefront::work(const Run& r) {
-  const int all = tiles_ * r.chunks;
-  for (int place; (place = taken_.fetch_add(1, std::memory_order_relaxed)) < all;) {
+  for (int place; (place = taken_.fetch_add(1, std::memory_order_relaxed)) < all_;) {
     int tile;
     for (Patience patience; (tile = queue_[place].load(std::memory_order_acquire)) == kNone;) {
       if (left_.load(std::memory_order_acquire) == 0) return;
@@ -169,11 +195,12 @@ void Wavefront::work(const Run& r) {
 
 // Runs a tile, and returns one that has become ready by that, or kNone.
 int Wavefront::run_and_release(const Run& r, int tile) {
-  const int k = tile % tiles_, c = tile / tiles_;
+  const int k = tile % most_tiles_, c = tile / most_tiles_;
+  const Chunk& chunk = chunks_[c];
   run_tile(r, k, c);
   int next = kNone;
   const auto release = [&](int kk, int cc) {
-    const int waiting = cc * tiles_ + kk;
+    const int waiting = cc * most_tiles_ + kk;
     if (waits_[waiting].fetch_sub(1, std::memory_order_acq_rel) > 1) return;
     if (next == kNone)
       next = waiting;
@@ -181,14 +208,16 @@ int Wavefront::run_and_release(const Run& r, int tile) {
       queue_[queued_.fetch_add(1, std::memory_order_relaxed)].store(waiting,
                                                                     std::memory_order_release);
   };
-  if (k + 1 < tiles_) release(k + 1, c);
-  if (c + 1 < r.chunks) {
-    if (k == tiles_ - 1)
-      release(std::max(0, tiles_ - 1 - span_), c + 1);
-    else if (k >= span_)
-      release(k - span_, c + 1);
+  const int chunks = int(chunks_.size());
+  const bool last = k == chunk.tiles - 1;
+  if (!last) release(k + 1, c);
+  if (c + 1 < chunks) {
+    if (last)
+      release(chunk.last, c + 1);
+    else if (k >= chunk.span && k - chunk.span < chunk.last)
+      release(k - chunk.span, c + 1);
   }
-  if (k == tiles_ - 1 && c + ring_ < r.chunks) release(0, c + ring_);
+  if (last && c + ring_ < chunks) release(0, c + ring_);
   left_.fetch_sub(1, std::memory_order_acq_rel);
   return next;
 }

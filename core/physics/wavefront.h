@@ -7,7 +7,9 @@
 // tile k of a chunk of substeps runs stage q on rows [k h - offset(q), (k+1) h - offset(q)). A tile
 // needs the tile before it in its chunk, and in the chunk before the tile that lies past its reach;
 // nothing else. Tiles of several chunks are under way at once, without a barrier, and a tile's rows
-// stay in the cache for all its substeps (time skewing: Wonnacott 2000; Strzodka et al. 2011).
+// stay in the cache for all its substeps (time skewing: Wonnacott 2000; Strzodka et al. 2011). The
+// first and the last chunks of a frame are shorter: the later threads can begin sooner, and the
+// earlier ones have work for longer.
 #pragma once
 
 #include <atomic>
@@ -34,7 +36,16 @@ class Wavefront {
 
  private:
   struct Run;
+  // A few substeps in a row, and the tiles that they are cut into.
+  struct Chunk {
+    int first, count;  // substeps
+    int tiles;
+    int span;  // tile k of the next chunk waits for tile k + span of this one,
+    int last;  // tile `last` of the next chunk for the last of this one, those after it for none
+  };
   void choose_tiles(int count, int threads);
+  void choose_chunks(int count, int threads);
+  void add_chunk(int count);
   void run_tile(const Run& run, int tile, int chunk) const;
   static void run_rows(const Run& run, RowStage& stage, RowSpan rows, const Substep& substep);
   void run_parallel(const Run& run, Threads& threads);
@@ -49,11 +60,15 @@ class Wavefront {
   std::span<std::atomic<std::int64_t>> profile_;
 
   double prepared_dt_ = 0;
-  int chunk_substeps_ = 1, height_ = 1, tiles_ = 1, span_ = 1, ring_ = 1, slots_ = 0;
-  std::vector<int> offset_;                    // of every stage of every substep of a chunk
-  std::unique_ptr<std::atomic<int>[]> waits_;  // of every tile: for how many others
-  std::unique_ptr<std::atomic<int>[]> queue_;  // tiles in the order in which they became ready
+  int chunk_substeps_ = 1;  // at most
+  int height_ = 1, ring_ = 1, slots_ = 0;
+  std::vector<int> offset_;  // of every stage of every substep of a chunk
+  std::vector<Chunk> chunks_;
+  int most_tiles_ = 1;  // of a chunk; tile k of chunk c has number c * most_tiles_ + k
+  std::unique_ptr<std::atomic<int>[]> waits_;  // of every number: for how many other tiles
+  std::unique_ptr<std::atomic<int>[]> queue_;  // numbers in the order in which they became ready
   int room_ = 0;                               // of both
+  int all_ = 0;                                // tiles
   std::atomic<int> left_ = 0, queued_ = 0, taken_ = 0;
 };
 
