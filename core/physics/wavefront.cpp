@@ -75,31 +75,34 @@ void Wavefront::choose_tiles(int count, int threads) {
       offset_.push_back(offset);
     }
   ring_ = threads > 1 ? threads + 1 : 1;
-  choose_chunks(count, threads);
+}
+
+Wavefront::Chunk Wavefront::chunk(int number, int first, int count) const {
+  const int offset = offset_[count * stages_.size() - 1];
+  const int tiles = (rows_ + offset + height_ - 1) / height_;
+  const int span = (offset + stages_.front()->reach + height_ - 1) / height_;
+  const int slot = number % ring_ * chunk_substeps_;
+  return {first, count, slot, tiles, span, std::max(0, tiles - 1 - span)};
 }
 
 // Chunks grow evenly up to the longest and shrink again at the end.
 void Wavefront::choose_chunks(int count, int threads) {
   chunks_.clear();
   most_tiles_ = 0;
+  auto add = [&, first = 0](int length) mutable {
+    chunks_.push_back(chunk(int(chunks_.size()), first, length));
+    most_tiles_ = std::max(most_tiles_, chunks_.back().tiles);
+    first += length;
+  };
   const auto length = [&](int n) { return std::max(1, chunk_substeps_ * n / threads); };
   int rising = 1;
   for (; rising < threads && count >= 2 * length(rising) + chunk_substeps_; ++rising) {
-    add_chunk(length(rising));
+    add(length(rising));
     count -= 2 * length(rising);
   }
   const int between = (count + chunk_substeps_ - 1) / chunk_substeps_;
-  for (int n = 0; n < between; ++n) add_chunk(count * (n + 1) / between - count * n / between);
-  while (--rising > 0) add_chunk(length(rising));
-}
-
-void Wavefront::add_chunk(int count) {
-  const int first = chunks_.empty() ? 0 : chunks_.back().first + chunks_.back().count;
-  const int offset = offset_[count * stages_.size() - 1];
-  const int tiles = (rows_ + offset + height_ - 1) / height_;
-  const int span = (offset + stages_.front()->reach + height_ - 1) / height_;
-  chunks_.push_back({first, count, tiles, span, std::max(0, tiles - 1 - span)});
-  most_tiles_ = std::max(most_tiles_, tiles);
+  for (int n = 0; n < between; ++n) add(count * (n + 1) / between - count * n / between);
+  while (--rising > 0) add(length(rising));
 }
 
 void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake) {
@@ -115,13 +118,17 @@ void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const 
     for (RowStage* s : stages_) s->reserve_slots(slots);
     slots_ = slots;
   }
-  if (apart)
-    return threads.share(std::size_t(most_tiles_),
+  if (apart) {
+    const Chunk only = chunk(0, 0, 1);
+    return threads.share(std::size_t(only.tiles),
                          at_once == 1 || row_nanoseconds_ * rows_ < kSharedNanoseconds,
-                         [&](std::size_t k) { run_tile(r, int(k), 0); });
-  if (at_once > 1 && most_tiles_ > 1) return run_parallel(r, threads);
-  for (int c = 0; c < int(chunks_.size()); ++c)
-    for (int k = 0; k < chunks_[c].tiles; ++k) run_tile(r, k, c);
+                         [&](std::size_t k) { run_tile(r, int(k), only); });
+  }
+  if (at_once > 1 && rows_ > height_) return run_parallel(r, threads);
+  for (int first = 0; first < substeps.count; first += chunk_substeps_) {
+    const Chunk next = chunk(0, first, std::min(chunk_substeps_, substeps.count - first));
+    for (int k = 0; k < next.tiles; ++k) run_tile(r, k, next);
+  }
 }
 
 void Wavefront::run_rows(const Run& r, RowStage& stage, RowSpan rows, const Substep& substep) {
@@ -134,11 +141,10 @@ void Wavefront::run_rows(const Run& r, RowStage& stage, RowSpan rows, const Subs
   }
 }
 
-void Wavefront::run_tile(const Run& r, int tile, int chunk) const {
-  const auto [first, count, tiles, span, last] = chunks_[chunk];
+void Wavefront::run_tile(const Run& r, int tile, const Chunk& chunk) const {
   std::size_t level = 0;
-  for (int s = 0; s < count; ++s) {
-    const Substep substep = r.substeps.at(first + s, chunk % ring_ * chunk_substeps_ + s);
+  for (int s = 0; s < chunk.count; ++s) {
+    const Substep substep = r.substeps.at(chunk.first + s, chunk.slot + s);
     for (std::size_t q = 0; q < stages_.size(); ++q, ++level) {
       const int begin = std::max(0, tile * height_ - offset_[level]);
       const int end = std::min(rows_, (tile + 1) * height_ - offset_[level]);
@@ -159,6 +165,7 @@ void Wavefront::run_tile(const Run& r, int tile, int chunk) const {
 // Every tile counts the tiles it still waits for. Whoever finishes the last of them goes on with it,
 // and puts others that have become ready into a queue, for whoever comes next.
 void Wavefront::run_parallel(const Run& r, Threads& threads) {
+  choose_chunks(r.substeps.count, threads.count());
   const int chunks = int(chunks_.size());
   if (const int room = chunks * most_tiles_; room > room_) {
     waits_ = std::make_unique<std::atomic<int>[]>(room);
@@ -197,7 +204,7 @@ void Wavefront::work(const Run& r) {
 int Wavefront::run_and_release(const Run& r, int tile) {
   const int k = tile % most_tiles_, c = tile / most_tiles_;
   const Chunk& chunk = chunks_[c];
-  run_tile(r, k, c);
+  run_tile(r, k, chunk);
   int next = kNone;
   const auto release = [&](int kk, int cc) {
     const int waiting = cc * most_tiles_ + kk;

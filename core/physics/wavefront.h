@@ -39,14 +39,15 @@ class Wavefront {
   // A few substeps in a row, and the tiles that they are cut into.
   struct Chunk {
     int first, count;  // substeps
+    int slot;          // of the first
     int tiles;
     int span;  // tile k of the next chunk waits for tile k + span of this one,
     int last;  // tile `last` of the next chunk for the last of this one, those after it for none
   };
   void choose_tiles(int count, int threads);
   void choose_chunks(int count, int threads);
-  void add_chunk(int count);
-  void run_tile(const Run& run, int tile, int chunk) const;
+  Chunk chunk(int number, int first, int count) const;
+  void run_tile(const Run& run, int tile, const Chunk& chunk) const;
   static void run_rows(const Run& run, RowStage& stage, RowSpan rows, const Substep& substep);
   void run_parallel(const Run& run, Threads& threads);
   void work(const Run& run);
