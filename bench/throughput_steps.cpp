@@ -24,7 +24,7 @@ constexpr Way kWays[] = {
     {"compliant_line", weft::Method::compliant, weft::Sweep::line},
 };
 
-// About as many as a frame is given; of explicit springs it needs some hundreds.
+// About as many as a frame of 1/60 s is given: explicit springs need hundreds.
 int substeps_of(int n, weft::Method method) {
   const bool springs = method == weft::Method::spring || method == weft::Method::spring_friction;
   return (n <= 100 ? 32 : n <= 400 ? 16 : 8) * (springs ? 5 : 1);
@@ -54,6 +54,7 @@ void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int t
   simulation.advance_frame();  // makes room for what the run needs
   const double ns = fastest_ns(state, [&] { simulation.advance_frame(); });
   if (!simulation.status().ok) state.SkipWithError(simulation.status().text.c_str());
+  state.counters["substeps"] = substeps;
   const weft::Report r = simulation.report(false);
   const auto& c = r.constraints;
   count_work(state, simd, ns,
