@@ -95,7 +95,7 @@ double Limits::sqrt_div(weft::Simd simd) const {
   return sqrt_div_ns[std::size_t(simd)];
 }
 
-double Limits::bound_ns(weft::Simd simd, double constraints, double bytes) const {
+double Limits::yardstick_ns(weft::Simd simd, double constraints, double bytes) const {
   return std::max(constraints * sqrt_div(simd), bytes / triad[1].gigabytes);
 }
 

@@ -41,6 +41,7 @@ void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int t
   weft::Scene scene = stepping_scene(n, substeps);
   scene.solver.method = way.method;
   scene.solver.sweep = way.sweep;
+  if (way.sweep == weft::Sweep::line) scene.time.frame = substeps / 480.0;
   if (way.method == weft::Method::spring_friction)
     scene.cloths[0].spring_damping = {0.001, 0.001, 0.001};
   weft::Options options;
@@ -89,11 +90,11 @@ weft::Scene stepping_scene(int n, int substeps) {
 
 void count_work(benchmark::State& state, weft::Simd simd, double ns, const Work& work) {
   // A step reads and writes position and velocity and reads the inverse mass: 52 bytes a particle.
-  const double bound = limits().bound_ns(simd, work.constraints, 52 * work.particles);
+  const double yardstick = limits().yardstick_ns(simd, work.constraints, 52 * work.particles);
   if (work.particles > 0) state.counters["ns/particle"] = ns / (work.steps * work.particles);
   if (work.constraints > 0) {
     state.counters["ns/constraint"] = ns / (work.steps * work.constraints);
-    state.counters["x bound"] = ns / (work.steps * bound);
+    state.counters["x yardstick"] = ns / (work.steps * yardstick);
   }
 }
 

@@ -27,9 +27,9 @@ void print_required(const std::vector<Figure>& all, const std::string& way, cons
   for (int n : {100, 316}) {
     const Figure* f = named(all, step_name(way, n, 1));
     if (!f) continue;
-    std::printf("  %-26s N=%-4d %6.3f %s (<= %g): %-6s %.2f times the bound\n", way.c_str(), n,
+    std::printf("  %-26s N=%-4d %6.3f %s (<= %g): %-6s %.2f times the yardstick\n", way.c_str(), n,
                 f->counter(counter), counter, most, f->counter(counter) <= most ? "met" : "MISSED",
-                f->counter("x bound"));
+                f->counter("x yardstick"));
   }
 }
 

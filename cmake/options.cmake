@@ -6,7 +6,7 @@ target_compile_options(weft_options INTERFACE
   # warns falsely about std::string in g++ 12.
   $<$<CXX_COMPILER_ID:GNU>:-Wshadow=local> $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<CXX_COMPILER_ID:Clang>:-Wshadow>
-  # The same bits from every compiler and instruction set: no contraction into fused multiply-add.
+  # The same bits from every compiler and instruction set: nothing is fused that the source does not fuse.
   -ffp-contract=off)
 if(WEFT_SANITIZE)
   # Null pointers are seen by the address sanitizer too; alignment is what the wide loads need anyway;

@@ -7,7 +7,7 @@ file(GLOB kernel_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/physics/k
 list(FILTER kernel_sources EXCLUDE REGEX "/shapes.cpp$")
 set(flags_scalar -DWEFT_LANES=1 -fno-tree-vectorize)
 set(flags_sse2 -DWEFT_LANES=4)
-set(flags_avx2 -DWEFT_LANES=8 -mavx2)
+set(flags_avx2 -DWEFT_LANES=8 -mavx2 -mfma)
 set(flags_avx512 -DWEFT_LANES=16 -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512)
 foreach(simd scalar sse2 avx2 avx512)
   add_library(weft_kernels_${simd} OBJECT ${kernel_sources})

@@ -92,7 +92,7 @@ void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int beg
         {1, {41, 56, 0.4f}}, {0, {20, 41, 0.4f}}, {2, {20, 39, 0.4f}}};
     for (const auto& [dj, c] : of_each) {
       springs.push_back(j + dj < kRows ? c : SpringConstants{});
-      if (overlong && j + dj < kRows) springs.back().taut = (damped ? 1 : c.kl) / tear_length;
+      if (overlong && j + dj < kRows) springs.back().taut = 1 / tear_length;
     }
   }
   SpringRows r{};
@@ -204,8 +204,6 @@ constexpr Features kFeatures[] = {{"rigid", 0, 1, false, false},
 void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Features& has,
                     bool jacobi) {
   ProjectRows r{};
-  r.begin = 0;
-  r.end = 1;
   r.rows = kRows;
   r.stride = p.stride;
   r.x = p.x.row(0);
@@ -230,7 +228,7 @@ void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Featur
   for (int a = 0; dj == 0 && a < r.count; ++a) p.lanes[std::size_t(a / di % 2 * p.stride + a)] = -1;
   r.lanes = p.lanes.data();
   if (jacobi) return k.jacobi_family(r, 0, p.f.row(0), p.f.row(dj));
-  k.project(r);
+  k.project({&r, 1, 0, 1, 0});
 }
 
 void add_projections(std::vector<Case>& cases) {

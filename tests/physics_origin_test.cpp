@@ -71,7 +71,7 @@ TEST_P(Origin, TheSameBitsWhereverFarAway) {
 }
 
 TEST_P(Origin, MovesAsNearZero) {
-  constexpr double kError = 5e-5;  // m; that of springs against the double reference is 6e-5
+  constexpr double kError = 3e-5;  // m; that of springs against the double reference is 6e-5
   Scene scene = read_scene("swing").scene;
   scene.solver.method = GetParam();
   Simulation near(scene), far(moved(scene, kFar));
@@ -80,7 +80,9 @@ TEST_P(Origin, MovesAsNearZero) {
     far.advance_frame();
   }
   const std::vector<double> x = near.positions(), y = far.positions();
-  for (std::size_t n = 0; n < x.size(); ++n) ASSERT_NEAR(x[n], y[n] - kFar[n % 3], kError);
+  double squares = 0;
+  for (std::size_t n = 0; n < x.size(); ++n) squares += std::pow(x[n] - (y[n] - kFar[n % 3]), 2);
+  EXPECT_LT(std::sqrt(3 * squares / double(x.size())), kError);
   const Report here = near.report(), there = far.report();
   EXPECT_NEAR(there.energy.kinetic, here.energy.kinetic, 1e-4);
   EXPECT_NEAR(there.energy.elastic, here.energy.elastic, 1e-4);

@@ -89,7 +89,7 @@ TEST_P(Sizes, FindTheLongestConstraintThatIsLeft) {
           float squared = 0;
           for (int k = 0; k < 3; ++k) {
             const float e = x.at(k, 1, i + shift) - x.at(k, 0, i);
-            squared += e * e;
+            squared = k == 0 ? e * e : std::fma(e, e, squared);
           }
           links.row(0)[i] = i * 5 % count < left ? -1 : 0;
           if (links.alive(0, i)) expected = std::max(expected, squared);

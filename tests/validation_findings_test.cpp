@@ -120,8 +120,12 @@ struct Draped {
   double start = 0;      // radii above the middle of the sphere: where the sheet first lifts off it
 };
 
-Draped draped(double ks) {
-  Simulation simulation = course("sphere", "ks", ks);
+Draped draped(double ks, std::uint64_t seed) {
+  Scene scene = course_scene("sphere", "ks", ks);
+  scene.cloths[0].grid.jitter = 1e-5;
+  Options options;
+  options.seed = seed;
+  Simulation simulation(scene, options);
   advance(simulation, 2);
   const Sphere& sphere = std::get<Sphere>(simulation.scene().colliders[0].shape);
   Draped d;
@@ -162,17 +166,32 @@ Draped draped(double ks) {
   return d;
 }
 
+// How a sheet folds hangs on the last bit of where it starts: the middle ones of five.
+Draped draped(double ks) {
+  std::array<Draped, 5> all;
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = draped(ks, i + 1);
+  const auto middle = [&](double Draped::*what) {
+    std::array<double, all.size()> values;
+    for (std::size_t i = 0; i < all.size(); ++i) values[i] = all[i].*what;
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+  };
+  return {middle(&Draped::folds), middle(&Draped::amplitude), middle(&Draped::start)};
+}
+
 TEST(Finding, StifferSheetHasFewerLargerFoldsOverASphereThatStartHigher) {
   const Draped soft = draped(500), middle = draped(5000), stiff = draped(50000);
   for (const auto& [what, softer, stiffer] :
-       {std::tuple{"over a sphere, ks 500 against 5000 N/m", soft, middle},
-        std::tuple{"over a sphere, ks 5000 against 50000 N/m", middle, stiff}}) {
+       {std::tuple{"over a sphere, median of five starts, ks 500 against 5000 N/m", soft, middle},
+        std::tuple{"over a sphere, median of five starts, ks 5000 against 50000 N/m", middle,
+                   stiff}}) {
     const std::string name = what;
     expect_above({kLaw, name + ": folds", stiffer.folds, 0.1, ""}, softer.folds);
   }
   for (const auto& [what, softer, stiffer] :
-       {std::tuple{"over a sphere, ks 5000 against 500 N/m", soft, middle},
-        std::tuple{"over a sphere, ks 50000 against 5000 N/m", middle, stiff}}) {
+       {std::tuple{"over a sphere, median of five starts, ks 5000 against 500 N/m", soft, middle},
+        std::tuple{"over a sphere, median of five starts, ks 50000 against 5000 N/m", middle,
+                   stiff}}) {
     const std::string name = what;
     expect_above({kLaw, name + ": depth of the folds", softer.amplitude, 0.1, "m"},
                  stiffer.amplitude);

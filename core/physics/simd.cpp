@@ -31,7 +31,7 @@ const char* simd_name(Simd simd) {
 bool simd_available(Simd simd) {
   switch (simd) {
     case Simd::avx2:
-      return __builtin_cpu_supports("avx2");
+      return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
     case Simd::avx512:
       return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
              __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");

@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kTileBytes = 384 * 1024;
 // So many stages that their rows are better kept in the first-level cache: measured with sweeps.
 constexpr std::size_t kManyStages = 5;
-constexpr int kManyStagesHeight = 16;
+constexpr std::size_t kFirstLevelBytes = 64 * 1024;
+constexpr int kManyStagesLeast = 4, kManyStagesMost = 16;  // rows
 constexpr int kSharedHeight = 16;  // so that all threads are busy to the end of a frame
 // The least work worth a task [ns].
 constexpr double kTaskNanoseconds = 12000;
@@ -49,7 +50,8 @@ void Wavefront::choose_tiles(int count, int threads) {
   chunk_substeps_ = 1;
   height_ = rows_ + reach;
   if (threads == 1 && stages_.size() >= kManyStages) {
-    height_ = std::min(height_, kManyStagesHeight);
+    const int rows = int(kFirstLevelBytes / std::max<std::size_t>(row_bytes_, 1));
+    height_ = std::min(height_, std::clamp(rows, kManyStagesLeast, kManyStagesMost));
   } else if (threads > 1 || !fits) {
     const int cache_rows = std::max<int>(4, int(kTileBytes / std::max<std::size_t>(row_bytes_, 1)));
     // A tile and its lean share the cache; several tiles per thread keep all threads busy.

@@ -21,16 +21,16 @@ constexpr bool displaced(Rule r) {
 template <Rule R>
 WEFT_INLINE Wide3 solve(const ProjectRows& p, Wide3 e, Wide wa, Wide wb, int j, Wide& lambda,
                         WideInt active) {
-  const Wide length = sqrt(max(dot(e, e), wide(kCoincident)));
+  const Wide length = sqrt(squared_length(e));
   Wide violation = length - p.rest, inertia = (wa + wb) * p.weight;
   if constexpr (displaced(R))
     inertia = inertia + p.compliance[j];
   else
     active = active & (inertia > 0.0f);  // two pinned ends have nothing to move
   if constexpr (R == Rule::limit) active = active & (violation > 0.0f);
-  if constexpr (R == Rule::multipliers) violation = violation + p.compliance[j] * lambda;
+  if constexpr (R == Rule::multipliers) violation = fma(wide(p.compliance[j]), lambda, violation);
   const Wide scale = select(active, violation / (inertia * length), Wide{});
-  if constexpr (R == Rule::multipliers) lambda = lambda - scale * length;
+  if constexpr (R == Rule::multipliers) lambda = fnma(scale, length, lambda);
   return e * scale;
 }
 
@@ -99,33 +99,59 @@ WEFT_INLINE void between_rows(const ProjectRows& p, int j) {
 
 // The same between rows whose particles all have the inverse mass of c.
 template <Rule R>
-WEFT_INLINE void between_rows_alike(const ProjectRows& p, int j, const Alike& c) {
-  constexpr bool kMultipliers = R == Rule::multipliers, kDisplaced = displaced(R);
-  const ProjectedRow near = projected_row(p, j, p.near), far = projected_row(p, j + p.dj, p.far);
-  float* const lambdas = p.lambda + std::ptrdiff_t(j) * p.stride;
-  for (int a = 0; a < p.count; a += kLanes) {
-    const Wide3 near_moved = load3(kDisplaced ? near.u : near.x, a);
-    const Wide3 far_moved = load3(kDisplaced ? far.u : far.x, a);
-    Wide3 e;
-    if constexpr (kDisplaced)
-      e = (load3(far.x, a) + far_moved) - (load3(near.x, a) + near_moved);
-    else
-      e = far_moved - near_moved;
-    Wide lambda{};
-    if constexpr (kMultipliers) lambda = load(lambdas + a);
-    const Wide before = lambda;
-    Wide scale = scale_alike<kMultipliers>(c, e, lambda);
-    if (a + kLanes > p.count) {
-      const WideInt active = lanes_below(p.count - a);
-      scale = select(active, scale, Wide{});
-      lambda = select(active, lambda, before);
-    }
-    if constexpr (kMultipliers) store(lambdas + a, lambda);
-    const Wide3 change = e * scale;
-    store3(kDisplaced ? near.u : near.x, a, near_moved + change);
-    store3(kDisplaced ? far.u : far.x, a, far_moved - change);
+class BetweenRowsAlike {
+ public:
+  WEFT_INLINE BetweenRowsAlike(const ProjectRows& p, int j, const Alike& c)
+      : count_(p.count),
+        c_(c),
+        near_(projected_row(p, j, p.near)),
+        far_(projected_row(p, j + p.dj, p.far)),
+        lambdas_(p.lambda + std::ptrdiff_t(j) * p.stride) {}
+
+  // Two blocks side by side, 16 lanes apart at any width, so that neither waits for its root alone.
+  WEFT_INLINE void run() const {
+    for (int a = 0; a < count_; a += 32)
+      for (int b = a; b < a + 16; b += kLanes)
+        if (b + 16 < count_)
+          blocks<2>(b);
+        else if (b < count_)
+          blocks<1>(b);
   }
-}
+
+ private:
+  static constexpr bool kMultipliers = R == Rule::multipliers, kDisplaced = displaced(R);
+
+  template <int K>
+  WEFT_INLINE void blocks(int first) const {
+    Wide3 e[K];
+    for (int k = 0; k < K; ++k) {
+      const int a = first + k * 16;
+      e[k] = position<kDisplaced>(far_, a) - position<kDisplaced>(near_, a);
+    }
+    Wide lambda[K], scale[K];
+    if constexpr (kMultipliers)
+      for (int k = 0; k < K; ++k) lambda[k] = load(lambdas_ + first + k * 16);
+    const Wide before = lambda[K - 1];
+    scales_alike<kMultipliers, K>(c_, e, lambda, scale);
+    if (const int last = first + (K - 1) * 16; last + kLanes > count_) {
+      const WideInt active = lanes_below(count_ - last);
+      scale[K - 1] = select(active, scale[K - 1], Wide{});
+      lambda[K - 1] = select(active, lambda[K - 1], before);
+    }
+    for (int k = 0; k < K; ++k) {
+      const int a = first + k * 16;
+      if constexpr (kMultipliers) store(lambdas_ + a, lambda[k]);
+      const Row3 near = kDisplaced ? near_.u : near_.x, far = kDisplaced ? far_.u : far_.x;
+      store3(near, a, fma(e[k], scale[k], load3(near, a)));
+      store3(far, a, fnma(e[k], scale[k], load3(far, a)));
+    }
+  }
+
+  const int count_;
+  const Alike& c_;
+  const ProjectedRow near_, far_;
+  float* const lambdas_;
+};
 
 // Both colours along row j, N lanes from end to end. Two blocks at a time take their first colour;
 // the second, which reaches into the next two blocks, follows behind.
@@ -173,7 +199,8 @@ class AlongRowAlike {
   }
   WEFT_INLINE Wide scale(Wide3 e, Wide& lambda, int a) const {
     const Wide before = lambda;
-    Wide s = scale_alike<kMultipliers>(c_, e, lambda);
+    Wide s;
+    scales_alike<kMultipliers, 1>(c_, &e, &lambda, &s);
     if (a + 2 * kLanes > p_.count) {
       const WideInt active = Parting<N>::numbers() < p_.count - a;
       s = select(active, s, Wide{});
@@ -252,7 +279,9 @@ WEFT_INLINE void along_row_alike(const ProjectRows& p, int j, int colour, const 
     const Wide3 e = position<displaced(R)>(far, a) - position<displaced(R)>(near, a);
     Wide lambda{}, before{};
     if constexpr (kMultipliers) lambda = before = load(lambdas + a);
-    const Wide scale = select(active, scale_alike<kMultipliers>(c, e, lambda), Wide{});
+    Wide scale;
+    scales_alike<kMultipliers, 1>(c, &e, &lambda, &scale);
+    scale = select(active, scale, Wide{});
     if constexpr (kMultipliers) store(lambdas + a, select(active, lambda, before));
     const Wide3 change = e * scale;
     shift<displaced(R)>(near, a, change - delay.next(change));
@@ -261,9 +290,8 @@ WEFT_INLINE void along_row_alike(const ProjectRows& p, int j, int colour, const 
 
 // Row j of a family whose rows have one inverse mass and no torn constraints.
 template <Rule R>
-WEFT_INLINE void row_alike(const ProjectRows& p, int j, float w) {
-  const Alike c = alike(p, j, w);
-  if (p.dj > 0) return between_rows_alike<R>(p, j, c);
+WEFT_INLINE void row_alike(const ProjectRows& p, int j, const Alike& c) {
+  if (p.dj > 0) return BetweenRowsAlike<R>(p, j, c).run();
   if constexpr (kLanes > 1) {
     if (p.far == 1) return AlongRowAlike<R, 1>(p, j, c).run();
     if (p.far == 2) return AlongRowAlike<R, 2>(p, j, c).run();
@@ -287,41 +315,51 @@ WEFT_INLINE bool any_too_long(const ProjectRows& p, int j) {
   return any(over);
 }
 
-// Rows begin … end-1 of one family: along the rows both colours, between rows those of one colour.
 template <Rule R, bool kTorn>
-void sweep(const ProjectRows& given) {
-  const ProjectRows p = given;
-  for (int j = p.begin; j < p.end; ++j) {
-    if (p.dj > 0 && (j / p.dj % 2 != p.colour || j + p.dj >= p.rows)) continue;
+void sweep_family(const ProjectRows& family, const physics::Projection& given) {
+  const ProjectRows p = family;  // a copy that no store can alias
+  const int end = given.end, colour = given.colour;
+  Alike constants{};
+  for (int j = given.begin; j < end; ++j) {
+    if (p.dj > 0 && (j / p.dj % 2 != colour || j + p.dj >= p.rows)) continue;
     if constexpr (R == Rule::limit) {
       if (!any_too_long<kTorn>(p, j)) continue;
     } else if constexpr (!kTorn) {
       const float w = p.row_w ? p.row_w[j] : 0;
       if (w > 0 && w == p.row_w[j + p.dj]) {
-        row_alike<R>(p, j, w);
+        // A division is long to wait for, and mostly the row before has had the same.
+        if (w != constants.w || compliance_at(p, j) != constants.compliance)
+          constants = alike(p, j, w);
+        row_alike<R>(p, j, constants);
         continue;
       }
     }
     if (p.dj > 0) {
       between_rows<R, kTorn>(p, j);
     } else {
-      for (int colour = 0; colour < 2; ++colour) along_row<R, kTorn>(p, j, colour);
+      for (int c = 0; c < 2; ++c) along_row<R, kTorn>(p, j, c);
     }
   }
 }
 
+template <Rule R, bool kTorn>
+void sweep(const physics::Projection& p) {
+  for (int f = 0; f < p.count; ++f) sweep_family<R, kTorn>(p.families[f], p);
+}
+
 template <bool kTorn>
-void sweep_by_rule(const ProjectRows& p) {
-  if (p.limit) return sweep<Rule::limit, kTorn>(p);
-  if (p.lambda) return sweep<Rule::multipliers, kTorn>(p);
-  if (p.compliance) return sweep<Rule::compliant, kTorn>(p);
+void sweep_by_rule(const physics::Projection& p) {
+  const ProjectRows& f = p.families[0];
+  if (f.limit) return sweep<Rule::limit, kTorn>(p);
+  if (f.lambda) return sweep<Rule::multipliers, kTorn>(p);
+  if (f.compliance) return sweep<Rule::compliant, kTorn>(p);
   sweep<Rule::rigid, kTorn>(p);
 }
 
 }  // namespace
 
-void project(const ProjectRows& p) {
-  if (p.alive) return sweep_by_rule<true>(p);
+void project(const physics::Projection& p) {
+  if (p.families[0].alive) return sweep_by_rule<true>(p);
   sweep_by_rule<false>(p);
 }
 

@@ -14,18 +14,14 @@ struct JacobiLaw {
   using Rows = physics::JacobiRows;
   static constexpr bool kRates = false, kTorn = kMayTear, kWatched = false;
   template <PlainFamily F>
-  WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
+  WEFT_INLINE static Wide scale(const Rows& r, const Block& b, Wide reciprocal, Wide) {
     constexpr bool kNextNear = F == kAntidiagonal, kNextFar = F == kRight || F == kDiagonal;
     const float* const far = F == kRight || F == kRight2 ? b.x : F == kDown2 ? b.below2 : b.below;
     const Wide wa = load(r.w + (b.x - r.x.x) + (kNextNear ? 1 : 0));
     const Wide wb = load(r.w + (far - r.x.x) + (kNextFar ? 1 : F == kRight2 ? 2 : 0));
     const Wide inertia = (wa + wb) * r.weight + r.constraints[b.constants + F].compliance;
     // Two pinned ends of a rigid constraint have nothing to move.
-    return select(inertia > 0.0f, (length - r.rest[F]) / (inertia * length), Wide{});
-  }
-  template <PlainFamily F>
-  WEFT_INLINE static Wide3 pull(const Rows&, const Block&, Wide3 edge, Wide quotient, Wide) {
-    return edge * quotient;
+    return select(inertia > 0.0f, fnma(wide(r.rest[F]), reciprocal, wide(1)) / inertia, Wide{});
   }
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 sum) {
     const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
@@ -33,7 +29,7 @@ struct JacobiLaw {
     store_planes(b.x, plane, load_planes(b.x, plane) + change);
     if (r.inverse_dt > 0) {
       float* const v = r.v.x + lane;
-      store_planes(v, plane, load_planes(v, plane) + change * wide(r.inverse_dt));
+      store_planes(v, plane, fma(change, wide(r.inverse_dt), load_planes(v, plane)));
     }
   }
 };
@@ -43,12 +39,9 @@ template <bool kMayTear>
 struct AlikeLaw : JacobiLaw<kMayTear> {
   using Rows = physics::JacobiRows;
   template <PlainFamily F>
-  WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
-    return r.constraints[b.constants + F].kl / length;
-  }
-  template <PlainFamily F>
-  WEFT_INLINE static Wide3 pull(const Rows& r, const Block& b, Wide3 edge, Wide quotient, Wide) {
-    return edge * (r.constraints[b.constants + F].k - quotient);
+  WEFT_INLINE static Wide scale(const Rows& r, const Block& b, Wide reciprocal, Wide) {
+    const physics::JacobiConstants& c = r.constraints[b.constants + F];
+    return fnma(wide(c.kl), reciprocal, wide(c.k));
   }
 };
 
@@ -58,19 +51,19 @@ WEFT_INLINE Wide3 correction(const ProjectRows& p, const ProjectedRow& near,
                              const ProjectedRow& far, int j, int a) {
   const Wide compliance = wide(p.compliance ? p.compliance[j] : 0);
   const Wide3 e = load3(far.x, a) - load3(near.x, a);
-  const Wide length = sqrt(max(dot(e, e), wide(kCoincident)));
+  const Wide length = sqrt(squared_length(e));
   const Wide inertia = (load(near.w + a) + load(far.w + a)) * p.weight + compliance;
   Wide violation = length - p.rest;
   float* const at = p.lambda + std::ptrdiff_t(j) * p.stride + a;
   Wide lambda{};
   if constexpr (Multipliers) {
     lambda = load(at);
-    violation = violation + compliance * lambda;
+    violation = fma(compliance, lambda, violation);
   }
   WideInt active = lanes_below(p.count - a) & (inertia > 0.0f);
   if (p.alive) active = active & alive_lanes(p, j, a);
   const Wide scale = select(active, violation / (inertia * length), Wide{});
-  if constexpr (Multipliers) store(at, lambda - scale * length);
+  if constexpr (Multipliers) store(at, fnma(scale, length, lambda));
   return e * scale;
 }
 

@@ -36,7 +36,7 @@ struct SpringConstants {
   float k = 0;        // stiffness [N/m]
   float kl = 0;       // stiffness times rest length [N]
   float damping = 0;  // along the spring [N·s/m]
-  float taut = 0;     // kl over the length past which it tears [N/m], of damped springs 1 over it
+  float taut = 0;     // 1 over the length past which it may tear [1/m]
 };
 
 // v <- drag v + kick (f/m + g), x <- x + dt v, pinned particles (inverse mass 0) unmoved.
@@ -59,7 +59,8 @@ struct PlainRows {
   // Of row 0 of each family: -1 in the lanes of constraints, 0 in those of torn ones. Null: cannot
   // tear.
   const std::int32_t* alive[kPlainFamilies];
-  // Negated sums of earlier rows: of row j-1 on row j, and of row j-2 on rows j even and odd.
+  // Negated sums of earlier rows on row j: of all (once row j-1 is done), and of row j-2 alone on rows j
+  // even and odd (until then).
   Row3 carry[3];
 };
 
@@ -107,11 +108,10 @@ struct FamilyRow {
       alive;  // -1 in the lanes of constraints, 0 in those of torn ones; null: cannot tear
 };
 
-// One family of projected constraints in rows begin … end-1. Which of the optional parts are given
-// picks the rule: a strain limit, compliance with multipliers, compliance alone, or
-// rigid constraints.
+// One family of projected constraints. Which of the optional parts are given picks the rule: a strain
+// limit, compliance with multipliers, compliance alone, or rigid constraints.
 struct ProjectRows {
-  int begin, end, rows;
+  int rows;
   int stride;
   Row3 x, v;           // row 0; v is used by the strain limit alone
   Row3 u;              // corrections of row 0, which compliant constraints change in place of x
@@ -119,7 +119,6 @@ struct ProjectRows {
   const float* row_w;  // of all particles of each row, 0 where they differ; or null
   int count;  // constraints in a row: a joins lane a+near of row j and lane a+far of row j+dj
   int near, far, dj;
-  int colour;                 // between rows: those with j/dj % 2 == colour
   const std::int32_t* lanes;  // along rows: -1 in the lanes of a colour, 0 elsewhere; both colours
   float rest;                 // m; the strain limit's greatest length
   float weight;               // of w_a + w_b (1/(2 positional_k), 1/Jacobi's relaxation)
@@ -128,6 +127,15 @@ struct ProjectRows {
   bool limit;                 // one-sided: nothing happens below the rest length
   const std::int32_t* alive;  // of row 0: -1 for constraints, 0 for torn ones; null: cannot tear
   float inverse_dt;           // strain limit: the change of position goes into the velocity too
+};
+
+// A Gauss-Seidel sweep over rows begin … end-1, family by family, of one rule and dj: along the rows both
+// colours, between rows those with j/dj % 2 == colour.
+struct Projection {
+  const ProjectRows* families;
+  int count;
+  int begin, end;
+  int colour;
 };
 
 struct AdvanceRow {
@@ -284,7 +292,7 @@ struct KernelTable {
   void (*integrate)(const AdvanceRow&);            // leapfrog step from f, then f <- 0
   void (*predict)(const AdvanceRow&);              // predicted <- x; v and x advanced by gravity
   void (*velocity)(const AdvanceRow&);             // v <- v + (x - predicted)/dt
-  void (*project)(const ProjectRows&);             // Gauss-Seidel, in place
+  void (*project)(const Projection&);              // Gauss-Seidel, in place
   void (*jacobi_rows)(const JacobiRows&);
   // Jacobi: the corrections of one row's constraints, by unit inverse mass, added to the sums of rows
   // j and j+dj

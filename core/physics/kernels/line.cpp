@@ -189,11 +189,11 @@ class Block {
     const Wide length = sqrt(squared);
     const Wide coupling = w_ * dot(edge_, e);
     const Wide factor = coupling * reciprocal_;
-    const Wide pivot = (w_ + w_far + alpha) * squared - factor * coupling;
+    const Wide pivot = fnma(factor, coupling, (w_ + w_far + alpha) * squared);
     Wide violation = length - p.rest;
     if constexpr (kLambda)
-      if (!p.fresh) violation = violation + alpha * load_at(p.lambda, here);
-    right_ = length * violation + factor * right_;
+      if (!p.fresh) violation = fma(alpha, load_at(p.lambda, here), violation);
+    right_ = fma(factor, right_, length * violation);
     WideInt solved = existing(pivot > kTinyPivot);
     if (p.alive) solved = solved & alive(here);
     reciprocal_ = select(solved, 1.0f / pivot, Wide{});
@@ -208,11 +208,11 @@ class Block {
   template <class Place>
   WEFT_INLINE void substitute(int m, Place here, Place there) {
     const Wide3 near = load3_at(p.x, here);
-    mu_ = load(scratch(m)) + factor_ * mu_;
+    mu_ = fma(factor_, mu_, load(scratch(m)));
     factor_ = load(scratch(m) + kStripLines);
     if constexpr (kLambda) {
       const Wide before = p.fresh ? Wide{} : load_at(p.lambda, here);
-      store_at(p.lambda, here, before - mu_ * load(scratch(m) + 2 * kStripLines));
+      store_at(p.lambda, here, fnma(mu_, load(scratch(m) + 2 * kStripLines), before));
     }
     // No multiplier where there is no constraint, whatever lies between the lanes.
     const Wide3 own = (x_ - near) * mu_;
@@ -225,10 +225,10 @@ class Block {
   // Moves a particle by the pulls of the constraints before and after it.
   template <class Place>
   WEFT_INLINE void shift(Place s, Wide3 by) const {
-    const Wide3 change = by * (w_ * p.share);
-    store3_at(p.x, s, x_ + change);
+    const Wide share = w_ * p.share;
+    store3_at(p.x, s, fma(by, share, x_));
     // As computed: the difference of rounded positions over dt would be mostly rounding.
-    if constexpr (kVelocity) store3_at(p.v, s, load3_at(p.v, s) + change * wide(p.inverse_dt));
+    if constexpr (kVelocity) store3_at(p.v, s, fma(by, share * p.inverse_dt, load3_at(p.v, s)));
   }
 
   const LineStrip& p;

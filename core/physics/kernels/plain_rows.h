@@ -8,47 +8,32 @@
 //   Law::kTorn                                    whether constraints may have died (PlainRows::alive)
 //   Law::kWatched                                 whether the law asks for constraints that are too long
 //   Law::kRates                                   whether pulls depend on velocities
-//   Law::quotient<F>(rows, block, length)         of family F: by the one division it needs
-//   Law::pull<F>(rows, block, edge, quotient, edge·velocity)
-//                                                 on the near end; the far end gets its negative
-//   Law::too_long<F>(rows, block, quotient)       of kWatched laws: which are
+//   Law::scale<F>(rows, block, 1/length, edge·velocity)
+//                                                 of family F: edge times it pulls the near end, and
+//                                                 its negative the far end
+//   Law::too_long<F>(rows, block, 1/length)       of kWatched laws: which are
 //   Law::tell(rows, row)                          that some of a row are, of those that are alive
 //   Law::finish(rows, block, sum)                 moves a block by the sum of its pulls
 #pragma once
 
 #include <cstddef>
 
+#include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
-
-// Squared length below which two particles count as coincident: no direction, no force.
-inline constexpr float kTiny = 1e-30f;
-
-// Keeps the compiler from moving or merging the computation of a value: the order below is the
-// point of this kernel.
-WEFT_INLINE void pin_order(Wide& v) {
-#if WEFT_LANES == 16
-  asm volatile("" : "+v"(v));
-#else
-  (void)v;
-#endif
-}
-WEFT_INLINE void pin_order(Wide3& v) {
-  pin_order(v.x);
-  pin_order(v.y);
-  pin_order(v.z);
-}
 
 enum PlainFamily { kRight, kDown, kDiagonal, kAntidiagonal, kRight2, kDown2, kFamilies };
 static_assert(kFamilies == physics::kPlainFamilies);
 
 // Where a block of lanes lies: its first lane in component x of the positions, of the same column
-// one and two rows below, and of what the rows one and two above do to it.
+// one and two rows below, and of what earlier rows do to it and to the row below (carry2_below: what the
+// row above does to that).
 struct Block {
   float* x;
   const float *below, *below2;
   float *carry, *carry2;
+  const float* carry2_below;
   int i;                     // the lane in the row
   std::ptrdiff_t constants;  // number of the row's first family
 };
@@ -63,6 +48,7 @@ WEFT_INLINE Block first_block(const physics::PlainRows& s, int j) {
           has_below2 ? x + 2 * std::ptrdiff_t(s.stride) : last,
           s.carry[0].x,
           s.carry[1 + j % 2].x,
+          s.carry[2 - j % 2].x,
           0,
           std::ptrdiff_t(j) * kFamilies};
 }
@@ -70,8 +56,8 @@ WEFT_INLINE Block first_block(const physics::PlainRows& s, int j) {
 template <int N>
 WEFT_INLINE Block blocks_on(Block b) {
   constexpr int lanes = N * kLanes;
-  return {b.x + lanes,      b.below + lanes, b.below2 + lanes, b.carry + lanes,
-          b.carry2 + lanes, b.i + lanes,     b.constants};
+  return {b.x + lanes,      b.below + lanes,        b.below2 + lanes, b.carry + lanes,
+          b.carry2 + lanes, b.carry2_below + lanes, b.i + lanes,      b.constants};
 }
 WEFT_INLINE Block before(const Block& b) {
   return blocks_on<-1>(b);
@@ -80,17 +66,25 @@ WEFT_INLINE Block after(const Block& b) {
   return blocks_on<1>(b);
 }
 
-// The fused kernel works block by block, row after row. Each of the six springs of a block passes
-// four stations: square (edge and squared length), root, quotient (for a spring k l/|e|) and pull.
-// While one spring is squared, the root of the one before is drawn, and the one before that gets its
-// quotient and pulls: so the divider always has work and little waits for it. The order of the
-// statements is the schedule.
+// The fused kernel works block by block, row after row. Each of the six constraints of a block passes
+// four stations: its edge is squared, the reciprocal root drawn in two steps, and its ends are pulled.
+// While one constraint is squared, those before it are at later stations, so that none waits for
+// another's result. The order of the statements is the schedule.
+//
+// Every other constraint takes its reciprocal root from the divider, the others by multiplications
+// (root.h): so both work at the same time.
 //
 // What goes to the next lane of the block's own row is summed up before it is shifted: hence the order
-// of the springs.
+// of the families.
 //
-// The delays need no reset between rows: past a row's last spring they hold zeros.
+// The delays need no reset between rows: past a row's last constraint they hold zeros.
 inline constexpr PlainFamily kOrder[] = {kRight, kAntidiagonal, kDown, kDiagonal, kRight2, kDown2};
+constexpr bool divided(PlainFamily f) {
+  return f == kRight || f == kDown || f == kRight2;
+}
+
+// How many constraints after the first station the others lie: as far as registers last.
+inline constexpr int kStations[] = {0, 1, kLanes == 16 ? 3 : 2, kLanes == 16 ? 4 : 2};
 
 template <class Law>
 struct Pipeline {
@@ -98,10 +92,11 @@ struct Pipeline {
 
   std::ptrdiff_t plane, carry_plane;  // floats from one component to the next
   Wide3 edge[kFamilies];
-  Wide length[kFamilies];  // squared length, then length, then the quotient
-  Wide rate[kFamilies];    // edge · its ends' difference in velocity
-  Wide3 own, below;        // pull on the block in `pull`, and on the row below it (negated)
-  WideInt overlong;        // lanes of constraints too long in this row
+  Wide length[kFamilies];  // squared length, then length, then its reciprocal, of those divided
+  ReciprocalRoot root[kFamilies];
+  Wide rate[kFamilies];  // edge · its ends' difference in velocity
+  Wide3 own, below;      // pull on the block in `pull`, and on the row below it (negated)
+  WideInt overlong;      // lanes of constraints too long in this row
   Delay3<1> to_right, diagonal;
   Delay3<2> right2;
 
@@ -109,7 +104,14 @@ struct Pipeline {
     return load_planes(s.v.x + (x - s.x.x), plane);
   }
 
+  // The lanes of constraints.
   template <PlainFamily F>
+  WEFT_INLINE static WideInt existing(const Rows& s, const Block& b) {
+    return lanes_below(s.columns - (F == kRight2 ? 2 : F == kDown || F == kDown2 ? 0 : 1) - b.i);
+  }
+
+  // kLast: past the last constraint of the row, edges and pulls are zero.
+  template <PlainFamily F, bool kLast>
   WEFT_INLINE void square(const Rows& s, const Block& b) {
     const float* const near = F == kAntidiagonal ? b.x + 1 : b.x;
     const float* const far = F == kRight      ? b.x + 1
@@ -117,77 +119,85 @@ struct Pipeline {
                              : F == kDiagonal ? b.below + 1
                              : F == kDown2    ? b.below2
                                               : b.below;
-    edge[F] = load_planes(far, plane) - load_planes(near, plane);
-    length[F] = max(dot(edge[F], edge[F]), wide(kTiny));
-    pin_order(length[F]);
-    if constexpr (Law::kRates) rate[F] = dot(edge[F], velocity(s, far) - velocity(s, near));
+    Wide3 e = load_planes(far, plane) - load_planes(near, plane);
+    if constexpr (kLast) e = select(existing<F>(s, b), e, Wide3{});
+    edge[F] = e;
+    length[F] = squared_length(e);
+    if constexpr (Law::kRates) rate[F] = dot(e, velocity(s, far) - velocity(s, near));
+  }
+
+  template <PlainFamily F>
+  WEFT_INLINE void begin_root() {
+    if constexpr (divided(F))
+      length[F] = sqrt(length[F]);
+    else
+      root[F].guess(length[F]);
   }
   template <PlainFamily F>
-  WEFT_INLINE void root() {
-    length[F] = sqrt(length[F]);
-    pin_order(length[F]);
+  WEFT_INLINE void end_root() {
+    if constexpr (divided(F))
+      length[F] = 1.0f / length[F];
+    else
+      root[F].refine();
   }
-  template <PlainFamily F>
-  WEFT_INLINE void quotient(const Rows& s, const Block& b) {
-    length[F] = Law::template quotient<F>(s, b, length[F]);
-    pin_order(length[F]);
-  }
-  // What family F does to the block, to its right and below. kLast: lanes past the last constraint
-  // of the row are zero.
+  // What family F does to the block, to its right and below.
   template <PlainFamily F, bool kLast>
   WEFT_INLINE void pull(const Rows& s, const Block& b) {
-    Wide3 f = Law::template pull<F>(s, b, edge[F], length[F], rate[F]);
+    const Wide3 e = edge[F];
+    const Wide reciprocal = divided(F) ? length[F] : root[F].result();
+    Wide scale = Law::template scale<F>(s, b, reciprocal, rate[F]);
+    if constexpr (kLast) scale = select(existing<F>(s, b), scale, Wide{});
     if constexpr (Law::kTorn) {
       const WideInt alive = lanes_at(s.alive[F] + (b.x - s.x.x));
-      f = select(alive, f, Wide3{});
-      if constexpr (Law::kWatched) overlong |= alive & Law::template too_long<F>(s, b, length[F]);
+      scale = select(alive, scale, Wide{});
+      if constexpr (Law::kWatched) overlong |= alive & Law::template too_long<F>(s, b, reciprocal);
     }
-    if constexpr (kLast && F != kDown && F != kDown2)
-      f = select(lanes_below(s.columns - (F == kRight2 ? 2 : 1) - b.i), f, Wide3{});
     if constexpr (F == kRight) {
-      own = f;
+      own = e * scale;
     } else if constexpr (F == kAntidiagonal) {
-      own = own + to_right.next(f - own);
-      below = f;
+      own = own + to_right.next(fms(e, scale, own));
+      below = fma(e, scale, load_planes(b.carry2_below, carry_plane));
     } else if constexpr (F == kDown) {
-      own = own + f;
-      below = below + f;
+      own = fma(e, scale, own);
+      below = fma(e, scale, below);
     } else if constexpr (F == kDiagonal) {
+      const Wide3 f = e * scale;
       own = own + f - load_planes(b.carry, carry_plane);
       store_planes(b.carry, carry_plane, below + diagonal.next(f));
     } else if constexpr (F == kRight2) {
+      const Wide3 f = e * scale;
       own = own + (f - right2.next(f));
     } else {
-      own = own + (f - load_planes(b.carry2, carry_plane));
+      const Wide3 f = e * scale;
+      own = own + f;
       store_planes(b.carry2, carry_plane, f);
     }
-    pin_order(own);
-    if constexpr (F == kAntidiagonal || F == kDown) pin_order(below);
   }
 
-  // Squares spring number N of block b while earlier ones, of it or of the block before, go on.
-  // A block that has all its pulls moves. kALast, kBLast: the row's last constraint two to the right
-  // lies in or before the block.
+  // Squares constraint number N of block b while earlier ones, of it or of the block before, go on. A
+  // block that has all its pulls moves. kALast, kBLast: the row's last constraint two to the right lies
+  // in or before the block.
   template <int N, bool kA, bool kALast, bool kB, bool kBLast>
   WEFT_INLINE void step(const Rows& s, const Block& a, const Block& b) {
-    constexpr bool kOfA = N < 2;
-    constexpr PlainFamily kPulled = kOrder[(N + 4) % 6];
-    if constexpr (kOfA ? kA : kB) quotient<kPulled>(s, kOfA ? a : b);
-    if constexpr (kB) square<kOrder[N]>(s, b);
-    if constexpr (N < 1 ? kA : kB) root<kOrder[(N + 5) % 6]>();
-    if constexpr (kOfA ? kA : kB) pull<kPulled, (kOfA ? kALast : kBLast)>(s, kOfA ? a : b);
-    if constexpr (kPulled == kDown2 && kA) {
-      Law::finish(s, a, own);
-      if constexpr (Law::kWatched && kALast)
+    constexpr auto at = [](int station) { return kOrder[(N + 6 - kStations[station]) % 6]; };
+    constexpr auto any_at = [](int station) { return N >= kStations[station] ? kB : kA; };
+    constexpr bool kOfB = N >= kStations[3], kThatLast = kOfB ? kBLast : kALast;
+    if constexpr (kB) square<at(0), kBLast>(s, b);
+    if constexpr (any_at(1)) begin_root<at(1)>();
+    if constexpr (any_at(2)) end_root<at(2)>();
+    if constexpr (any_at(3)) pull<at(3), kThatLast>(s, kOfB ? b : a);
+    if constexpr (any_at(3) && at(3) == kDown2) {
+      Law::finish(s, kOfB ? b : a, own);
+      if constexpr (Law::kWatched && kThatLast)
         if (any(overlong)) {
-          Law::tell(s, a.constants / kFamilies);
+          Law::tell(s, (kOfB ? b : a).constants / kFamilies);
           overlong = WideInt{};
         }
     }
   }
 
-  // Squares block b and gives it its first four pulls, while the block before, a, gets the other two
-  // and moves.
+  // Squares block b and gives it its first pulls, while the block before, a, gets its last ones and
+  // moves.
   template <bool kA, bool kALast, bool kB, bool kBLast>
   WEFT_INLINE void turn(const Rows& s, const Block& a, const Block& b) {
     step<0, kA, kALast, kB, kBLast>(s, a, b);

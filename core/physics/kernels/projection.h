@@ -8,12 +8,10 @@
 
 #include <cstddef>
 
+#include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
-
-// Squared length below which two particles count as coincident: no direction, no correction.
-inline constexpr float kCoincident = 1e-30f;
 
 struct ProjectedRow {
   Row3 x, u;
@@ -55,21 +53,33 @@ struct Alike {
   float rest, compliance, inverse_inertia, w;
 };
 
+WEFT_INLINE float compliance_at(const ProjectRows& p, int j) {
+  return p.compliance ? p.compliance[j] : 0;
+}
+
 WEFT_INLINE Alike alike(const ProjectRows& p, int j, float w) {
-  const float compliance = p.compliance ? p.compliance[j] : 0;
+  const float compliance = compliance_at(p, j);
   const float inertia = 2 * w * p.weight + compliance;
   const float k = w / inertia;
   return {k, k * p.rest, p.rest, compliance, 1 / inertia, w};
 }
 
-// The scale of e that moves the near end of a block of constraints by e times it.
-template <bool Multipliers>
-WEFT_INLINE Wide scale_alike(const Alike& c, Wide3 e, Wide& lambda) {
-  const Wide length = sqrt(max(dot(e, e), wide(kCoincident)));
-  if constexpr (!Multipliers) return c.k - c.kl / length;
-  const Wide change = ((length - c.rest) + c.compliance * lambda) * c.inverse_inertia;
-  lambda = lambda - change;
-  return (change * c.w) / length;
+// The scales of e that move the near ends of K blocks of constraints by e times it.
+template <bool Multipliers, int K>
+WEFT_INLINE void scales_alike(const Alike& c, const Wide3* e, Wide* lambda, Wide* scale) {
+  Wide squared[K], reciprocal[K];
+  for (int k = 0; k < K; ++k) squared[k] = squared_length(e[k]);
+  reciprocal_roots<K>(squared, reciprocal);
+  for (int k = 0; k < K; ++k) {
+    if constexpr (!Multipliers) {
+      scale[k] = fnma(wide(c.kl), reciprocal[k], wide(c.k));
+    } else {
+      const Wide violation = fms(squared[k], reciprocal[k], wide(c.rest));
+      const Wide change = fma(wide(c.compliance), lambda[k], violation) * c.inverse_inertia;
+      lambda[k] = lambda[k] - change;
+      scale[k] = (change * c.w) * reciprocal[k];
+    }
+  }
 }
 
 // Constraints (i, i+N) of one colour along a row fill every other group of N lanes. Two blocks of

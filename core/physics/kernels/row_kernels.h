@@ -68,8 +68,8 @@ WEFT_INLINE int padded(int count) {
 
 // c v + kick (f/m + g); nothing is added where the inverse mass w is 0, that of a pinned particle.
 WEFT_INLINE Wide3 moved(Wide3 v, Wide w, Wide3 f, const Advance& a) {
-  const Wide3 gained = f * (w * a.kick) + wide3(a.gx, a.gy, a.gz);
-  return v * wide(a.drag) + select(w > 0.0f, gained, Wide3{});
+  const Wide3 gained = fma(f, w * a.kick, wide3(a.gx, a.gy, a.gz));
+  return fma(v, wide(a.drag), select(w > 0.0f, gained, Wide3{}));
 }
 
 // v <- c v + kick (f/m + g), x <- x + dt v.
@@ -77,7 +77,7 @@ WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const 
                       std::ptrdiff_t i) {
   const Wide3 velocity = moved(load3(v, i), load(inverse_mass + i), f, a);
   store3(v, i, velocity);
-  store3(x, i, load3(x, i) + velocity * wide(a.dt));
+  store3(x, i, fma(velocity, wide(a.dt), load3(x, i)));
 }
 
 void spring_rows(const SpringRows&);
@@ -87,7 +87,7 @@ int tear(const physics::TearRow&);
 void integrate(const AdvanceRow&);
 void predict(const AdvanceRow&);
 void velocity(const AdvanceRow&);
-void project(const ProjectRows&);
+void project(const physics::Projection&);
 void jacobi_rows(const physics::JacobiRows&);
 void jacobi_family(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
 void apply_corrections(const AdvanceRow&);

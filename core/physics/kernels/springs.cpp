@@ -19,21 +19,15 @@ struct SpringLaw {
   static constexpr bool kRates = kDamped, kTorn = kTear != Tear::never,
                         kWatched = kTear == Tear::watched;
   template <PlainFamily F>
-  WEFT_INLINE static Wide quotient(const Rows& r, const Block& b, Wide length) {
-    return (kDamped ? 1.0f : r.springs[b.constants + F].kl) / length;
-  }
-  template <PlainFamily F>
-  WEFT_INLINE static Wide3 pull(const Rows& r, const Block& b, Wide3 edge, Wide quotient,
-                                Wide rate) {
+  WEFT_INLINE static Wide scale(const Rows& r, const Block& b, Wide reciprocal, Wide rate) {
     const SpringConstants& c = r.springs[b.constants + F];
-    if constexpr (kDamped)
-      return edge * (c.k - c.kl * quotient + c.damping * (rate * (quotient * quotient)));
-    else
-      return edge * (c.k - quotient);
+    const Wide spring = fnma(wide(c.kl), reciprocal, wide(c.k));
+    if constexpr (!kDamped) return spring;
+    return fma(c.damping * rate, reciprocal * reciprocal, spring);
   }
   template <PlainFamily F>
-  WEFT_INLINE static WideInt too_long(const Rows& r, const Block& b, Wide quotient) {
-    return quotient < r.springs[b.constants + F].taut;
+  WEFT_INLINE static WideInt too_long(const Rows& r, const Block& b, Wide reciprocal) {
+    return reciprocal < r.springs[b.constants + F].taut;
   }
   WEFT_INLINE static void tell(const Rows& r, std::ptrdiff_t row) { r.overlong[row] = 1; }
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 force) {
@@ -41,7 +35,7 @@ struct SpringLaw {
     const Wide3 velocity =
         moved(load_planes(r.v.x + lane, plane), load(r.w + lane), force, r.advance);
     store_planes(r.v.x + lane, plane, velocity);
-    store_planes(b.x, plane, load_planes(b.x, plane) + velocity * wide(r.advance.dt));
+    store_planes(b.x, plane, fma(velocity, wide(r.advance.dt), load_planes(b.x, plane)));
   }
 };
 
@@ -60,12 +54,11 @@ WEFT_INLINE void add_family(const FamilyRow& r) {
   const Row3 scratch{r.scratch, r.scratch + r.stride, r.scratch + 2 * r.stride};
   for (int a = 0; a < padded(r.count); a += kLanes) {
     const Wide3 e = load3(r.x_far, a + r.far) - load3(r.x, a + r.near);
-    const Wide squared = max(dot(e, e), wide(kTiny));
-    const Wide reciprocal = 1.0f / sqrt(squared);
-    Wide scale = c.k - c.kl * reciprocal;
+    const Wide reciprocal = reciprocal_root(squared_length(e));
+    Wide scale = fnma(wide(c.kl), reciprocal, wide(c.k));
     if constexpr (kDamped) {
       const Wide3 dv = load3(r.v_far, a + r.far) - load3(r.v, a + r.near);
-      scale = scale + c.damping * (dot(e, dv) * (reciprocal * reciprocal));
+      scale = fma(c.damping * dot(e, dv), reciprocal * reciprocal, scale);
     }
     WideInt active = lanes_below(r.count - a);
     if constexpr (kTorn) active = active & lanes_at(r.alive + a);

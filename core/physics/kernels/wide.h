@@ -1,8 +1,8 @@
 // Wide arithmetic: `Wide` is a vector of kLanes floats (16, 8, 4 or 1, as the build of each
 // instruction set sets WEFT_LANES) with the plain operators + - * / of the compilers' vector
-// extensions. A kernel written with it reads like its equation and gives the same bits at every
-// width, because every operation here is exact per lane (IEEE 754, no fused multiply-add, no
-// estimates).
+// extensions, and fma(a, b, c) = a b + c rounded once. A kernel written with it reads like its equation
+// and gives the same bits at every width, because every operation here is exact per lane (IEEE 754, no
+// estimates of the processor's own).
 //
 // Everything lives in a namespace of its own per instruction set, so that the linker can never mix
 // code built for different ones.
@@ -36,8 +36,13 @@ WEFT_INLINE Wide load(const float* p) {
 WEFT_INLINE void store(float* p, Wide v) {
   *reinterpret_cast<WideLoose*>(p) = v;
 }
+// (Wide{} + s would be an addition: -0 + 0 is not -0.)
+template <int... I>
+WEFT_INLINE Wide wide(float s, std::integer_sequence<int, I...>) {
+  return Wide{(void(I), s)...};
+}
 WEFT_INLINE Wide wide(float s) {
-  return Wide{} + s;
+  return wide(s, std::make_integer_sequence<int, kLanes>{});
 }
 
 WEFT_INLINE Wide select(WideInt mask, Wide a, Wide b) {
@@ -83,6 +88,84 @@ WEFT_INLINE Wide min(Wide a, Wide b) {
 }
 WEFT_INLINE Wide sqrt(Wide v) {
   return Wide{__builtin_sqrtf(v[0])};
+}
+#endif
+
+// a b + c, c - a b and a b - c, each rounded once.
+#if WEFT_LANES == 16
+WEFT_INLINE Wide fma(Wide a, Wide b, Wide c) {
+  return (Wide)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+}
+WEFT_INLINE Wide fnma(Wide a, Wide b, Wide c) {
+  return (Wide)_mm512_fnmadd_ps((__m512)a, (__m512)b, (__m512)c);
+}
+WEFT_INLINE Wide fms(Wide a, Wide b, Wide c) {
+  return (Wide)_mm512_fmsub_ps((__m512)a, (__m512)b, (__m512)c);
+}
+#elif WEFT_LANES == 8
+WEFT_INLINE Wide fma(Wide a, Wide b, Wide c) {
+  return (Wide)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
+}
+WEFT_INLINE Wide fnma(Wide a, Wide b, Wide c) {
+  return (Wide)_mm256_fnmadd_ps((__m256)a, (__m256)b, (__m256)c);
+}
+WEFT_INLINE Wide fms(Wide a, Wide b, Wide c) {
+  return (Wide)_mm256_fmsub_ps((__m256)a, (__m256)b, (__m256)c);
+}
+#else
+// Where no instruction does it: the product of two floats is exact in double precision. Its sum with the
+// third is rounded there and once more to single precision, which is as rounding once but where the first
+// result lies just between two floats, or below their normal range. There the sum is rounded to odd first
+// (Boldo, Melquiond 2008, "Emulation of FMA and correctly rounded sums: proved algorithms using rounding
+// to odd").
+template <class Double, class Long>
+Double sum_to_odd(Double a, Double b) {
+  const Double sum = a + b, rest = sum - a;
+  const Double error = (a - (sum - rest)) + (b - rest);
+  const Long up = error > 0.0, down = error < 0.0;
+  const Long even = ((Long)sum & 1) - 1;
+  const Long farther =
+      ((up ^ (sum < 0.0)) & 2) - 1;  // 1 where the odd neighbour is farther from zero
+  return (Double)((Long)sum + ((up | down) & even & farther));
+}
+
+#if WEFT_LANES == 4
+
+WEFT_INLINE Wide fma(Wide a, Wide b, Wide c) {
+  const auto upper = [](Wide v) { return _mm_cvtps_pd(_mm_movehl_ps((__m128)v, (__m128)v)); };
+  const auto lower = [](Wide v) { return _mm_cvtps_pd((__m128)v); };
+  const __m128d product[] = {lower(a) * lower(b), upper(a) * upper(b)};
+  const __m128d third[] = {lower(c), upper(c)};
+  __m128d sum[] = {product[0] + third[0], product[1] + third[1]};
+  const __m128 halves[] = {_mm_castpd_ps(sum[0]), _mm_castpd_ps(sum[1])};
+  const WideInt low = (WideInt)_mm_shuffle_ps(halves[0], halves[1], 0x88) & 0x1fffffff;
+  const WideInt high = (WideInt)_mm_shuffle_ps(halves[0], halves[1], 0xdd) & 0x7fffffff;
+  if (_mm_movemask_epi8((__m128i)((low == 0x10000000) | ((high > 0) & (high < 0x38100000)))))
+      [[unlikely]]
+    for (int k = 0; k < 2; ++k) sum[k] = sum_to_odd<__m128d, __m128i>(product[k], third[k]);
+  return (Wide)_mm_movelh_ps(_mm_cvtpd_ps(sum[0]), _mm_cvtpd_ps(sum[1]));
+}
+
+#else
+
+WEFT_INLINE Wide fma(Wide a, Wide b, Wide c) {
+  typedef double One __attribute__((vector_size(8)));
+  typedef std::int64_t OneLong __attribute__((vector_size(8)));
+  const One product{double(a[0]) * double(b[0])}, third{double(c[0])};
+  One sum = product + third;
+  const std::int64_t bits = ((OneLong)sum)[0], size = bits >> 32 & 0x7fffffff;
+  if ((bits & 0x1fffffff) == 0x10000000 || (size > 0 && size < 0x38100000)) [[unlikely]]
+    sum = sum_to_odd<One, OneLong>(product, third);
+  return Wide{float(sum[0])};
+}
+
+#endif
+
+WEFT_INLINE Wide fnma(Wide a, Wide b, Wide c) {
+  return fma(-a, b, c);
+}
+WEFT_INLINE Wide fms(Wide a, Wide b, Wide c) {
+  return fma(a, b, -c);
 }
 #endif
 
@@ -236,8 +319,17 @@ WEFT_INLINE Wide3 operator-(Wide3 a, Wide3 b) {
 WEFT_INLINE Wide3 operator*(Wide3 a, Wide s) {
   return {a.x * s, a.y * s, a.z * s};
 }
+WEFT_INLINE Wide3 fma(Wide3 a, Wide s, Wide3 c) {
+  return {fma(a.x, s, c.x), fma(a.y, s, c.y), fma(a.z, s, c.z)};
+}
+WEFT_INLINE Wide3 fnma(Wide3 a, Wide s, Wide3 c) {
+  return {fnma(a.x, s, c.x), fnma(a.y, s, c.y), fnma(a.z, s, c.z)};
+}
+WEFT_INLINE Wide3 fms(Wide3 a, Wide s, Wide3 c) {
+  return {fms(a.x, s, c.x), fms(a.y, s, c.y), fms(a.z, s, c.z)};
+}
 WEFT_INLINE Wide dot(Wide3 a, Wide3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+  return fma(a.z, b.z, fma(a.y, b.y, a.x * b.x));
 }
 WEFT_INLINE Wide3 select(WideInt m, Wide3 a, Wide3 b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};

@@ -8,6 +8,9 @@ namespace {
 
 constexpr int kGuard = 16;  // zero lanes that a family's kernel reads before a row
 
+// Rounding of a reciprocal length must not hide that the length is too long.
+constexpr float kAlmost = 1 + 1e-6f;
+
 // The six families of a plain cloth in one kernel.
 class PlainSprings final : public PlainRowsStage {
  public:
@@ -17,16 +20,13 @@ class PlainSprings final : public PlainRowsStage {
                            (damped ? " with damping" : "") + ", leapfrog step",
                        parts),
         damped_(damped),
-        springs_(std::size_t(parts.lattice.rows) * kPlainFamilies),
-        cannot_tell_(parts.overlong ? std::size_t(parts.lattice.rows) : 0) {
+        springs_(std::size_t(parts.lattice.rows) * kPlainFamilies) {
     for (int j = 0; j < parts.lattice.rows; ++j)
       for (int f = 0; f < kPlainFamilies; ++f) {
         const Family& family = parts.families[f];
         SpringConstants& c = springs_[std::size_t(j) * kPlainFamilies + f];
         c = spring_constants(parts.cloth, family, j);
-        if (!parts.overlong || j + family.dj >= parts.lattice.rows) continue;
-        c.taut = (damped ? 1 : c.kl) / tear_length(parts.cloth, family);
-        if (!(c.taut > 0)) cannot_tell_[j] = 1;
+        if (parts.overlong) c.taut = kAlmost / tear_length(parts.cloth, family);
       }
   }
   std::size_t bytes() const override {
@@ -38,8 +38,7 @@ class PlainSprings final : public PlainRowsStage {
     r.springs = springs_.data();
     r.damped = damped_;
     r.overlong = parts_.overlong;
-    if (r.overlong)
-      std::copy(cannot_tell_.begin() + begin, cannot_tell_.begin() + end, r.overlong + begin);
+    if (r.overlong) std::fill(r.overlong + begin, r.overlong + end, std::uint8_t{0});
     r.advance = advance_of(parts_, s);
     parts_.kernels.spring_rows(r);
   }
@@ -47,8 +46,6 @@ class PlainSprings final : public PlainRowsStage {
  private:
   bool damped_;
   std::vector<SpringConstants> springs_;
-  std::vector<std::uint8_t>
-      cannot_tell_;  // rows whose springs do not know their lengths: no stiffness
 };
 
 // Any families, one kernel call each: levels, subsets.

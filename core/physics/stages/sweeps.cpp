@@ -33,8 +33,7 @@ class ProjectedFamilies {
 
   std::int64_t constraints() const {
     std::int64_t sum = 0;
-    for (const Member& m : members_)
-      sum += std::int64_t(m.rows.count) * (parts_.lattice.rows - m.rows.dj);
+    for (const ProjectRows& r : rows_) sum += std::int64_t(r.count) * (r.rows - r.dj);
     return sum;
   }
 
@@ -58,26 +57,21 @@ class ProjectedFamilies {
     return options_.limit > 0 ? Velocities::used : Velocities::left_alone;
   }
   void prepare(double dt) {
-    for (Member& m : members_) {
-      const Family& family = parts_.families[m.index];
-      ProjectRows& r = m.rows;
-      if (options_.limit > 0) r.inverse_dt = float(1 / dt);
+    for (std::size_t n = 0; n < members_.size(); ++n) {
+      Member& m = members_[n];
+      if (options_.limit > 0) rows_[n].inverse_dt = float(1 / dt);
       for (std::size_t j = 0; j < m.compliance.size(); ++j)
-        m.compliance[j] = compliance_of(parts_, family, int(j), dt);
+        m.compliance[j] = compliance_of(parts_, parts_.families[m.index], int(j), dt);
     }
   }
 
-  template <class Kernel>
-  void run(const Kernel& kernel) const {
-    for (const Member& m : members_) kernel(m.rows);
-  }
+  const std::vector<ProjectRows>& rows() const { return rows_; }
 
  private:
   struct Member {
     std::size_t index;
     std::vector<float> compliance;
     AlignedArray<std::int32_t> lanes;
-    ProjectRows rows;
   };
 
   void add(std::size_t index) {
@@ -85,8 +79,7 @@ class ProjectedFamilies {
     const Family& family = parts_.families[index];
     Member& m = members_.emplace_back();
     m.index = index;
-    m.rows = {};
-    ProjectRows& r = m.rows;
+    ProjectRows& r = rows_.emplace_back();
     r.rows = l.rows;
     r.stride = l.stride;
     r.x = l.x.row(0);
@@ -120,7 +113,8 @@ class ProjectedFamilies {
 
   ClothParts parts_;
   SweepOptions options_;
-  std::deque<Member> members_;  // their rows point into them
+  std::deque<Member> members_;
+  std::vector<ProjectRows> rows_;  // of each member, pointing into it
 };
 
 // The families of one row offset: along the rows both colours, between rows one.
@@ -137,16 +131,12 @@ class GaussSeidel final : public RowStage {
   void prepare(double dt) override { families_->prepare(dt); }
   Velocities velocities(double) const override { return families_->velocities(); }
   void run(int begin, int end, const Substep&) override {
-    families_->run([&](ProjectRows rows) {
-      rows.begin = begin;
-      rows.end = end;
-      rows.colour = colour_;
-      project_(rows);
-    });
+    const std::vector<ProjectRows>& families = families_->rows();
+    project_({families.data(), int(families.size()), begin, end, colour_});
   }
 
  private:
-  void (*project_)(const ProjectRows&);
+  void (*project_)(const Projection&);
   std::unique_ptr<ProjectedFamilies> families_;
   int colour_;
 };
@@ -296,11 +286,11 @@ class Jacobi final : public RowStage {
     Lattice& l = parts_.lattice;
     const auto sum = [&](int row) { return sum_.row(s.slot * (reach + 1) + row % (reach + 1)); };
     for (const ProjectedFamilies& families : families_)
-      families.run([&](ProjectRows rows) {
-        if (j + rows.dj >= l.rows) return;
+      for (ProjectRows rows : families.rows()) {
+        if (j + rows.dj >= l.rows) continue;
         rows.weight /= relaxation_;
         parts_.kernels.jacobi_family(rows, j, sum(j), sum(j + rows.dj));
-      });
+      }
     AdvanceRow a{};
     a.columns = l.columns;
     a.x = l.x.row(j);
