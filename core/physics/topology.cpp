@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "physics/hinge.h"
+
 namespace weft::physics {
 
 Topology::Topology(const Lattice& l, std::vector<Family>& families, bool bends)
@@ -21,6 +23,7 @@ Topology::Topology(const Lattice& l, std::vector<Family>& families, bool bends)
   }
   make_whole();
   triangles_.reserve(2 * squares_.size());
+  rows_about_.reserve(static_cast<std::size_t>(l.rows));
 }
 
 void Topology::make_whole() {
@@ -62,6 +65,11 @@ const Family* Topology::family_at(int di, int dj) const {
 bool Topology::alive(int di, int dj, int i, int j) const {
   const Family* f = family_at(di, dj);
   return !f || f->alive(j, i - f->near());
+}
+
+bool Topology::joined(int di, int dj, int i, int j) const {
+  const Family* f = family_at(di, dj);
+  return f && f->alive(j, i - f->near());
 }
 
 // A constraint over g steps of a shorter family goes when one of the steps it spans, one of them in
@@ -126,16 +134,46 @@ void Topology::list_triangles() {
     }
 }
 
+// Particles of a row that are beside a torn triangle.
+void Topology::end_hinges(int j) {
+  for (int i = 0; i < columns_; ++i) {
+    unsigned torn = 0;
+    for (int y = std::max(0, j - 1); y <= j && y + 1 < rows_; ++y)
+      for (int x = std::max(0, i - 1); x <= i && x + 1 < columns_; ++x) torn |= gone(x, y);
+    const unsigned ending = torn ? hinged(*this, i, j) : 0;
+    for (std::size_t k = 0; k < kAround.size() && ending >> k; ++k) {
+      if (!(ending >> k & 1)) continue;
+      const auto [di, dj] = kAround[k];
+      const bool forth = dj > 0 || (dj == 0 && di > 0);
+      const Family* f = forth ? family_at(di, dj) : family_at(-di, -dj);
+      if (!f) continue;
+      const int a = (forth ? i : i + di) - f->near(), from = forth ? j : j + dj;
+      if (from >= 0 && from + f->dj < rows_ && a >= 0 && a < f->per_row(columns_)) end(*f, from, a);
+    }
+  }
+}
+
+// What dies by a hinge may make another one.
 bool Topology::update() {
   if (died_ == followed_) return false;
   bool changed = false;
-  for (int j = 0; j < rows_; ++j) {
-    if (died_[static_cast<std::size_t>(j)] == followed_[static_cast<std::size_t>(j)]) continue;
-    end_spanning(j);
-    if (bend_links_) end_bending(j);
-    changed |= look_at_squares(j);
+  while (died_ != followed_) {
+    rows_about_.clear();
+    for (int j = 0; j < rows_; ++j)
+      if (died_[static_cast<std::size_t>(j)] != followed_[static_cast<std::size_t>(j)])
+        rows_about_.push_back(j);
+    for (const int j : rows_about_) {
+      end_spanning(j);
+      if (bend_links_) end_bending(j);
+      changed |= look_at_squares(j);
+    }
+    followed_ = died_;
+    // Constraints of a row join particles that have it in their neighbourhood.
+    int next = 0;
+    for (const int row : rows_about_)
+      for (next = std::max(next, row - 1); next <= std::min(row + 2, rows_ - 1); ++next)
+        end_hinges(next);
   }
-  followed_ = died_;
   torn_ = std::accumulate(died_.begin(), died_.end(), std::int64_t(0));
   if (changed) {
     ++version_;

@@ -61,6 +61,8 @@ class Topology {
   }
   // Whether the constraint (di, dj) from particle (i, j) is there; true when the cloth has none such.
   bool alive(int di, int dj, int i, int j) const;
+  // The same, false when the cloth has none such.
+  bool joined(int di, int dj, int i, int j) const;
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   int stride() const { return stride_; }
@@ -71,6 +73,7 @@ class Topology {
   void end_spanning(int row);
   void end_bending(int row);
   bool look_at_squares(int row);
+  void end_hinges(int j);
   void list_triangles();
 
   int columns_, rows_, stride_;
@@ -78,6 +81,7 @@ class Topology {
   std::vector<std::unique_ptr<Links>> links_, remembered_;
   std::unique_ptr<BendLinks> bend_links_;
   std::vector<std::int64_t> died_, followed_;  // per row, ever
+  std::vector<int> rows_about_;                // where something died
   std::int64_t torn_ = 0;
   std::uint64_t version_ = 0;
   std::vector<std::uint8_t> squares_;
