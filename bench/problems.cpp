@@ -37,9 +37,21 @@ Problem swing(int n) {
   return p;
 }
 
+// As cloth is: it hardly stretches, but it bends.
 Problem stiff(int n) {
   Problem p = hanging("stiff", n, 1e5, 0.5);
-  p.about = "the same with springs of 100 kN/m";
+  p.about =
+      "the same with structural and shear springs of 100 kN/m; bending springs of 200 N/m as "
+      "before";
+  p.question.scene.cloths[0].stiffness.bend = 200;
+  p.question.tolerance = 1e-5;
+  p.question.most_halvings = 2;
+  return p;
+}
+
+Problem board(int n) {
+  Problem p = hanging("board", n, 1e5, 0.5);
+  p.about = "the same with bending springs of 20 kN/m, too: waves of bending take part";
   p.question.tolerance = 1e-5;
   p.question.most_halvings = 2;
   return p;
@@ -88,6 +100,7 @@ const std::map<std::string, Kind>& kinds() {
   static const std::map<std::string, Kind> all{
       {"swing", {swing, {32, 64, 100, 316}}},
       {"stiff", {stiff, {32, 64, 100}}},
+      {"board", {board, {32}}},
       {"settle", {settle, {32}}},
       {"sheet", {sheet, {32, 64, 100}}},
       {"drape", {drape, {32}}},
@@ -169,7 +182,7 @@ std::vector<Problem> problems_named(const std::vector<std::string>& names, int s
 }
 
 std::vector<std::string> problem_names() {
-  return {"swing", "stiff", "settle", "sheet", "drape"};
+  return {"swing", "stiff", "board", "settle", "sheet", "drape"};
 }
 
 std::vector<Setting> settings_for(const Problem& problem, bool quick) {
@@ -196,7 +209,7 @@ std::vector<Setting> settings_for(const Problem& problem, bool quick) {
       for (int iterations : {4, 16})
         if (substeps <= 32 && !quick) add(all, p, substeps, iterations);
   }
-  if (problem.name == "stiff") {
+  if (problem.name == "stiff" || problem.name == "board") {
     add(all, kTethered, 3, 1);
     for (int substeps : ladder) add(all, kTethered, substeps, 1);
   }

@@ -236,16 +236,14 @@ TEST(LineRuns, PressedChainBucklesAndHangs) {
   });
 }
 
-// With so few substeps that 16 times as many are not enough, coloured sweeps take over.
+// With so few substeps that 16 times as many are not enough, coloured sweeps take over. What jitters within
+// all bounds is told by what drag should have taken.
 TEST(LineRuns, PressedChainHangsByOtherSweepsWithFewSubsteps) {
-  run_pressed_chains({1e3, 1e5, 1e7, 1e9}, {1, 2, 3},
-                     [](const Simulation& simulation, int order, int substeps) {
-                       EXPECT_LT(simulation.report().energy.kinetic, 2);
-                       if (order == 1 && substeps == 1) return;  // jitters within the bound
-                       EXPECT_TRUE(simulation.plan().fallback);
-                       EXPECT_LT(simulation.report().strain.max, 0.1);
-                       EXPECT_LT(simulation.report().energy.kinetic, 1e-3);
-                     });
+  run_pressed_chains({1e3, 1e5, 1e7, 1e9}, {1, 2, 3}, [](const Simulation& simulation, int, int) {
+    EXPECT_TRUE(simulation.plan().fallback);
+    EXPECT_LT(simulation.report().strain.max, 0.1);
+    EXPECT_LT(simulation.report().energy.kinetic, 1e-3);
+  });
 }
 
 // A run that goes back to an earlier moment begins with the sweeps that the scene asks for.

@@ -173,6 +173,31 @@ bool gained(const Scene& scene, Method method, const ClothStep& step, const Rows
   return inner > kMore * (before.kinetic + elastic(scene, method, step, x, dt)) + put_in;
 }
 
+Balance balance(const Scene& scene, Method method, const ClothStep& step, double dt) {
+  const Lattice& l = step.lattice();
+  const RowEnergy now = motion(scene, step, l.x, l.v);
+  return {now.kinetic + elastic(scene, method, step, l.x, dt), now.potential,
+          2 * step.cloth().drag * now.kinetic * scene.time.frame};
+}
+
+bool works(const Scene& scene, double from, double to) {
+  return fastest_drive(scene, from, to) > 0;
+}
+
+bool Upkeep::kept_up(const Balance& now) {
+  constexpr double kMore = 2;
+  const double all = now.inner + now.potential;
+  if (!known_ || all < least_) {
+    known_ = true;
+    least_ = all;
+    inner_ = now.inner;
+    lost_ = 0;
+    return false;
+  }
+  lost_ += now.lost;
+  return lost_ > kMore * inner_;
+}
+
 void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, double time,
                        double dt) {
   *this = {};

@@ -25,6 +25,32 @@ namespace weft::physics {
 bool gained(const Scene& scene, Method method, const ClothStep& step, const Rows& x, const Rows& v,
             double dt, double start, double end);
 
+// What a cloth holds at the end of a frame, as the method feels it, and what drag took of its motion in
+// it [J].
+struct Balance {
+  double inner = 0;      // motion and elastic energy
+  double potential = 0;  // of gravity
+  double lost = 0;
+};
+Balance balance(const Scene& scene, Method method, const ClothStep& step, double dt);
+
+// Whether paths or wind do work between two times.
+bool works(const Scene& scene, double from, double to);
+
+// Watches sheets that nothing drives: whether they keep energy that drag must have taken. Sweeps that
+// overshoot put in anew what it takes, frame by frame.
+class Upkeep {
+ public:
+  void restart() { known_ = false; }
+  // Counts one more frame; whether more than what moved at the lowest of all energies has been lost
+  // since, and the energy is no lower.
+  bool kept_up(const Balance& now);
+
+ private:
+  bool known_ = false;
+  double least_ = 0, inner_ = 0, lost_ = 0;  // J
+};
+
 class EnergyGuard {
  public:
   static constexpr double kBound = 4;

@@ -86,6 +86,7 @@ void Simulation::State::restore(const Moment& m) {
   }
   frame = std::llround(m.time / scene.time.frame);
   finer_ = 1;
+  upkeep_.restart();
   failed_by_hand_ = failed_by_itself_ = false;
   since_hand_ = kCalm;
   take_substeps(began_at_);

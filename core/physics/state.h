@@ -95,6 +95,7 @@ struct Simulation::State {
   std::vector<physics::Carry*> carried_;           // in the plan of each cloth; null while it rests
   int since_collision_ = 0, until_collision_ = 1;  // substeps
   physics::EnergyGuard guard_;
+  physics::Upkeep upkeep_;
   bool was_driven_ = false;  // in the frame before
   double limit_ = 0;         // s; the stability limit at the end of the last frame (explicit)
   int finer_ = 1;            // times as many substeps as are due, since a frame failed
@@ -130,7 +131,9 @@ struct Simulation::State {
   bool hand_has_passed() const;
   void begin_again();
   void go_on_as(Method as, const Solver& solver);
+  bool nothing_else_acts() const;
   bool overshot() const;
+  bool keeps_on();
   void calm();
   void fall_back(const std::string& note);
   void restart_stages();

@@ -145,7 +145,8 @@ bool Simulation::State::too_coarse() {
     if (springs) limit_ = stretched_limit();
     guard_.look(scene, cloths, driven());
     beyond_limit = springs && dt > limit_;
-    if (!beyond_limit && guard_.holds() && (!lines || finest() || !overshot())) return false;
+    const bool jitters = lines && ((!finest() && overshot()) || keeps_on());
+    if (!beyond_limit && guard_.holds() && !jitters) return false;
   }
   const std::string which = "frame " + std::to_string(frame + 1);
   const bool unresolved = springs && beyond_limit && kLimitShare * limit_ < kLeastSubstep;
@@ -225,13 +226,19 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
   plan_changed();
 }
 
+// Whether nothing but gravity and paths of pins can do work.
+bool Simulation::State::nothing_else_acts() const {
+  return !(grab_ || carried() || self_collision || blown() || !scene.colliders.empty());
+}
+
+// Squared lengths in those at rest: much, or so much that has doubled within the frame.
+constexpr float kStretched = 1.25f * 1.25f, kNoticed = 1.01f * 1.01f;
+
 // Whether line sweeps stretched a sheet by what gravity and pins on paths, where they alone do work,
 // cannot have put into this frame. A line is solved by one Newton step a substep, which overshoots
 // where much happens in one, as when a straight line is pressed together from its ends.
 bool Simulation::State::overshot() const {
-  // Squared lengths in those at rest: much, or so much that has doubled within the frame.
-  constexpr float kStretched = 1.25f * 1.25f, kNoticed = 1.01f * 1.01f;
-  if (grab_ || carried() || self_collision || blown() || !scene.colliders.empty()) return false;
+  if (!nothing_else_acts()) return false;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
     const ClothStep& step = *cloths[c];
@@ -247,6 +254,25 @@ bool Simulation::State::overshot() const {
       return true;
   }
   return false;
+}
+
+// Whether line sweeps keep much stretched sheets moving that drag should have slowed down.
+bool Simulation::State::keeps_on() {
+  const double start = double(frame) * scene.time.frame;
+  bool stretched = false;
+  Balance all;
+  if (nothing_else_acts() && !works(scene, start, start + scene.time.frame))
+    for (std::size_t c = 0; c < cloths.size(); ++c)
+      stretched |= !asleep(c) && greatest_stretch(*cloths[c], cloths[c]->lattice().x) > kStretched;
+  for (std::size_t c = 0; c < cloths.size() && stretched; ++c) {
+    const Balance one = balance(scene, method, *cloths[c], dt);
+    all.inner += one.inner;
+    all.potential += one.potential;
+    all.lost += one.lost;
+  }
+  if (stretched && !upkeep_.kept_up(all)) return false;
+  upkeep_.restart();
+  return stretched;
 }
 
 // Takes the energy off a frame that it cannot have.

@@ -20,6 +20,7 @@
 // goes on at the other, where the next begins, and all lines are equally long.
 #include "physics/kernels/line.h"
 
+#include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
@@ -81,8 +82,9 @@ WEFT_INLINE void store3_at(Row3 r, Place s, Wide3 v) {
   store_at(r.z, s, v.z);
 }
 
-// A block of kLanes lines on its way along the sheet.
-template <bool kLambda, bool kVelocity>
+// A block of kLanes lines on its way along the sheet. Half of a strip's lines, `kDivided`, draw their
+// roots by the divider, which needs time for the pivots too.
+template <bool kLambda, bool kVelocity, bool kDivided>
 class Block {
  public:
   Block(const LineStrip& strip, int offset)
@@ -185,8 +187,8 @@ class Block {
     const Wide w_far = load_at(p.w, there);
     const Wide3 e = far - x_;
     const Wide alpha = load(p.compliance + m * p.compliance_step + offset_);
-    const Wide squared = dot(e, e);
-    const Wide length = sqrt(squared);
+    const Wide squared = squared_length(e);
+    const Wide length = kDivided ? sqrt(squared) : squared * reciprocal_root(squared);
     const Wide coupling = w_ * dot(edge_, e);
     const Wide factor = coupling * reciprocal_;
     const Wide pivot = fnma(factor, coupling, (w_ + w_far + alpha) * squared);
@@ -253,11 +255,13 @@ int greatest(int a, int b) {
   return a > b ? a : b;
 }
 
-// One or two blocks of lines side by side.
-template <bool kLambda, bool kVelocity, int kBlocks>
+// One or two blocks of lines side by side. The second half of a strip's lines draws roots by dividing.
+template <bool kLambda, bool kVelocity, int kBlocks, bool kSecondHalf>
 void solve_blocks(const LineStrip& given, int first) {
+  constexpr bool kBDivides = kSecondHalf || (kBlocks == 2 && 2 * kLanes == kStripLines);
   const LineStrip p = given;  // a copy that no store can alias
-  Block<kLambda, kVelocity> a(p, first), b(p, first + (kBlocks - 1) * kLanes);
+  Block<kLambda, kVelocity, kSecondHalf> a(p, first);
+  Block<kLambda, kVelocity, kBDivides> b(p, first + (kBlocks - 1) * kLanes);
   const int constraints = p.particles - 1;
   a.begin();
   if constexpr (kBlocks == 2) b.begin();
@@ -299,9 +303,13 @@ template <bool kLambda, bool kVelocity>
 void solve(const LineStrip& p) {
   const int lines = least(kStripLines, p.columns - p.first);
   for (int first = 0; first < lines;) {
-    const bool two = kLanes >= 8 && lines - first > kLanes;
-    two ? solve_blocks<kLambda, kVelocity, 2>(p, first)
-        : solve_blocks<kLambda, kVelocity, 1>(p, first);
+    const bool two = kLanes >= 8 && lines - first > kLanes, second = first >= kStripLines / 2;
+    if (two)
+      second ? solve_blocks<kLambda, kVelocity, 2, true>(p, first)
+             : solve_blocks<kLambda, kVelocity, 2, false>(p, first);
+    else
+      second ? solve_blocks<kLambda, kVelocity, 1, true>(p, first)
+             : solve_blocks<kLambda, kVelocity, 1, false>(p, first);
     first += two ? 2 * kLanes : kLanes;
   }
 }

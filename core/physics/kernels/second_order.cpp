@@ -38,7 +38,7 @@ struct Slowed {
 // substep.
 WEFT_INLINE Wide3 gained(const SecondOrderRow& r, Wide3 x, WideInt free, WideInt euler, int i) {
   const Wide inverse_step = select(euler, wide(1 / r.dt), wide(1.5f / r.dt));
-  return load3(r.v, i) + (x - load3(r.predicted, i)) * select(free, inverse_step, Wide{});
+  return fma(x - load3(r.predicted, i), select(free, inverse_step, Wide{}), load3(r.v, i));
 }
 
 // Which kind the substep was its inverse masses tell.
@@ -59,31 +59,34 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
     const Wide mass = load(r.mass + i);
     const WideInt free = mass > 0.0f;
     Wide3 v;
-    WideInt smooth;
+    // Of the others that are free, too; those that are not are held in the end.
+    WideInt smooth = ~WideInt{};
     if constexpr (kKnown) {
       v = load3(r.v, i);
       smooth = known & free & equal(v, load3(r.v_end, i));
     } else {
       v = gained(r, x, free, was_euler(r, slowed, mass, i), i);
-      smooth = free;
     }
-    const Wide3 x_star = x + (x - load3(r.previous, i)) * wide(kThird);
-    const Wide3 v_star = v + (v - load3(r.v_before, i)) * wide(kThird);
-    const Wide step = select(smooth, wide(h2), wide(h));
-    const Wide slow = select(smooth, wide(slowed.smooth), wide(slowed.euler));
-    const Wide3 velocity = (select(smooth, v_star, v) + g * step) * slow;
+    const auto either = [&](auto if_smooth, auto if_euler) {
+      return kKnown ? select(smooth, if_smooth, if_euler) : if_smooth;
+    };
+    const Wide3 x_star = fma(x - load3(r.previous, i), wide(kThird), x);
+    const Wide3 v_star = fma(v - load3(r.v_before, i), wide(kThird), v);
+    const Wide step = either(wide(h2), wide(h));
+    const Wide slow = either(wide(slowed.smooth), wide(slowed.euler));
+    const Wide3 velocity = fma(g, step, either(v_star, v)) * slow;
     store3(r.previous, i, x);
     store3(r.v_before, i, v);
-    const Wide3 there = select(free, select(smooth, x_star, x) + velocity * step, x);
+    const Wide3 there = select(free, fma(velocity, step, either(x_star, x)), x);
     store3(r.x, i, there);
     if (r.from_positions) {
       store3(r.predicted, i, there);
       store3(r.v, i, select(free, velocity, v));
     } else {
       // Corrections will be added to v over ⅔h; an Euler step's belong over h.
-      store3(r.v, i, select(free, velocity * select(smooth, wide(1), wide(1.5f)), v));
+      store3(r.v, i, select(free, velocity * either(wide(1), wide(1.5f)), v));
     }
-    store(r.w + i, mass * select(smooth, wide(slowed.smooth), wide(slowed.euler * 2.25f)));
+    store(r.w + i, mass * either(wide(slowed.smooth), wide(slowed.euler * 2.25f)));
   }
 }
 

@@ -1,6 +1,7 @@
 // Tethers: a particle farther from its pin p than its rest distance r over the sheet is put back
 // onto that distance, x <- p + r (x - p)/|x - p| (Kim, Chentanez, Müller-Fischer 2012, "Long range
 // attachments"; pins do not move, so the particle takes the whole correction).
+#include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
 #include "physics/kernels/second_order.h"
 
@@ -15,16 +16,15 @@ void tethers(const TetherRow& r) {
     bool moved = false;
     for (int t = 0; t < r.count; ++t) {
       const Wide3 pin = load3(r.tethers[t].pin, i), e = x - pin;
-      const Wide reach = load(r.tethers[t].reach + i), squared = dot(e, e);
+      const Wide reach = load(r.tethers[t].reach + i), squared = squared_length(e);
       const WideInt beyond = squared > reach * reach;
       if (!any(beyond)) continue;
       moved = true;
-      const Wide scale = reach / select(beyond, sqrt(squared), wide(1));
-      x = select(beyond, pin + e * scale, x);
+      x = select(beyond, fma(e, reach * reciprocal_root(squared), pin), x);
     }
     if (!moved) continue;
     store3(r.x, i, x);
-    if (r.inverse_dt > 0) store3(r.v, i, load3(r.v, i) + (x - start) * wide(r.inverse_dt));
+    if (r.inverse_dt > 0) store3(r.v, i, fma(x - start, wide(r.inverse_dt), load3(r.v, i)));
   }
 }
 
