@@ -3,6 +3,7 @@
 // that a lane that leaks in from there shows.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -84,7 +85,7 @@ void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
 // Rows begin … end-1 of the patch with the six families of a plain cloth; given overlong, springs past
 // tear_length are told of.
 void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int begin, int end,
-                 float tear_length = 0, std::uint8_t* overlong = nullptr) {
+                 float tear_length = 0, std::uint8_t* overlong = nullptr, float alike = 0) {
   std::vector<SpringConstants> springs;
   for (int j = 0; j < kRows; ++j) {
     const std::pair<int, SpringConstants> of_each[kPlainFamilies] = {
@@ -100,6 +101,7 @@ void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int beg
   r.springs = springs.data();
   r.damped = damped;
   r.overlong = overlong;
+  r.alike = alike;
   r.advance = advance();
   k.spring_rows(r);
 }
@@ -364,6 +366,32 @@ TEST(Kernels, SpringsTellWhichRowsHaveOverlongOnes) {
   }
   EXPECT_GT(told, asked / 10);
   EXPECT_LT(told, asked - asked / 10);
+}
+
+TEST(Kernels, SpringsKnowRowsOfOneInverseMass) {
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+    if (!simd_available(simd)) continue;
+    for (int columns = 2; columns <= 70; ++columns)
+      for (const bool damped : {false, true}) {
+        Patch told(columns, 7.5f), untold(columns, 7.5f);
+        for (Patch* p : {&told, &untold}) {
+          p->weigh_alike();
+          for (int j = 0; j < kRows; ++j)
+            for (float* v : {p->v.row(j).x, p->v.row(j).y, p->v.row(j).z})
+              std::fill(v + columns, v + p->stride, 0.0f);
+        }
+        spring_rows(kernel_table(simd), told, damped, false, 0, kRows, 0, nullptr, 0.8f);
+        spring_rows(kernel_table(simd), untold, damped, false, 0, kRows);
+        bool numbers = true;
+        ASSERT_EQ(told.bits(numbers), untold.bits(numbers)) << simd_name(simd) << ", " << columns;
+        for (int j = 0; j < kRows; ++j)
+          for (int i = columns; i < told.stride; ++i)
+            for (int axis = 0; axis < 3; ++axis) {
+              ASSERT_EQ(told.v.at(axis, j, i), 0.0f) << "padding moves";
+              ASSERT_EQ(told.x.at(axis, j, i), 7.5f) << "padding moves";
+            }
+      }
+  }
 }
 
 // The bits above compare nothing if a kernel does nothing.

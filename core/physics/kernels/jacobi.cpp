@@ -23,6 +23,7 @@ struct JacobiLaw {
     // Two pinned ends of a rigid constraint have nothing to move.
     return select(inertia > 0.0f, fnma(wide(r.rest[F]), reciprocal, wide(1)) / inertia, Wide{});
   }
+  template <bool kLast>
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 sum) {
     const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
     const Wide3 change = sum * load(r.w + lane);

@@ -69,6 +69,7 @@ struct SpringRows : PlainRows {
   // Six for each row: (1,0) (0,1) (1,1) (-1,1) (2,0) (0,2); zero where row j+dj does not exist.
   const SpringConstants* springs;
   bool damped;  // whether springs have damping
+  float alike;  // inverse mass of every particle of rows begin … end-1, 0 where they differ [1/kg]
   // Of every row: set to 1 where a spring that is not torn is past its tear length at the start; null:
   // nobody asks.
   std::uint8_t* overlong;

@@ -13,7 +13,8 @@
 //                                                 its negative the far end
 //   Law::too_long<F>(rows, block, 1/length)       of kWatched laws: which are
 //   Law::tell(rows, row)                          that some of a row are, of those that are alive
-//   Law::finish(rows, block, sum)                 moves a block by the sum of its pulls
+//   Law::finish<kLast>(rows, block, sum)          moves a block by the sum of its pulls; kLast: lanes
+//                                                 past the row's last particle may be among it
 #pragma once
 
 #include <cstddef>
@@ -187,7 +188,7 @@ struct Pipeline {
     if constexpr (any_at(2)) end_root<at(2)>();
     if constexpr (any_at(3)) pull<at(3), kThatLast>(s, kOfB ? b : a);
     if constexpr (any_at(3) && at(3) == kDown2) {
-      Law::finish(s, kOfB ? b : a, own);
+      Law::template finish<kThatLast>(s, kOfB ? b : a, own);
       if constexpr (Law::kWatched && kThatLast)
         if (any(overlong)) {
           Law::tell(s, (kOfB ? b : a).constants / kFamilies);

@@ -68,8 +68,13 @@ WEFT_INLINE int padded(int count) {
 
 // c v + kick (f/m + g); nothing is added where the inverse mass w is 0, that of a pinned particle.
 WEFT_INLINE Wide3 moved(Wide3 v, Wide w, Wide3 f, const Advance& a) {
-  const Wide3 gained = fma(f, w * a.kick, wide3(a.gx, a.gy, a.gz));
-  return fma(v, wide(a.drag), select(w > 0.0f, gained, Wide3{}));
+  const WideInt free = w > 0.0f;
+  const Wide3 g = select(free, wide3(a.gx, a.gy, a.gz), Wide3{});
+  return fma(f, w * a.kick, fma(v, wide(a.drag), g));
+}
+// The same where all particles are free, with one inverse mass.
+WEFT_INLINE Wide3 moved(Wide3 v, float w, Wide3 f, const Advance& a) {
+  return fma(f, wide(w * a.kick), fma(v, wide(a.drag), wide3(a.gx, a.gy, a.gz)));
 }
 
 // v <- c v + kick (f/m + g), x <- x + dt v.

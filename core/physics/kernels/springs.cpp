@@ -13,7 +13,7 @@ namespace {
 
 enum class Tear { never, torn, watched };
 
-template <bool kDamped, Tear kTear>
+template <bool kDamped, Tear kTear, bool kAlike = false>
 struct SpringLaw {
   using Rows = SpringRows;
   static constexpr bool kRates = kDamped, kTorn = kTear != Tear::never,
@@ -30,10 +30,17 @@ struct SpringLaw {
     return reciprocal < r.springs[b.constants + F].taut;
   }
   WEFT_INLINE static void tell(const Rows& r, std::ptrdiff_t row) { r.overlong[row] = 1; }
+  template <bool kLast>
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 force) {
     const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
-    const Wide3 velocity =
-        moved(load_planes(r.v.x + lane, plane), load(r.w + lane), force, r.advance);
+    const Wide3 before = load_planes(r.v.x + lane, plane);
+    Wide3 velocity;
+    if constexpr (kAlike) {
+      velocity = moved(before, r.alike, force, r.advance);
+      if constexpr (kLast) velocity = select(lanes_below(r.columns - b.i), velocity, Wide3{});
+    } else {
+      velocity = moved(before, load(r.w + lane), force, r.advance);
+    }
     store_planes(r.v.x + lane, plane, velocity);
     store_planes(b.x, plane, fma(velocity, wide(r.advance.dt), load_planes(b.x, plane)));
   }
@@ -41,7 +48,9 @@ struct SpringLaw {
 
 template <bool kDamped>
 void spring_rows_of(const SpringRows& r) {
-  if (!r.alive[0]) return plain_rows<SpringLaw<kDamped, Tear::never>>(r);
+  if (!r.alive[0])
+    return r.alike > 0 ? plain_rows<SpringLaw<kDamped, Tear::never, true>>(r)
+                       : plain_rows<SpringLaw<kDamped, Tear::never>>(r);
   if (!r.overlong) return plain_rows<SpringLaw<kDamped, Tear::torn>>(r);
   plain_rows<SpringLaw<kDamped, Tear::watched>>(r);
 }
