@@ -21,14 +21,14 @@ struct BoxSurface {
     const Wide3 out{max(q.x, Wide{}), max(q.y, Wide{}), max(q.z, Wide{})};
     const Wide squared = dot(out, out);
     const WideInt outside = squared > kTinySquare;
-    const Wide length = select(outside, sqrt(squared), wide(1));
+    const Wide reciprocal = reciprocal_root(select(outside, squared, wide(1)));
     const Wide deepest = max(max(q.x, q.y), q.z);
     const WideInt by_x = q.x == deepest, by_y = ~by_x & (q.y == deepest);
     const Wide3 face{select(by_x, wide(1), Wide{}), select(by_y, wide(1), Wide{}),
                      select(by_x | by_y, Wide{}, wide(1))};
-    const Wide3 n = signed_as(select(outside, out * (1.0f / length), face), local);
-    return {select(outside, length, min(deepest, Wide{})) - radius,
-            axis[0] * n.x + axis[1] * n.y + axis[2] * n.z};
+    const Wide3 n = signed_as(select(outside, out * reciprocal, face), local);
+    return {select(outside, squared * reciprocal, min(deepest, Wide{})) - radius,
+            fma(axis[2], n.z, fma(axis[1], n.y, axis[0] * n.x))};
   }
   WEFT_INLINE static Wide3 signed_as(Wide3 n, Wide3 local) {
     return {select(local.x < 0.0f, -n.x, n.x), select(local.y < 0.0f, -n.y, n.y),
@@ -94,6 +94,13 @@ void move(Box& box, const Vec3& by) {
 
 Core core_of(const Box& box, const Vec3& p) {
   Core core{{}, box.rounding};
+  if (box.rotation == Vec3{}) {
+    for (int k = 0; k < 3; ++k) {
+      const double h = box.half[k] - box.rounding;
+      core.nearest[k] = std::clamp(p[k], -h, h);
+    }
+    return core;
+  }
   const std::array<Vec3, 3> axes = axes_of(box);
   for (int k = 0; k < 3; ++k) {
     const double h = box.half[k] - box.rounding;

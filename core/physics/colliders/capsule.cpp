@@ -15,12 +15,7 @@ struct CapsuleSurface {
         axis(wide3(c.axis[0], c.axis[1], c.axis[2])) {}
   WEFT_INLINE Surface at(Wide3 p) const {
     const Wide t = min(max(dot(p, axis) * inverse_square, Wide{}), wide(1));
-    const Wide3 d = p - axis * t;
-    const Wide squared = dot(d, d);
-    const WideInt apart = squared > kTinySquare;
-    const Wide length = select(apart, sqrt(squared), wide(1));
-    const Wide3 n = select(apart, d * (1.0f / length), wide3(0, 1, 0));
-    return {select(apart, length, Wide{}) - radius, n};
+    return around(fnma(axis, t, p), radius);
   }
   Wide radius, inverse_square;
   Wide3 axis;

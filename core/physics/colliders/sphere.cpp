@@ -9,14 +9,7 @@ namespace {
 struct SphereSurface {
   static constexpr bool kThin = true;
   explicit SphereSurface(const physics::ShapeConstants& c) : radius(wide(c.radius)) {}
-  WEFT_INLINE Surface at(Wide3 p) const {
-    const Wide squared = dot(p, p);
-    const WideInt apart = squared > kTinySquare;
-    const Wide length = select(apart, sqrt(squared), wide(1));
-    // At the very center no direction is better than another: up.
-    const Wide3 n = select(apart, p * (1.0f / length), wide3(0, 1, 0));
-    return {select(apart, length, Wide{}) - radius, n};
-  }
+  WEFT_INLINE Surface at(Wide3 p) const { return around(p, radius); }
   Wide radius;
 };
 

@@ -18,6 +18,7 @@
 // surface that it entered by.
 #pragma once
 
+#include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
@@ -29,6 +30,15 @@ struct Surface {
   Wide distance;
   Wide3 normal;
 };
+
+// `radius` from the point that d comes from; at the very point no direction is better than another: up.
+WEFT_INLINE Surface around(Wide3 d, Wide radius) {
+  const Wide squared = dot(d, d);
+  const WideInt apart = squared > kTinySquare;
+  const Wide reciprocal = reciprocal_root(select(apart, squared, wide(1)));
+  return {select(apart, squared * reciprocal, Wide{}) - radius,
+          select(apart, d * reciprocal, wide3(0, 1, 0))};
+}
 
 WEFT_INLINE WideInt free_lanes(const CollideRow& r, int i) {
   return (load(r.w + i) > 0.0f) & lanes_below(r.columns - i);
@@ -192,6 +202,36 @@ WEFT_INLINE Wide descend(const Shape& shape, const FacesRow& f, const Face& face
   return bound;
 }
 
+// The same for triangles of a row by number: the first (2a) or second (2a+1) beside lane a. They are few
+// and far between, so that they are brought together first.
+template <class Shape>
+WEFT_INLINE void descend_listed(const Shape& shape, const FacesRow& f, Wide3 place, int count,
+                                float enough) {
+  const ConstRow3 x[2] = {f.row.x, f.x_next};
+  for (int k = 0; k < count; k += kLanes) {
+    alignas(64) float corner[3][3][kLanes], bound[kLanes];
+    for (int l = 0; l < kLanes; ++l) {
+      const std::int32_t number = f.room[k + l < count ? k + l : k];
+      const int a = number / 2, second = number % 2;
+      const int row[3] = {0, second, 1}, lane[3] = {a + second, a + 1, a};
+      for (int n = 0; n < 3; ++n) {
+        corner[n][0][l] = x[row[n]].x[lane[n]];
+        corner[n][1][l] = x[row[n]].y[lane[n]];
+        corner[n][2][l] = x[row[n]].z[lane[n]];
+      }
+      bound[l] = f.bound[second][a];
+    }
+    const auto at = [&](int n) {
+      return Wide3{load(corner[n][0]), load(corner[n][1]), load(corner[n][2])} - place;
+    };
+    const Face face{at(0), at(1), at(2)};
+    const Wide raised =
+        descend(shape, f, face, lanes_below(count - k), load(bound), enough) - f.row.offset;
+    for (int l = 0; l < kLanes && k + l < count; ++l)
+      f.bound[f.room[k + l] % 2][f.room[k + l] / 2] = raised[l];
+  }
+}
+
 // The lanes one further on, the last of them from the block that follows.
 template <int... I>
 WEFT_INLINE Wide one_on(Wide here, Wide next, std::integer_sequence<int, I...>) {
@@ -220,6 +260,7 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
   const float far = r.offset + kFaceReach * f.edge + speed * r.dt;
   const auto surface = [&](ConstRow3 row, int i) { return shape.at(load3(row, i) - place); };
   Surface s00 = surface(r.x, 0), s01 = surface(f.x_next, 0);
+  int listed = 0;
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const bool last = i + kLanes >= padded(r.columns);
     const Surface n00 = last ? s00 : surface(r.x, i + kLanes);
@@ -238,13 +279,19 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
                              max(tangent_bound(s01, x01, one), tangent_bound(s10, x10, one)));
       const Wide second = max(tangent_bound(s11, x11, two),
                               max(tangent_bound(s01, x01, two), tangent_bound(s10, x10, two)));
-      bounds[0] = descend(shape, f, one, close, first, enough) - r.offset;
-      bounds[1] = descend(shape, f, two, close, second, enough) - r.offset;
+      const Wide tangents[2] = {first, second};
+      for (int t = 0; t < 2; ++t) {
+        const WideInt low = close & (tangents[t] < enough);
+        // Those that are low keep what they have for the descents.
+        bounds[t] = select(low, tangents[t], tangents[t] - r.offset);
+        listed += store_lanes(f.room + listed, low, (lane_numbers() + i) * 2 + t);
+      }
     }
     for (int t = 0; t < 2; ++t) store(f.bound[t] + i, select(close, bounds[t], wide(kFar)));
     s00 = n00;
     s01 = n01;
   }
+  descend_listed(shape, f, place, listed, enough);
   return {least(clearance), speed};
 }
 

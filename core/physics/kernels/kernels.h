@@ -210,6 +210,7 @@ struct FacesRow {
   float edge;       // m, longest of a flat triangle
   float slack;      // m; bounds above -slack need not be sharp
   float* bound[2];  // of the first and the second triangle of every square
+  std::int32_t* room;  // two for each lane of a row, and 16 more
 };
 
 // How a row lies to a collider.

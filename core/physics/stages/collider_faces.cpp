@@ -76,16 +76,17 @@ Deepest deepest_on(const Shape& shape, Corners c, double offset, double edge) {
   if (overlap.depth > 0)
     for (Vec3& x : c.x) x = plus(x, times(overlap.normal, overlap.depth + 1e-3 * edge));
   Deepest d{{1 / 3., 1 / 3., 1 / 3.}, {}};
-  double radius = 0;
+  Core core = core_of(shape, c.at(d.weights));
+  const double radius = core.radius;
   for (int n = 0; n < kProjections; ++n) {
-    const Core core = core_of(shape, c.at(d.weights));
-    radius = core.radius;
     const Weights before = d.weights;
     d.weights = nearest_on(c.x, core.nearest);
-    const Vec3 apart = minus(c.at(d.weights), core_of(shape, c.at(d.weights)).nearest);
+    const Vec3 here = c.at(d.weights);
+    core = core_of(shape, here);
+    const Vec3 apart = minus(here, core.nearest);
     const double square = dot(apart, apart);
     double least = 1e300;
-    for (const Vec3& x : c.x) least = std::min(least, dot(apart, minus(x, c.at(d.weights))));
+    for (const Vec3& x : c.x) least = std::min(least, dot(apart, minus(x, here)));
     const double gap = (square + least) / std::sqrt(std::max(square, 1e-300));
     if (overlap.depth <= 0 && gap >= radius + offset) return {d.weights, {offset, {}}};
     const Vec3 change = minus(d.weights, before);
@@ -160,8 +161,13 @@ class ColliderFaces final : public RowStage {
         upright_(collider.shape),
         edge_(edge_of(parts.cloth.grid)) {}
 
-  void reserve_slots(int slots) override { bound_ = Rows(slots, parts_.lattice.stride); }
-  std::size_t bytes() const override { return bound_.bytes(); }
+  void reserve_slots(int slots) override {
+    bound_ = Rows(slots, parts_.lattice.stride);
+    room_ = AlignedArray<std::int32_t>(room() * std::size_t(slots));
+  }
+  std::size_t bytes() const override {
+    return bound_.bytes() + room_.size() * sizeof(std::int32_t);
+  }
   double idle() const override { return far_.share(); }
   void follow(const Collider& collider) override {
     if (&collider != &collider_.collider()) return;
@@ -181,6 +187,7 @@ class ColliderFaces final : public RowStage {
     const Row3 bound = bound_.row(s.slot);
     f.bound[0] = bound.x;
     f.bound[1] = bound.y;
+    f.room = room_.data() + room() * std::size_t(s.slot);
     RowReach reach = parts_.kernels.below_faces[collider_.shape()](f);
     // The way of a substep matters only where it is long against the collider.
     const float way = reach.speed * f.row.dt;
@@ -262,12 +269,15 @@ class ColliderFaces final : public RowStage {
             plus(times(touch.normal, std::max(0.0, -into)), lost)};
   }
 
+  std::size_t room() const { return 2 * std::size_t(parts_.lattice.stride) + 16; }
+
   ClothParts parts_;
   MovingCollider collider_;
   OutOfReach far_;
   Upright upright_;
   double edge_;  // m, longest of a flat triangle
   Rows bound_;
+  AlignedArray<std::int32_t> room_;
 };
 
 }  // namespace
