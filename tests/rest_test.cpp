@@ -4,6 +4,7 @@
 
 #include "contact_scenes.h"
 #include "machines.h"
+#include "weft/read_scene.h"
 
 namespace weft {
 namespace {
@@ -190,6 +191,19 @@ TEST(Rest, AFallingSheetWakesTheOneBelow) {
   EXPECT_TRUE(slept);
   EXPECT_TRUE(woken);
   EXPECT_EQ(simulation.report().penetration.self_pairs, 0);
+}
+
+// Triangles over edges and corners hold still, too.
+TEST(Rest, ASheetDrapedOverABoxFallsAsleepAltogether) {
+  for (const int n : {30, 40}) {
+    Scene scene = read_scene("box_drape").scene;
+    scene.cloths[0].grid.nx = scene.cloths[0].grid.ny = n;
+    scene.solver.sleep = 0.01;
+    Simulation simulation(scene);
+    advance(simulation, 10);
+    EXPECT_EQ(asleep(simulation), n * n);
+    EXPECT_LT(simulation.report().penetration.collider_max, 1e-5);
+  }
 }
 
 TEST(Rest, SameBitsForAnyThreadsAndInstructionSet) {

@@ -18,7 +18,7 @@ constexpr double kSmall = 1.5;    // in diagonals of the mesh: a larger radius n
 constexpr int kProjections = 12;  // between triangle and core
 constexpr int kMostPlaces = 16;   // on the way of a fast collider
 constexpr double kSlack = 1e-3;   // of an edge: a triangle may be as deep
-constexpr double kDeep = 1e-2;    // of an edge: one that was as deep is looked at again at once
+constexpr double kDeep = 3e-2;    // of an edge: one that was as deep is looked at again at once
 constexpr int kTurns = 8;         // of one triangle in a substep
 constexpr double kMostLever = 2;  // the greatest share of a corner; 1.37 where masses are equal
 
@@ -225,14 +225,11 @@ class ColliderFaces final : public RowStage {
         [&](const auto& shape) {
           const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
           const int places = std::clamp(int(std::ceil(2 * longest / size)), 1, kMostPlaces);
-          if (places > 1) return first_touch(shape, r.offset, c, places, edge_);
-          // What is no deeper than may be need not be known sharply.
-          Touch found = first_touch(shape, r.offset - kSlack * edge_, c, 1, edge_);
-          found.depth += found.depth > 0 ? kSlack * edge_ : 0;
-          return found;
+          // It rests as deep as may be: lifted all the way it would fall back and ring.
+          return first_touch(shape, r.offset - kSlack * edge_, c, places, edge_);
         },
         upright_.shape);
-    if (touch.depth <= kSlack * edge_) return false;
+    if (touch.depth <= 0) return false;
     touch.normal = upright_.out_of(touch.normal);
     std::array<double, 3> share;
     double mobility = 0, greatest = 0;
