@@ -84,22 +84,7 @@ void add_strain(const Simulation::State& s, Report& r) {
 void add_self_contact(const Simulation::State& s, Report& r) {
   std::vector<Vec3> x;
   std::vector<Face> faces;
-  for (const auto& step : s.cloths) {
-    const Lattice& l = step->lattice();
-    const Topology* topology = step->topology();
-    if (topology && topology->version() > 0)
-      for (const auto& t : topology->triangles()) {
-        Face f;
-        for (int k = 0; k < 3; ++k)
-          f[k] = std::int32_t(x.size()) + std::int32_t(t[k]) / l.stride * l.columns +
-                 std::int32_t(t[k]) % l.stride;
-        faces.push_back(f);
-      }
-    else
-      add_faces(l.columns, l.rows, std::int32_t(x.size()), faces);
-    const std::vector<Vec3> of_cloth = gather(l, l.x);
-    x.insert(x.end(), of_cloth.begin(), of_cloth.end());
-  }
+  for (const auto& step : s.cloths) add_surface(*step, x, faces);
   r.penetration.crossings = count_crossings(x, faces);
   if (!s.self_collision) return;
   // By a search of its own: the one that runs must not notice.

@@ -99,6 +99,7 @@ void Simulation::State::build_cloths() {
   surface = self_collision
                 ? SurfaceContact::make(scene, self_collision->sheets(), kernel_table(simd))
                 : nullptr;
+  untangle = surface ? std::make_unique<Untangle>(scene, cloths) : nullptr;
   rest = Rest::make(scene, cloths, kernel_table(simd));
 }
 
@@ -140,6 +141,11 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
     notes.push_back(std::to_string(o.pairs) +
                     " pairs of particles start nearer than the thickness, by up to " +
                     number(o.deepest) + " m; they are pushed apart");
+  if (const std::size_t crossings = untangle && untangle->due() ? untangle->crossings() : 0;
+      crossings > 0)
+    notes.push_back(std::to_string(crossings) +
+                    " edges pass through triangles of cloth at the start; the smaller part of what "
+                    "meets is taken through, row by row");
 }
 
 // What a cloth's particles are accelerated by as they lie, bodies that they touch included [m/s²].
@@ -209,7 +215,7 @@ void Simulation::State::advance_frame() {
 void Simulation::State::run_frame() {
   if (rest && rest->all_asleep()) return;
   if (!self_collision) return run_substeps(0, substeps);
-  if (surface && !surface->valid()) surface->begin(threads);
+  if (surface) begin_surfaces();
   for (int s = 0; s < substeps;) {
     const int count = std::min(until_collision_ - since_collision_, substeps - s);
     run_substeps(s, count);
@@ -226,6 +232,16 @@ void Simulation::State::run_frame() {
     self_collision_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
     ++self_collision_runs;
   }
+}
+
+// Contact begins with what does not cross; what does comes apart first.
+void Simulation::State::begin_surfaces() {
+  if (untangle->due() || surface->forced()) {
+    untangle->pull_apart();
+    surface->leave_out(untangle->passing());
+    surface->restart();
+  }
+  if (!surface->valid()) surface->begin(threads);
 }
 
 Substeps Simulation::State::substeps_from(int first, int count) const {
@@ -269,6 +285,7 @@ void Simulation::State::set(std::span<const double> positions, const Vec3& from,
         }
   }
   restart_stages();
+  if (untangle) untangle->look();
   if (is_explicit(method)) {
     stagger(velocities.data());
     follow_stretch(stretched_limit());

@@ -11,6 +11,7 @@
 #include "physics/rest.h"
 #include "physics/self_collision/self_collision.h"
 #include "physics/self_collision/surface.h"
+#include "physics/self_collision/untangle.h"
 #include "physics/stability.h"
 #include "physics/stages/carry.h"
 #include "physics/stages/grab.h"
@@ -63,6 +64,7 @@ struct Simulation::State {
   std::vector<std::unique_ptr<physics::ClothStep>> cloths;
   std::unique_ptr<physics::SelfContact> self_collision;  // over all cloths; null when all are off
   std::unique_ptr<physics::SurfaceContact> surface;      // the same; null unless one asks for it
+  std::unique_ptr<physics::Untangle> untangle;           // the same
   std::unique_ptr<physics::Rest> rest;                   // null when nothing may sleep
   // Inverse masses of a cloth, of sleeping particles too.
   const physics::AlignedArray<float>& masses(std::size_t cloth) const {
@@ -141,6 +143,7 @@ struct Simulation::State {
   void touch(int cloth = -1);
   bool asleep(std::size_t cloth) const { return rest && rest->rows(cloth).empty(); }
   void run_frame();
+  void begin_surfaces();
   physics::ClothStep& step_with(int cloth, int i, int j);
   void plan_changed();
   physics::Substeps substeps_from(int first, int count) const;

@@ -1,8 +1,11 @@
-// Counts triangles that pass through each other (crossings.h).
+// Finds triangles that pass through each other (crossings.h).
 #include "physics/self_collision/crossings.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "physics/energy.h"
+#include "physics/plan.h"
 
 namespace weft::physics {
 namespace {
@@ -37,7 +40,7 @@ bool passes(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Ve
   return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
 }
 
-using Edge = std::array<std::int32_t, 2>;
+}  // namespace
 
 std::vector<Edge> edges_of(const std::vector<Face>& faces) {
   std::vector<Edge> edges;
@@ -48,6 +51,8 @@ std::vector<Edge> edges_of(const std::vector<Face>& faces) {
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
 }
+
+namespace {
 
 struct Entry {
   std::array<std::int32_t, 3> cell;
@@ -78,8 +83,25 @@ void add_faces(int columns, int rows, std::int32_t first, std::vector<Face>& fac
     }
 }
 
-std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces) {
-  const std::vector<Edge> edges = edges_of(faces);
+void add_surface(const ClothStep& step, std::vector<Vec3>& x, std::vector<Face>& faces) {
+  const Lattice& l = step.lattice();
+  const auto first = std::int32_t(x.size());
+  const Topology* const topology = step.topology();
+  if (topology && topology->version() > 0)
+    for (const auto& t : topology->triangles()) {
+      Face f;
+      for (int k = 0; k < 3; ++k)
+        f[k] = first + std::int32_t(t[k]) / l.stride * l.columns + std::int32_t(t[k]) % l.stride;
+      faces.push_back(f);
+    }
+  else
+    add_faces(l.columns, l.rows, first, faces);
+  const std::vector<Vec3> of_cloth = gather(l, l.x);
+  x.insert(x.end(), of_cloth.begin(), of_cloth.end());
+}
+
+std::vector<Crossing> find_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces,
+                                     const std::vector<Edge>& edges) {
   double size = 1e-9;
   for (const Edge& e : edges) {
     const Box b = box_of(x, e);
@@ -91,7 +113,7 @@ std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>
       entries.push_back({cell, std::int32_t(f)});
     });
   std::sort(entries.begin(), entries.end());
-  std::int64_t count = 0;
+  std::vector<Crossing> crossings;
   std::vector<std::int32_t> near;
   for (const Edge& e : edges) {
     near.clear();
@@ -105,11 +127,16 @@ std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>
     for (const std::int32_t f : near) {
       const Face& t = faces[std::size_t(f)];
       if (std::any_of(t.begin(), t.end(), [&](auto c) { return c == e[0] || c == e[1]; })) continue;
-      count += passes(x[std::size_t(e[0])], x[std::size_t(e[1])], x[std::size_t(t[0])],
-                      x[std::size_t(t[1])], x[std::size_t(t[2])]);
+      if (passes(x[std::size_t(e[0])], x[std::size_t(e[1])], x[std::size_t(t[0])],
+                 x[std::size_t(t[1])], x[std::size_t(t[2])]))
+        crossings.push_back({e, f});
     }
   }
-  return count;
+  return crossings;
+}
+
+std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces) {
+  return std::int64_t(find_crossings(x, faces, edges_of(faces)).size());
 }
 
 }  // namespace weft::physics

@@ -67,6 +67,7 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const KernelTable& ke
   vertices_.resize(n);
   origins_.resize(n);
   chosen_.resize(n);
+  passing_.resize(n);
   asked_.resize(n);
   sorted_.resize(n);
   boxes_.resize(n);
@@ -215,6 +216,7 @@ float NearSquares::list_whole(Spread& box, std::size_t& count) {
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i) {
         const std::size_t n = number(s, j, i);
+        if (has_corner_in(squares_[n], passing_)) continue;
         float middle[3];
         const float radius_squared = middle_of(n, middle);
         if (!(radius_squared <= most * most)) {

@@ -46,6 +46,8 @@ class NearSquares {
   const std::vector<Square>& squares() const { return squares_; }
   const std::vector<Vertex>& vertices() const { return vertices_; }
 
+  // Squares with a particle that is marked are left out from the next update of all on.
+  void leave_out(const std::vector<std::uint8_t>& marked) { passing_ = marked; }
   // Reads where all is now, and lists what is to be listed anew, or all. `frame`: a way that all have
   // gone together since the start [m], which is left out of account.
   void update(bool all, const float (&frame)[3], Threads& threads);
@@ -96,13 +98,14 @@ class NearSquares {
   std::vector<Origin> origins_;
   float gone_ = 0;  // m, the farthest
 
-  PairSearch search_;                 // among the middles of squares that are whole
-  std::vector<std::uint8_t> chosen_;  // vertices, and
-  std::vector<std::uint8_t> asked_;   // squares whose pairs are listed anew
-  std::vector<std::int32_t> sorted_;  // numbers of squares as sorted by the search
-  std::vector<SquareBox> boxes_;      // as sorted
-  std::vector<SquarePairs> found_;    // of every chunk of the search
-  std::vector<LeftOut> left_out_;     // squares that are torn
+  PairSearch search_;                  // among the middles of squares that are whole
+  std::vector<std::uint8_t> chosen_;   // vertices, and
+  std::vector<std::uint8_t> asked_;    // squares whose pairs are listed anew
+  std::vector<std::int32_t> sorted_;   // numbers of squares as sorted by the search
+  std::vector<SquareBox> boxes_;       // as sorted
+  std::vector<SquarePairs> found_;     // of every chunk of the search
+  std::vector<LeftOut> left_out_;      // squares that are torn
+  std::vector<std::uint8_t> passing_;  // vertices of squares that are left out
   std::vector<std::int32_t> joined_;
   SquarePairs listed_;
   // m: the least and the most that any pair is kept apart

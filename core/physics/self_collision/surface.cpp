@@ -247,7 +247,11 @@ void SurfaceContact::hold_row(std::size_t sheet, int row, const float (&drift)[3
     motion_.hot += hot;
     motion_.rate_squared = std::max(motion_.rate_squared, square(u) * inverse);
     motion_.share_squared = std::max(motion_.share_squared, far_squared * inverse);
-    if (!(far_squared > bound * bound) || !(l.w(row)[i] > 0)) continue;
+    if (!(far_squared > bound * bound)) continue;
+    if (!(l.w(row)[i] > 0)) {
+      forced_ = true;
+      continue;
+    }
     ++held_back_;
     const float far = std::sqrt(far_squared), back = bound / far;
     const float out = (u[0] * d[0] + u[1] * d[1] + u[2] * d[2]) / far;

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "physics/self_collision/near_squares.h"
@@ -31,7 +32,9 @@ class SurfaceContact {
   static std::unique_ptr<SurfaceContact> make(const Scene& scene, const std::vector<Sheet>& sheets,
                                               const KernelTable& kernels);
 
-  // Measures where all is now; nothing has crossed.
+  // Squares that have a marked particle are left alone from the next beginning on (untangle.h).
+  void leave_out(const std::vector<std::uint8_t>& marked) { near_.leave_out(marked); }
+  // Measures where all is now; nothing has crossed but what is left alone.
   void begin(Threads& threads);
   // Puts back what has moved too far in `since` substeps of dt, and measures what it is time for.
   // Returns after how many substeps to come again. Nothing has crossed afterwards.
@@ -39,6 +42,9 @@ class SurfaceContact {
 
   void restart() { valid_ = false; }
   bool valid() const { return valid_; }
+  // Whether something may have crossed all the same since last asked: a pinned particle that left its
+  // bound on a path.
+  bool forced() { return std::exchange(forced_, false); }
   // So far: times that all was measured, and a part, squares whose pairs were listed (in times all
   // of them), and vertices put back.
   std::int64_t measured() const { return measured_; }
@@ -89,6 +95,7 @@ class SurfaceContact {
   std::vector<float> near_squared_;  // and its distance from others, squared [m²]
   float floor_ = 0;                  // m: a distance that motion does not go below
   bool valid_ = false;
+  bool forced_ = false;
   int since_ = 0;  // substeps since all was measured
   std::int64_t measured_ = 0, measured_in_part_ = 0, held_back_ = 0;
 };
