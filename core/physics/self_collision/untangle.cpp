@@ -99,7 +99,9 @@ void Untangle::pull_apart() {
   since_ = crossings() > 0 ? since_ + 1 : 0;
   due_ = since_ > 0 && since_ <= kMostFrames;
   if (!due_) return;
-  for (int row = 0; row < kRowsAFrame && !crossings_.empty(); ++row) {
+  // Where all crosses all, which takes long to tell, one a frame.
+  const int rows = crossings_.size() > x_.size() ? 1 : kRowsAFrame;
+  for (int row = 0; row < rows && !crossings_.empty(); ++row) {
     choose_parts();
     move_ends();
     crossings_ = find_crossings(x_, faces_, edges_);
