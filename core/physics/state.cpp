@@ -141,11 +141,14 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
     notes.push_back(std::to_string(o.pairs) +
                     " pairs of particles start nearer than the thickness, by up to " +
                     number(o.deepest) + " m; they are pushed apart");
-  if (const std::size_t crossings = untangle && untangle->due() ? untangle->crossings() : 0;
+  const bool several = self_collision->sheets().size() > 1;  // one alone starts flat
+  if (const std::size_t crossings = several ? Untangle(scene, cloths).crossings() : 0;
       crossings > 0)
-    notes.push_back(std::to_string(crossings) +
-                    " edges pass through triangles of cloth at the start; the smaller part of what "
-                    "meets is taken through, row by row");
+    notes.push_back(
+        std::to_string(crossings) + " edges pass through triangles of cloth at the start; " +
+        (surface ? "the smaller part of what meets is taken through, row by row"
+                 : "their particles are kept apart on the sides where they are (mode surface takes "
+                   "such sheets apart)"));
 }
 
 // What a cloth's particles are accelerated by as they lie, bodies that they touch included [m/s²].
