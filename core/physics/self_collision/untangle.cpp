@@ -21,6 +21,9 @@ constexpr std::size_t kMostOfLine = 1 << 15;  // particles that are looked at
 constexpr double kPinned = 100, kPinnedEnd = 1e6;
 constexpr double kBeyond = 0.5;       // thicknesses that an end goes beyond the triangle
 constexpr double kMostOfEdge = 0.25;  // but no more than this part of its edge
+// Rings about what moves that come along, and the part that each goes of the way of the one within.
+constexpr int kRings = 3;
+constexpr double kAlong = 0.7;
 
 // Disjoint sets of the numbers from 0 (Tarjan 1975); the least of a set stands for it.
 class Sets {
@@ -277,7 +280,7 @@ Vec3 Untangle::to_neighbours(std::int32_t particle) const {
 }
 
 // Each moves by the mean of what the edges that it is an end of, and the triangles that it is a corner
-// of, ask for.
+// of, ask for. What lies about comes along.
 void Untangle::move_ends() {
   std::vector<Vec3> sum(x_.size(), Vec3{});
   std::vector<int> count(x_.size(), 0);
@@ -325,8 +328,28 @@ void Untangle::move_ends() {
           ask(f[c], times(direction, -theirs * share[c] / sum_of_squares));
     if (!held) ask(end, times(direction, sum_of_squares > 0 ? far - theirs : far));
   }
+  std::vector<std::uint8_t> moves(x_.size(), 0);
   for (std::size_t n = 0; n < x_.size(); ++n)
-    if (count[n] > 0) x_[n] = plus(x_[n], times(sum[n], 1.0 / count[n]));
+    if ((moves[n] = count[n] > 0)) sum[n] = times(sum[n], 1.0 / count[n]);
+  for (int ring = 0; ring < kRings; ++ring) take_along(sum, moves);
+  for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = plus(x_[n], sum[n]);
+}
+
+// What is next to what moves goes a part of the way with it.
+void Untangle::take_along(std::vector<Vec3>& way, std::vector<std::uint8_t>& moves) const {
+  std::vector<int> count(x_.size(), 0);
+  for (const auto& [a, b] : edges_)
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
+      const auto n = std::size_t(from), m = std::size_t(to);
+      if (!moves[n] || moves[m] || !(inverse_mass(to) > 0)) continue;
+      way[m] = plus(way[m], way[n]);
+      ++count[m];
+    }
+  for (std::size_t n = 0; n < x_.size(); ++n)
+    if (count[n] > 0) {
+      way[n] = times(way[n], kAlong / count[n]);
+      moves[n] = 1;
+    }
 }
 
 void Untangle::put_back() {

@@ -69,6 +69,7 @@ class Untangle {
   bool in_a_fold(std::int32_t a, std::int32_t b) const;
   Vec3 to_neighbours(std::int32_t particle) const;
   void move_ends();
+  void take_along(std::vector<Vec3>& way, std::vector<std::uint8_t>& moves) const;
   void put_back();
   const Vec3& at(std::int32_t particle) const { return x_[std::size_t(particle)]; }
   Vec3 normal_of(const Face& face) const;
