@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "physics/kernels/kernels.h"
@@ -86,5 +87,47 @@ struct Patch {
     return all;
   }
 };
+
+inline Advance advance() {
+  return {0.01f, 0.008f, 0.98f, 0.01f, -0.0981f, 0.003f};
+}
+
+inline void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
+  for (int f = 0; f < kPlainFamilies; ++f)
+    r.alive[f] = torn ? p.alive.data() + std::size_t(f * kRows) * p.stride : nullptr;
+  r.begin = begin;
+  r.end = end;
+  r.rows = kRows;
+  r.columns = p.columns;
+  r.stride = p.stride;
+  r.x = p.x.row(0);
+  r.v = p.v.row(0);
+  r.w = p.weights(0);
+  for (int n = 0; n < 3; ++n) r.carry[n] = p.carry.row(n);
+}
+
+// Rows begin … end-1 of the patch with the six families of a plain cloth; given overlong, springs past
+// tear_length are told of.
+inline void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int begin, int end,
+                        float tear_length = 0, std::uint8_t* overlong = nullptr, float alike = 0) {
+  std::vector<SpringConstants> springs;
+  for (int j = 0; j < kRows; ++j) {
+    const std::pair<int, SpringConstants> of_each[kPlainFamilies] = {
+        {0, {70, 63, 0.4f}}, {1, {71, 60, 0.4f}}, {1, {40, 57, 0.4f}},
+        {1, {41, 56, 0.4f}}, {0, {20, 41, 0.4f}}, {2, {20, 39, 0.4f}}};
+    for (const auto& [dj, c] : of_each) {
+      springs.push_back(j + dj < kRows ? c : SpringConstants{});
+      if (overlong && j + dj < kRows) springs.back().taut = 1 / tear_length;
+    }
+  }
+  SpringRows r{};
+  fill(r, p, begin, end, torn);
+  r.springs = springs.data();
+  r.damped = damped;
+  r.overlong = overlong;
+  r.alike = alike;
+  r.advance = advance();
+  k.spring_rows(r);
+}
 
 }  // namespace weft::physics

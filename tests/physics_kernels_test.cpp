@@ -25,10 +25,6 @@ struct Case {
   Call call;
 };
 
-Advance advance() {
-  return {0.01f, 0.008f, 0.98f, 0.01f, -0.0981f, 0.003f};
-}
-
 AdvanceRow advance_row(Patch& p) {
   return {p.columns,  p.x.row(0),        p.v.row(0), p.weights(0),
           p.f.row(0), p.previous.row(0), advance(),  100.0f};
@@ -67,44 +63,6 @@ constexpr std::array<std::array<int, 2>, 12> kOffsets{{{1, 0},
                                                        {-2, 2},
                                                        {7, 1},
                                                        {-16, 1}}};
-
-void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
-  for (int f = 0; f < kPlainFamilies; ++f)
-    r.alive[f] = torn ? p.alive.data() + std::size_t(f * kRows) * p.stride : nullptr;
-  r.begin = begin;
-  r.end = end;
-  r.rows = kRows;
-  r.columns = p.columns;
-  r.stride = p.stride;
-  r.x = p.x.row(0);
-  r.v = p.v.row(0);
-  r.w = p.weights(0);
-  for (int n = 0; n < 3; ++n) r.carry[n] = p.carry.row(n);
-}
-
-// Rows begin … end-1 of the patch with the six families of a plain cloth; given overlong, springs past
-// tear_length are told of.
-void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int begin, int end,
-                 float tear_length = 0, std::uint8_t* overlong = nullptr, float alike = 0) {
-  std::vector<SpringConstants> springs;
-  for (int j = 0; j < kRows; ++j) {
-    const std::pair<int, SpringConstants> of_each[kPlainFamilies] = {
-        {0, {70, 63, 0.4f}}, {1, {71, 60, 0.4f}}, {1, {40, 57, 0.4f}},
-        {1, {41, 56, 0.4f}}, {0, {20, 41, 0.4f}}, {2, {20, 39, 0.4f}}};
-    for (const auto& [dj, c] : of_each) {
-      springs.push_back(j + dj < kRows ? c : SpringConstants{});
-      if (overlong && j + dj < kRows) springs.back().taut = 1 / tear_length;
-    }
-  }
-  SpringRows r{};
-  fill(r, p, begin, end, torn);
-  r.springs = springs.data();
-  r.damped = damped;
-  r.overlong = overlong;
-  r.alike = alike;
-  r.advance = advance();
-  k.spring_rows(r);
-}
 
 // A Jacobi sweep over rows begin … end-1, rigid or compliant.
 void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, bool torn, int begin,
@@ -327,72 +285,6 @@ TEST_P(WideKernels, EqualTheScalarOnesBitForBit) {
 
 INSTANTIATE_TEST_SUITE_P(, WideKernels, testing::Values(Simd::sse2, Simd::avx2, Simd::avx512),
                          [](const auto& test) { return simd_name(test.param); });
-
-// Whether row j of the patch has a spring that is not torn and longer than `length`.
-bool has_longer(const Patch& p, int j, double length) {
-  const int offsets[kPlainFamilies][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}, {0, 2}};
-  for (int f = 0; f < kPlainFamilies; ++f) {
-    const auto [di, dj] = offsets[f];
-    for (int a = 0; a + std::abs(di) < p.columns && j + dj < kRows; ++a) {
-      const int near = a + std::max(0, -di), far = near + di;
-      double square = 0;
-      for (int axis = 0; axis < 3; ++axis)
-        square += std::pow(double(p.x.at(axis, j + dj, far)) - p.x.at(axis, j, near), 2);
-      if (p.alive[std::size_t(f * kRows + j) * p.stride + a] && std::sqrt(square) > length)
-        return true;
-    }
-  }
-  return false;
-}
-
-TEST(Kernels, SpringsTellWhichRowsHaveOverlongOnes) {
-  int told = 0, asked = 0;
-  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
-    if (!simd_available(simd)) continue;
-    for (int columns = 2; columns <= 70; ++columns)
-      for (const float length : {2.0f, 3.0f, 3.5f, 4.0f})
-        for (const bool damped : {false, true}) {
-          const Patch before(columns, 7.5f);
-          Patch patch(columns, 7.5f);
-          std::uint8_t overlong[kRows] = {};
-          spring_rows(kernel_table(simd), patch, damped, true, 0, kRows, length, overlong);
-          for (int j = 0; j < kRows; ++j) {
-            ASSERT_EQ(bool(overlong[j]), has_longer(before, j, length))
-                << simd_name(simd) << ", " << columns << " columns, row " << j << ", " << length;
-            told += overlong[j];
-            ++asked;
-          }
-        }
-  }
-  EXPECT_GT(told, asked / 10);
-  EXPECT_LT(told, asked - asked / 10);
-}
-
-TEST(Kernels, SpringsKnowRowsOfOneInverseMass) {
-  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
-    if (!simd_available(simd)) continue;
-    for (int columns = 2; columns <= 70; ++columns)
-      for (const bool damped : {false, true}) {
-        Patch told(columns, 7.5f), untold(columns, 7.5f);
-        for (Patch* p : {&told, &untold}) {
-          p->weigh_alike();
-          for (int j = 0; j < kRows; ++j)
-            for (float* v : {p->v.row(j).x, p->v.row(j).y, p->v.row(j).z})
-              std::fill(v + columns, v + p->stride, 0.0f);
-        }
-        spring_rows(kernel_table(simd), told, damped, false, 0, kRows, 0, nullptr, 0.8f);
-        spring_rows(kernel_table(simd), untold, damped, false, 0, kRows);
-        bool numbers = true;
-        ASSERT_EQ(told.bits(numbers), untold.bits(numbers)) << simd_name(simd) << ", " << columns;
-        for (int j = 0; j < kRows; ++j)
-          for (int i = columns; i < told.stride; ++i)
-            for (int axis = 0; axis < 3; ++axis) {
-              ASSERT_EQ(told.v.at(axis, j, i), 0.0f) << "padding moves";
-              ASSERT_EQ(told.x.at(axis, j, i), 7.5f) << "padding moves";
-            }
-      }
-  }
-}
 
 // The bits above compare nothing if a kernel does nothing.
 TEST(Kernels, EachChangesSomething) {

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "machines.h"
+#include "physics/plan.h"
 #include "physics/random.h"
+#include "physics/self_collision/untangle.h"
 #include "sheets.h"
 
 namespace weft {
@@ -94,6 +97,29 @@ TEST(Untangle, NothingIsSaidOrMovedWhereNothingCrosses) {
   EXPECT_FALSE(told(simulation, "pass through"));
   advance(simulation, 0.5);
   EXPECT_LT(simulation.report().energy.kinetic, 1e-6);
+}
+
+// Nor are sheets looked at that lie on one side of each other: beside, above, or aslant.
+TEST(Untangle, FlatSheetsThatCannotCrossAreNotSearched) {
+  const auto due = [](Scene scene) {
+    std::vector<std::unique_ptr<physics::ClothStep>> cloths;
+    for (int c = 0; c < int(scene.cloths.size()); ++c)
+      cloths.push_back(std::make_unique<physics::ClothStep>(scene, c, Method::spring, 0,
+                                                            physics::kernel_table(Simd::scalar)));
+    return physics::Untangle(scene, cloths).due();
+  };
+  Scene scene = upright(20);
+  EXPECT_TRUE(due(scene));
+  scene.cloths[1].grid.origin[1] = 0.05;
+  EXPECT_FALSE(due(scene));
+  scene.cloths[1].grid.jitter = 0.1;
+  EXPECT_TRUE(due(scene));
+  scene.cloths[1].self_collision.mode = SelfCollisionMode::off;
+  EXPECT_FALSE(due(scene));
+  scene.cloths[0].pins.push_back({0, 0, {{0, {0, 0, 0}}, {1, {0, 1, 0}}}});
+  EXPECT_FALSE(due(scene));
+  scene.cloths[0].pins[0].keys[0].position[0] = 0.3;  // starts elsewhere on the sheet
+  EXPECT_TRUE(due(scene));
 }
 
 // Two to four sheets, anyhow in each other, of springs and of constraints.

@@ -99,7 +99,7 @@ void Simulation::State::build_cloths() {
   surface = self_collision
                 ? SurfaceContact::make(scene, self_collision->sheets(), kernel_table(simd))
                 : nullptr;
-  untangle = surface ? std::make_unique<Untangle>(scene, cloths) : nullptr;
+  untangle = self_collision ? std::make_unique<Untangle>(scene, cloths) : nullptr;
   rest = Rest::make(scene, cloths, kernel_table(simd));
 }
 
@@ -141,9 +141,7 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
     notes.push_back(std::to_string(o.pairs) +
                     " pairs of particles start nearer than the thickness, by up to " +
                     number(o.deepest) + " m; they are pushed apart");
-  const bool several = self_collision->sheets().size() > 1;  // one alone starts flat
-  if (const std::size_t crossings = several ? Untangle(scene, cloths).crossings() : 0;
-      crossings > 0)
+  if (const std::size_t crossings = untangle->due() ? untangle->crossings() : 0; crossings > 0)
     notes.push_back(
         std::to_string(crossings) + " edges pass through triangles of cloth at the start; " +
         (surface ? "the smaller part of what meets is taken through, row by row"

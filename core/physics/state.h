@@ -64,7 +64,7 @@ struct Simulation::State {
   std::vector<std::unique_ptr<physics::ClothStep>> cloths;
   std::unique_ptr<physics::SelfContact> self_collision;  // over all cloths; null when all are off
   std::unique_ptr<physics::SurfaceContact> surface;      // the same; null unless one asks for it
-  std::unique_ptr<physics::Untangle> untangle;           // the same
+  std::unique_ptr<physics::Untangle> untangle;           // null when self_collision is
   std::unique_ptr<physics::Rest> rest;                   // null when nothing may sleep
   // Inverse masses of a cloth, of sleeping particles too.
   const physics::AlignedArray<float>& masses(std::size_t cloth) const {

@@ -207,9 +207,9 @@ struct CollideRow {
 struct FacesRow {
   CollideRow row;
   ConstRow3 x_next, v_next;
-  float edge;       // m, longest of a flat triangle
-  float slack;      // m; bounds above -slack need not be sharp
-  float* bound[2];  // of the first and the second triangle of every square
+  float edge;          // m, longest of a flat triangle
+  float slack;         // m; bounds above -slack need not be sharp
+  float* bound[2];     // of the first and the second triangle of every square
   std::int32_t* room;  // two for each lane of a row, and 16 more
 };
 

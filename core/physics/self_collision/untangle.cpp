@@ -19,6 +19,7 @@ constexpr int kFold = 4;  // columns or rows: what is nearer on a sheet crosses 
 constexpr std::size_t kMostOfLine = 1 << 15;  // particles that are looked at
 // Times the area that it has: of a pinned particle, and of one that is an end of a crossing edge, too.
 constexpr double kPinned = 100, kPinnedEnd = 1e6;
+constexpr double kOnGrid = 1e-3;      // spacings that a pin may start off the grid of a flat sheet
 constexpr double kBeyond = 0.5;       // thicknesses that an end goes beyond the triangle
 constexpr double kMostOfEdge = 0.25;  // but no more than this part of its edge
 // Rings about what moves that come along, and the part that each goes of the way of the one within.
@@ -48,6 +49,36 @@ class Sets {
   std::vector<std::int32_t> parent_;
 };
 
+Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return cross(minus(b, a), minus(c, a));
+}
+
+// Whether all of a sheet starts on its grid, but for the jitter.
+bool starts_flat(const Cloth& cloth) {
+  const Grid& g = cloth.grid;
+  return std::all_of(cloth.pins.begin(), cloth.pins.end(), [&](const Pin& p) {
+    if (p.keys.empty()) return true;
+    const Vec3 place = plus(
+        g.origin, plus(times(g.u, p.i / double(g.nx - 1)), times(g.v, p.j / double(g.ny - 1))));
+    const Vec3 off = minus(p.keys.front().position, place);
+    return std::sqrt(dot(off, off)) < kOnGrid * std::min(spacing_u(g), spacing_v(g));
+  });
+}
+
+// Whether flat sheet a lies on one side of flat sheet b's plane.
+bool on_one_side(const Grid& a, const Grid& b) {
+  const Vec3 normal = cross(b.u, b.v);
+  const double margin = (a.jitter + b.jitter) * std::sqrt(dot(normal, normal));
+  bool above = true, below = true;
+  for (const Vec3& corner :
+       {a.origin, plus(a.origin, a.u), plus(a.origin, a.v), plus(a.origin, plus(a.u, a.v))}) {
+    const double height = dot(normal, minus(corner, b.origin));
+    above &= height > margin;
+    below &= height < -margin;
+  }
+  return above || below;
+}
+
 }  // namespace
 
 Untangle::Untangle(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths) {
@@ -61,7 +92,7 @@ Untangle::Untangle(const Scene& scene, const std::vector<std::unique_ptr<ClothSt
     count += std::size_t(l.columns) * std::size_t(l.rows);
   }
   passing_.resize(count);
-  due_ = sheets_.size() > 1;
+  due_ = may_cross(scene);
 }
 
 const Untangle::Sheet& Untangle::sheet_of(std::int32_t particle) const {
@@ -78,8 +109,17 @@ double Untangle::inverse_mass(std::int32_t particle) const {
   return double(l.w(n / l.columns, n % l.columns));
 }
 
-Vec3 Untangle::normal_of(const Face& f) const {
-  return cross(minus(at(f[1]), at(f[0])), minus(at(f[2]), at(f[0])));
+// A flat sheet does not cross itself, nor one that lies on one side of it.
+bool Untangle::may_cross(const Scene& scene) const {
+  std::vector<const Cloth*> cloths;
+  for (const Cloth& c : scene.cloths)
+    if (c.self_collision.mode != SelfCollisionMode::off) cloths.push_back(&c);
+  for (const Cloth* a : cloths) {
+    if (!starts_flat(*a)) return true;
+    for (const Cloth* b : cloths)
+      if (a < b && !on_one_side(a->grid, b->grid) && !on_one_side(b->grid, a->grid)) return true;
+  }
+  return false;
 }
 
 bool Untangle::passes(std::int32_t particle, std::int32_t line) const {
@@ -122,9 +162,7 @@ void Untangle::find_lines() {
   std::vector<std::int32_t> by_face(crossings_.size());
   std::iota(by_face.begin(), by_face.end(), 0);
   const auto crossing = [&](std::int32_t k) { return crossings_[std::size_t(k)]; };
-  std::stable_sort(by_face.begin(), by_face.end(), [&](std::int32_t a, std::int32_t b) {
-    return crossing(a).face < crossing(b).face;
-  });
+  std::ranges::stable_sort(by_face, {}, [&](std::int32_t k) { return crossing(k).face; });
   for (auto a = by_face.begin(); a != by_face.end(); ++a)
     for (auto b = a + 1; b != by_face.end() && crossing(*b).face == crossing(*a).face; ++b)
       if (share(crossing(*a).edge, crossing(*b).edge)) lines.join(*a, *b);
@@ -134,8 +172,7 @@ void Untangle::find_lines() {
     for (int side = 0; side < 3; ++side) {
       const std::int32_t a = f[side], b = f[(side + 1) % 3];
       const Edge edge{std::min(a, b), std::max(a, b)};
-      for (auto other = std::lower_bound(crossings_.begin(), crossings_.end(), edge,
-                                         [](const Crossing&l, const Edge&e) { return l.edge < e; });
+      for (auto other = std::ranges::lower_bound(crossings_, edge, {}, &Crossing::edge);
            other != crossings_.end() && other->edge == edge; ++other) {
         const Face& through = faces_[std::size_t(other->face)];
         const auto has = [&](std::int32_t n) {
@@ -155,16 +192,14 @@ void Untangle::list_ends() {
   ends_.clear();
   for (std::size_t k = 0; k < crossings_.size(); ++k) {
     const Face& f = faces_[std::size_t(crossings_[k].face)];
-    const Vec3 normal = normal_of(f);
+    const Vec3 normal = normal_of(at(f[0]), at(f[1]), at(f[2]));
     for (const std::int32_t end : crossings_[k].edge)
       ends_.push_back({end, line_[k], dot(normal, minus(at(end), at(f[0]))) > 0, 0, false});
   }
   const auto place = [](const End& e) { return std::pair(e.particle, e.line); };
-  std::stable_sort(ends_.begin(), ends_.end(),
-                   [&](const End& a, const End& b) { return place(a) < place(b); });
-  ends_.erase(std::unique(ends_.begin(), ends_.end(),
-                          [&](const End& a, const End& b) { return place(a) == place(b); }),
-              ends_.end());
+  std::ranges::stable_sort(ends_, {}, place);
+  const auto repeated = std::ranges::unique(ends_, {}, place);
+  ends_.erase(repeated.begin(), repeated.end());
 }
 
 // Of every line, the part that is least.
@@ -187,14 +222,13 @@ void Untangle::choose_parts() {
   list_neighbours();
   std::vector<std::int32_t> order(ends_.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return ends_[std::size_t(a)].line < ends_[std::size_t(b)].line;
-  });
+  const auto line_of = [&](std::int32_t n) { return ends_[std::size_t(n)].line; };
+  std::ranges::stable_sort(order, {}, line_of);
   part_.assign(x_.size(), -1);
   for (auto begin = order.begin(); begin != order.end();) {
-    const std::int32_t line = ends_[std::size_t(*begin)].line;
-    const auto end = std::find_if(
-        begin, order.end(), [&](std::int32_t n) { return ends_[std::size_t(n)].line != line; });
+    const std::int32_t line = line_of(*begin);
+    const auto end =
+        std::find_if(begin, order.end(), [&](std::int32_t n) { return line_of(n) != line; });
     choose_part({begin, end});
     begin = end;
   }
@@ -241,9 +275,7 @@ double Untangle::area(std::int32_t particle, double pinned) const {
 }
 
 std::size_t Untangle::first_end(std::int32_t particle) const {
-  return std::size_t(std::lower_bound(ends_.begin(), ends_.end(), particle,
-                                      [](const End& e, std::int32_t n) { return e.particle < n; }) -
-                     ends_.begin());
+  return std::size_t(std::ranges::lower_bound(ends_, particle, {}, &End::particle) - ends_.begin());
 }
 
 // By edges that do not cross.
@@ -282,73 +314,67 @@ Vec3 Untangle::to_neighbours(std::int32_t particle) const {
 // Each moves by the mean of what the edges that it is an end of, and the triangles that it is a corner
 // of, ask for. What lies about comes along.
 void Untangle::move_ends() {
-  std::vector<Vec3> sum(x_.size(), Vec3{});
-  std::vector<int> count(x_.size(), 0);
-  const auto ask = [&](std::int32_t n, const Vec3& by) {
-    sum[std::size_t(n)] = plus(sum[std::size_t(n)], by);
-    ++count[std::size_t(n)];
-  };
+  Moves m{std::vector<Vec3>(x_.size(), Vec3{}), std::vector<int>(x_.size(), 0)};
   for (std::size_t k = 0; k < crossings_.size(); ++k) {
-    const Edge& e = crossings_[k].edge;
+    const auto [a, b] = crossings_[k].edge;
     const Face& f = faces_[std::size_t(crossings_[k].face)];
-    if (in_a_fold(e[0], f[0])) {
-      for (const std::int32_t n : {e[0], e[1], f[0], f[1], f[2]}) ask(n, to_neighbours(n));
+    if (in_a_fold(a, f[0])) {
+      for (const std::int32_t n : {a, b, f[0], f[1], f[2]}) m.ask(n, to_neighbours(n));
       continue;
     }
-    const bool first = passes(e[0], line_[k]);
-    if (first == passes(e[1], line_[k])) continue;
-    const std::int32_t end = e[first ? 0 : 1], other = e[first ? 1 : 0];
-    const Vec3 normal = normal_of(f);
-    const double area = std::sqrt(dot(normal, normal));
-    const Vec3 edge = minus(at(other), at(end));
-    // Where the edge passes, by its length and by the triangle's corners.
-    const double along = dot(normal, minus(at(f[0]), at(end))) / dot(normal, edge);
-    if (!(area > 0) || !(along > 0 && along < 1)) continue;
-    const Vec3 place = plus(at(end), times(edge, along));
-    std::array<double, 3> share;
-    for (std::size_t c = 0; c < 3; ++c)
-      share[c] = std::max(0.0, dot(normal, cross(minus(at(f[(c + 1) % 3]), place),
-                                                 minus(at(f[(c + 2) % 3]), place)))) /
-                 (area * area);
-    // Towards the other end, as far as the triangle and then some.
-    const Vec3 direction = times(normal, (dot(normal, edge) > 0 ? 1 : -1) / area);
-    const double length = std::sqrt(dot(edge, edge));
-    const double beyond = std::min(kBeyond * sheet_of(end).thickness, kMostOfEdge * length);
-    const double far = along * dot(direction, edge) + beyond;
-    // By half each, but triangles by no more than a part of their size.
-    const bool held = !(inverse_mass(end) > 0);
-    const double most = kMostOfEdge * std::sqrt(sheet_of(f[0]).area);
-    const double theirs = held ? far : std::min(0.5 * far, most);
-    double sum_of_squares = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      if (inverse_mass(f[c]) > 0) sum_of_squares += share[c] * share[c];
-    if (sum_of_squares > 0)
-      for (std::size_t c = 0; c < 3; ++c)
-        if (inverse_mass(f[c]) > 0)
-          ask(f[c], times(direction, -theirs * share[c] / sum_of_squares));
-    if (!held) ask(end, times(direction, sum_of_squares > 0 ? far - theirs : far));
+    const bool passes_a = passes(a, line_[k]), passes_b = passes(b, line_[k]);
+    if (passes_a && !passes_b) take_through(a, b, f, m);
+    if (passes_b && !passes_a) take_through(b, a, f, m);
   }
-  std::vector<std::uint8_t> moves(x_.size(), 0);
   for (std::size_t n = 0; n < x_.size(); ++n)
-    if ((moves[n] = count[n] > 0)) sum[n] = times(sum[n], 1.0 / count[n]);
-  for (int ring = 0; ring < kRings; ++ring) take_along(sum, moves);
-  for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = plus(x_[n], sum[n]);
+    if (m.asked[n] > 0) m.way[n] = times(m.way[n], 1.0 / m.asked[n]);
+  for (int ring = 0; ring < kRings; ++ring) take_along(m);
+  for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = plus(x_[n], m.way[n]);
+}
+
+// An edge's end goes towards the other, as far as the triangle between them and then some: half the way
+// itself, and half the triangle comes to meet it, but by no more than a part of its size.
+void Untangle::take_through(std::int32_t end, std::int32_t other, const Face& f, Moves& m) const {
+  const Vec3 normal = normal_of(at(f[0]), at(f[1]), at(f[2])), edge = minus(at(other), at(end));
+  const double area = std::sqrt(dot(normal, normal));
+  // Where the edge passes, by its length and by the triangle's corners.
+  const double along = dot(normal, minus(at(f[0]), at(end))) / dot(normal, edge);
+  if (!(area > 0) || !(along > 0 && along < 1)) return;
+  const Vec3 place = plus(at(end), times(edge, along));
+  std::array<double, 3> share{};
+  double sum_of_squares = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (!(inverse_mass(f[c]) > 0)) continue;
+    const Vec3 across = normal_of(place, at(f[(c + 1) % 3]), at(f[(c + 2) % 3]));
+    share[c] = std::max(0.0, dot(normal, across)) / (area * area);
+    sum_of_squares += share[c] * share[c];
+  }
+  const Vec3 direction = times(normal, (dot(normal, edge) > 0 ? 1 : -1) / area);
+  const double beyond =
+      std::min(kBeyond * sheet_of(end).thickness, kMostOfEdge * std::sqrt(dot(edge, edge)));
+  const double far = along * dot(direction, edge) + beyond;
+  const bool held = !(inverse_mass(end) > 0), triangle_held = !(sum_of_squares > 0);
+  const double most = kMostOfEdge * std::sqrt(sheet_of(f[0]).area);
+  const double theirs = triangle_held ? 0 : held ? far : std::min(0.5 * far, most);
+  for (std::size_t c = 0; c < 3; ++c)
+    if (share[c] > 0) m.ask(f[c], times(direction, -theirs * share[c] / sum_of_squares));
+  if (!held) m.ask(end, times(direction, far - theirs));
 }
 
 // What is next to what moves goes a part of the way with it.
-void Untangle::take_along(std::vector<Vec3>& way, std::vector<std::uint8_t>& moves) const {
+void Untangle::take_along(Moves& m) const {
   std::vector<int> count(x_.size(), 0);
   for (const auto& [a, b] : edges_)
     for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
-      const auto n = std::size_t(from), m = std::size_t(to);
-      if (!moves[n] || moves[m] || !(inverse_mass(to) > 0)) continue;
-      way[m] = plus(way[m], way[n]);
-      ++count[m];
+      const auto n = std::size_t(from), next = std::size_t(to);
+      if (m.asked[n] == 0 || m.asked[next] > 0 || !(inverse_mass(to) > 0)) continue;
+      m.way[next] = plus(m.way[next], m.way[n]);
+      ++count[next];
     }
   for (std::size_t n = 0; n < x_.size(); ++n)
     if (count[n] > 0) {
-      way[n] = times(way[n], kAlong / count[n]);
-      moves[n] = 1;
+      m.way[n] = times(m.way[n], kAlong / count[n]);
+      m.asked[n] = 1;
     }
 }
 

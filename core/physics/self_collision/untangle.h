@@ -34,7 +34,7 @@ class Untangle {
     due_ = true;
     since_ = 0;
   }
-  // At first, where there is more than one sheet: one alone starts flat.
+  // At first, where sheets may cross as the scene puts them.
   bool due() const { return due_; }
   // Moves a few rows of what has to pass; nothing is due any more when nothing crosses, or when that
   // has gone on for long: pins may hold what cannot come apart.
@@ -58,6 +58,18 @@ class Untangle {
     bool passes;
   };
 
+  // Of every particle: sums of ways that it is asked to go [m], and of how many.
+  struct Moves {
+    std::vector<Vec3> way;
+    std::vector<int> asked;
+    void ask(std::int32_t particle, const Vec3& by) {
+      Vec3& sum = way[std::size_t(particle)];
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += by[k];
+      ++asked[std::size_t(particle)];
+    }
+  };
+
+  bool may_cross(const Scene& scene) const;
   void find_lines();
   void list_ends();
   std::size_t first_end(std::int32_t particle) const;
@@ -69,10 +81,10 @@ class Untangle {
   bool in_a_fold(std::int32_t a, std::int32_t b) const;
   Vec3 to_neighbours(std::int32_t particle) const;
   void move_ends();
-  void take_along(std::vector<Vec3>& way, std::vector<std::uint8_t>& moves) const;
+  void take_through(std::int32_t end, std::int32_t other, const Face& face, Moves& moves) const;
+  void take_along(Moves& moves) const;
   void put_back();
   const Vec3& at(std::int32_t particle) const { return x_[std::size_t(particle)]; }
-  Vec3 normal_of(const Face& face) const;
   double inverse_mass(std::int32_t particle) const;
   const Sheet& sheet_of(std::int32_t particle) const;
 
