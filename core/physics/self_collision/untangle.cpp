@@ -198,8 +198,8 @@ void Untangle::list_ends() {
   }
   const auto place = [](const End& e) { return std::pair(e.particle, e.line); };
   std::ranges::stable_sort(ends_, {}, place);
-  const auto repeated = std::ranges::unique(ends_, {}, place);
-  ends_.erase(repeated.begin(), repeated.end());
+  const auto same = [&](const End& a, const End& b) { return place(a) == place(b); };
+  ends_.erase(std::unique(ends_.begin(), ends_.end(), same), ends_.end());
 }
 
 // Of every line, the part that is least.
