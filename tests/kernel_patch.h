@@ -19,8 +19,8 @@ inline constexpr int kGuard = 16;  // zero lanes that springs along a row read b
 // All that kernels touch: a few rows of one random sheet, the same for every instruction set.
 struct Patch {
   int columns, stride;
-  Rows x, v, f, previous, carry;
-  AlignedArray<float> w, row_w, lambda, scratch;
+  Rows x, v, f, previous;
+  AlignedArray<float> w, row_w, lambda, scratch, carry;
   AlignedArray<std::int32_t> lanes, alive;
 
   Patch(int columns_, float padding)
@@ -30,18 +30,18 @@ struct Patch {
         v(kRows, stride),
         f(kRows, stride),
         previous(kRows, stride),
-        carry(kRows, stride),
         w(std::size_t(kRows) * stride),
         row_w(kRows),
         lambda(std::size_t(stride)),
         scratch(kGuard + 3 * std::size_t(stride)),
+        carry(6 * std::size_t(stride)),
         lanes(2 * std::size_t(stride)),
         alive(std::size_t(kPlainFamilies * kRows) * stride) {
     Random random(5, std::uint64_t(columns));
     for (int j = 0; j < kRows; ++j)
       for (int i = 0; i < stride; ++i) {
         const bool used = i < columns;
-        for (Rows* rows : {&x, &v, &f, &previous, &carry})
+        for (Rows* rows : {&x, &v, &f, &previous})
           for (int axis = 0; axis < 3; ++axis)
             rows->at(axis, j, i) = used ? float(random.symmetric()) : padding;
         if (used) {
@@ -79,7 +79,7 @@ struct Patch {
       numbers &= std::isfinite(value);
       all.push_back(std::bit_cast<std::uint32_t>(value));
     };
-    for (const Rows* rows : {&x, &v, &f, &previous, &carry})
+    for (const Rows* rows : {&x, &v, &f, &previous})
       for (int axis = 0; axis < 3; ++axis)
         for (int j = 0; j < kRows; ++j)
           for (int i = 0; i < columns; ++i) add(rows->at(axis, j, i));
@@ -103,7 +103,7 @@ inline void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
   r.x = p.x.row(0);
   r.v = p.v.row(0);
   r.w = p.weights(0);
-  for (int n = 0; n < 3; ++n) r.carry[n] = p.carry.row(n);
+  r.carry = p.carry.data();
 }
 
 // Rows begin … end-1 of the patch with the six families of a plain cloth; given overlong, springs past
@@ -122,7 +122,7 @@ inline void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, 
   }
   SpringRows r{};
   fill(r, p, begin, end, torn);
-  r.springs = springs.data();
+  r.constants = springs.data();
   r.damped = damped;
   r.overlong = overlong;
   r.alike = alike;

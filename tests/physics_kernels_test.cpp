@@ -82,7 +82,7 @@ void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, b
     }
   fill(r, p, begin, end, torn);
   r.alike = alike;
-  r.constraints = constraints.data();
+  r.constants = constraints.data();
   r.weight = 3;
   r.inverse_dt = compliance > 0 ? 100.0f : 0.0f;
   k.jacobi_rows(r);

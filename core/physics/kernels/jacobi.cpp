@@ -9,21 +9,25 @@
 namespace weft::WEFT_KERNELS {
 namespace {
 
-template <bool kMayTear>
+template <bool kMayTear, bool kAlike>
 struct JacobiLaw {
   using Rows = physics::JacobiRows;
+  using Constants = physics::JacobiConstants;
+  using Block = WEFT_KERNELS::Block<JacobiLaw>;
   static constexpr bool kRates = false, kTorn = kMayTear, kWatched = false;
+  // Between particles of one inverse mass w: Δλ/|e| = κ - κ l/|e|, κ = 1/(2w/ω + α̃).
   template <PlainFamily F>
   WEFT_INLINE static Wide scale(const Rows& r, const Block& b, Wide reciprocal, Wide) {
+    const Constants& c = b.constants[F];
+    if constexpr (kAlike) return fnma(wide(c.kl), reciprocal, wide(c.k));
     constexpr bool kNextNear = F == kAntidiagonal, kNextFar = F == kRight || F == kDiagonal;
     const float* const far = F == kRight || F == kRight2 ? b.x : F == kDown2 ? b.below2 : b.below;
     const Wide wa = load(r.w + (b.x - r.x.x) + (kNextNear ? 1 : 0));
     const Wide wb = load(r.w + (far - r.x.x) + (kNextFar ? 1 : F == kRight2 ? 2 : 0));
-    const Wide inertia = (wa + wb) * r.weight + r.constraints[b.constants + F].compliance;
+    const Wide inertia = (wa + wb) * r.weight + c.compliance;
     // Two pinned ends of a rigid constraint have nothing to move.
     return select(inertia > 0.0f, fnma(wide(r.rest[F]), reciprocal, wide(1)) / inertia, Wide{});
   }
-  template <bool kLast>
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 sum) {
     const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
     const Wide3 change = sum * load(r.w + lane);
@@ -32,17 +36,6 @@ struct JacobiLaw {
       float* const v = r.v.x + lane;
       store_planes(v, plane, fma(change, wide(r.inverse_dt), load_planes(v, plane)));
     }
-  }
-};
-
-// Between particles of one inverse mass w: Δλ/|e| = κ - κ l/|e|, κ = 1/(2w/ω + α̃).
-template <bool kMayTear>
-struct AlikeLaw : JacobiLaw<kMayTear> {
-  using Rows = physics::JacobiRows;
-  template <PlainFamily F>
-  WEFT_INLINE static Wide scale(const Rows& r, const Block& b, Wide reciprocal, Wide) {
-    const physics::JacobiConstants& c = r.constraints[b.constants + F];
-    return fnma(wide(c.kl), reciprocal, wide(c.k));
   }
 };
 
@@ -96,9 +89,9 @@ void sum_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
 
 void jacobi_rows(const physics::JacobiRows& r) {
   if (r.alike)
-    r.alive[0] ? plain_rows<AlikeLaw<true>>(r) : plain_rows<AlikeLaw<false>>(r);
+    r.alive[0] ? plain_rows<JacobiLaw<true, true>>(r) : plain_rows<JacobiLaw<false, true>>(r);
   else
-    r.alive[0] ? plain_rows<JacobiLaw<true>>(r) : plain_rows<JacobiLaw<false>>(r);
+    r.alive[0] ? plain_rows<JacobiLaw<true, false>>(r) : plain_rows<JacobiLaw<false, false>>(r);
 }
 
 void jacobi_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {

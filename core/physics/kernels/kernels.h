@@ -59,15 +59,15 @@ struct PlainRows {
   // Of row 0 of each family: -1 in the lanes of constraints, 0 in those of torn ones. Null: cannot
   // tear.
   const std::int32_t* alive[kPlainFamilies];
-  // Negated sums of earlier rows on row j: of all (once row j-1 is done), and of row j-2 alone on rows j
-  // even and odd (until then).
-  Row3 carry[3];
+  // What earlier rows do to later ones, 6 floats for every lane of a row, zero before row 0. How they lie
+  // is the kernel's own affair.
+  float* carry;
 };
 
 // Springs as forces, and the leapfrog step.
 struct SpringRows : PlainRows {
   // Six for each row: (1,0) (0,1) (1,1) (-1,1) (2,0) (0,2); zero where row j+dj does not exist.
-  const SpringConstants* springs;
+  const SpringConstants* constants;
   bool damped;  // whether springs have damping
   float alike;  // inverse mass of every particle of rows begin … end-1, 0 where they differ [1/kg]
   // Of every row: set to 1 where a spring that is not torn is past its tear length at the start; null:
@@ -84,11 +84,11 @@ struct JacobiConstants {
 
 // A Jacobi sweep: the corrections of all constraints, added up.
 struct JacobiRows : PlainRows {
-  bool alike;  // whether all particles of rows begin … end+1 have one mass
-  const JacobiConstants* constraints;  // six for each row, as the springs
-  float rest[kPlainFamilies];          // m
-  float weight;                        // of w_a + w_b: 1/relaxation
-  float inverse_dt;                    // > 0: the velocity gains the correction times it [1/s]
+  bool alike;                        // whether all particles of rows begin … end+1 have one mass
+  const JacobiConstants* constants;  // six for each row, as the springs
+  float rest[kPlainFamilies];        // m
+  float weight;                      // of w_a + w_b: 1/relaxation
+  float inverse_dt;                  // > 0: the velocity gains the correction times it [1/s]
 };
 
 // One family between row j and row j+dj: constraint a joins lane a+near of row j and lane a+far of

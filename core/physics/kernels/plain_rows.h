@@ -5,6 +5,7 @@
 // A `Law` says what a constraint does to its ends and how a finished row moves:
 //
 //   Law::Rows                                     the kernel's argument, a PlainRows
+//   Law::Constants                                of a row's family, as in Rows::constants
 //   Law::kTorn                                    whether constraints may have died (PlainRows::alive)
 //   Law::kWatched                                 whether the law asks for constraints that are too long
 //   Law::kRates                                   whether pulls depend on velocities
@@ -13,8 +14,8 @@
 //                                                 its negative the far end
 //   Law::too_long<F>(rows, block, 1/length)       of kWatched laws: which are
 //   Law::tell(rows, row)                          that some of a row are, of those that are alive
-//   Law::finish<kLast>(rows, block, sum)          moves a block by the sum of its pulls; kLast: lanes
-//                                                 past the row's last particle may be among it
+//   Law::finish(rows, block, sum)                 moves a block by the sum of its pulls; what it does in
+//                                                 lanes past the row's last particle must stay finite
 #pragma once
 
 #include <cstddef>
@@ -27,45 +28,39 @@ namespace weft::WEFT_KERNELS {
 enum PlainFamily { kRight, kDown, kDiagonal, kAntidiagonal, kRight2, kDown2, kFamilies };
 static_assert(kFamilies == physics::kPlainFamilies);
 
-// Where a block of lanes lies: its first lane in component x of the positions, of the same column
-// one and two rows below, and of what earlier rows do to it and to the row below (carry2_below: what the
-// row above does to that).
+// A block of lanes: its first lane in component x of the positions, and of the same column one and two
+// rows below; what earlier rows do to it; the constants of its row's first family; and how many columns
+// are left from its first lane on.
+template <class Law>
 struct Block {
+  using Rows = typename Law::Rows;
   float* x;
   const float *below, *below2;
-  float *carry, *carry2;
-  const float* carry2_below;
-  int i;                     // the lane in the row
-  std::ptrdiff_t constants;  // number of the row's first family
+  float* carry;
+  const typename Law::Constants* constants;
+  int left;
+
+  // The first block of row j. Rows past the last stand for themselves; their constraints do nothing.
+  WEFT_INLINE static Block first(const Rows& s, int j) {
+    float* const x = s.x.x + std::ptrdiff_t(j) * s.stride;
+    const float* const last = s.x.x + std::ptrdiff_t(s.rows - 1) * s.stride;
+    return {x,
+            j + 1 < s.rows ? x + s.stride : last,
+            j + 2 < s.rows ? x + 2 * std::ptrdiff_t(s.stride) : last,
+            s.carry,
+            s.constants + std::ptrdiff_t(j) * kFamilies,
+            s.columns};
+  }
+  // The block to the right.
+  WEFT_INLINE Block next() const {
+    return {x + kLanes,         below + kLanes, below2 + kLanes,
+            carry + 6 * kLanes, constants,      left - kLanes};
+  }
+  // What the rows before do to the block, and after that what this row and they do to the block below;
+  // what the row before does to the block below, and after that this row to the block below that.
+  WEFT_INLINE float* sum() const { return carry; }
+  WEFT_INLINE float* sum2() const { return carry + 3 * kLanes; }
 };
-
-// The first block of row j. Rows past the last stand for themselves; their springs have no stiffness.
-WEFT_INLINE Block first_block(const physics::PlainRows& s, int j) {
-  float* const x = s.x.x + std::ptrdiff_t(j) * s.stride;
-  const float* const last = s.x.x + std::ptrdiff_t(s.rows - 1) * s.stride;
-  const bool has_below = j + 1 < s.rows, has_below2 = j + 2 < s.rows;
-  return {x,
-          has_below ? x + s.stride : last,
-          has_below2 ? x + 2 * std::ptrdiff_t(s.stride) : last,
-          s.carry[0].x,
-          s.carry[1 + j % 2].x,
-          s.carry[2 - j % 2].x,
-          0,
-          std::ptrdiff_t(j) * kFamilies};
-}
-
-template <int N>
-WEFT_INLINE Block blocks_on(Block b) {
-  constexpr int lanes = N * kLanes;
-  return {b.x + lanes,      b.below + lanes,        b.below2 + lanes, b.carry + lanes,
-          b.carry2 + lanes, b.carry2_below + lanes, b.i + lanes,      b.constants};
-}
-WEFT_INLINE Block before(const Block& b) {
-  return blocks_on<-1>(b);
-}
-WEFT_INLINE Block after(const Block& b) {
-  return blocks_on<1>(b);
-}
 
 // The fused kernel works block by block, row after row. Each of the six constraints of a block passes
 // four stations: its edge is squared, the reciprocal root drawn in two steps, and its ends are pulled.
@@ -78,7 +73,8 @@ WEFT_INLINE Block after(const Block& b) {
 // What goes to the next lane of the block's own row is summed up before it is shifted: hence the order
 // of the families.
 //
-// The delays need no reset between rows: past a row's last constraint they hold zeros.
+// Lanes past a row's last constraint pull nothing: their scale is zero. So the delays need no reset
+// between rows, and one loop goes over the blocks of all rows.
 inline constexpr PlainFamily kOrder[] = {kRight, kAntidiagonal, kDown, kDiagonal, kRight2, kDown2};
 constexpr bool divided(PlainFamily f) {
   return f == kRight || f == kDown || f == kRight2;
@@ -90,8 +86,9 @@ inline constexpr int kStations[] = {0, 1, kLanes == 16 ? 3 : 2, kLanes == 16 ? 4
 template <class Law>
 struct Pipeline {
   using Rows = typename Law::Rows;
+  using Block = WEFT_KERNELS::Block<Law>;
 
-  std::ptrdiff_t plane, carry_plane;  // floats from one component to the next
+  std::ptrdiff_t plane;  // floats from one component to the next
   Wide3 edge[kFamilies];
   Wide length[kFamilies];  // squared length, then length, then its reciprocal, of those divided
   ReciprocalRoot root[kFamilies];
@@ -105,14 +102,7 @@ struct Pipeline {
     return load_planes(s.v.x + (x - s.x.x), plane);
   }
 
-  // The lanes of constraints.
   template <PlainFamily F>
-  WEFT_INLINE static WideInt existing(const Rows& s, const Block& b) {
-    return lanes_below(s.columns - (F == kRight2 ? 2 : F == kDown || F == kDown2 ? 0 : 1) - b.i);
-  }
-
-  // kLast: past the last constraint of the row, edges and pulls are zero.
-  template <PlainFamily F, bool kLast>
   WEFT_INLINE void square(const Rows& s, const Block& b) {
     const float* const near = F == kAntidiagonal ? b.x + 1 : b.x;
     const float* const far = F == kRight      ? b.x + 1
@@ -120,8 +110,7 @@ struct Pipeline {
                              : F == kDiagonal ? b.below + 1
                              : F == kDown2    ? b.below2
                                               : b.below;
-    Wide3 e = load_planes(far, plane) - load_planes(near, plane);
-    if constexpr (kLast) e = select(existing<F>(s, b), e, Wide3{});
+    const Wide3 e = load_planes(far, plane) - load_planes(near, plane);
     edge[F] = e;
     length[F] = squared_length(e);
     if constexpr (Law::kRates) rate[F] = dot(e, velocity(s, far) - velocity(s, near));
@@ -142,12 +131,14 @@ struct Pipeline {
       root[F].refine();
   }
   // What family F does to the block, to its right and below.
-  template <PlainFamily F, bool kLast>
+  template <PlainFamily F>
   WEFT_INLINE void pull(const Rows& s, const Block& b) {
     const Wide3 e = edge[F];
     const Wide reciprocal = divided(F) ? length[F] : root[F].result();
     Wide scale = Law::template scale<F>(s, b, reciprocal, rate[F]);
-    if constexpr (kLast) scale = select(existing<F>(s, b), scale, Wide{});
+    // Down a column, lanes without a particle pull each other alone.
+    if constexpr (F != kDown && F != kDown2)
+      scale = select(lane_numbers() + (F == kRight2 ? 2 : 1) < b.left, scale, Wide{});
     if constexpr (Law::kTorn) {
       const WideInt alive = lanes_at(s.alive[F] + (b.x - s.x.x));
       scale = select(alive, scale, Wide{});
@@ -157,41 +148,40 @@ struct Pipeline {
       own = e * scale;
     } else if constexpr (F == kAntidiagonal) {
       own = own + to_right.next(fms(e, scale, own));
-      below = fma(e, scale, load_planes(b.carry2_below, carry_plane));
+      below = fma(e, scale, load_planes(b.sum2(), kLanes));
     } else if constexpr (F == kDown) {
       own = fma(e, scale, own);
       below = fma(e, scale, below);
     } else if constexpr (F == kDiagonal) {
       const Wide3 f = e * scale;
-      own = own + f - load_planes(b.carry, carry_plane);
-      store_planes(b.carry, carry_plane, below + diagonal.next(f));
+      own = own + f - load_planes(b.sum(), kLanes);
+      store_planes(b.sum(), kLanes, below + diagonal.next(f));
     } else if constexpr (F == kRight2) {
       const Wide3 f = e * scale;
       own = own + (f - right2.next(f));
     } else {
       const Wide3 f = e * scale;
       own = own + f;
-      store_planes(b.carry2, carry_plane, f);
+      store_planes(b.sum2(), kLanes, f);
     }
   }
 
   // Squares constraint number N of block b while earlier ones, of it or of the block before, go on. A
-  // block that has all its pulls moves. kALast, kBLast: the row's last constraint two to the right lies
-  // in or before the block.
-  template <int N, bool kA, bool kALast, bool kB, bool kBLast>
+  // block that has all its pulls moves. kA, kB: whether there is such a block.
+  template <int N, bool kA, bool kB>
   WEFT_INLINE void step(const Rows& s, const Block& a, const Block& b) {
     constexpr auto at = [](int station) { return kOrder[(N + 6 - kStations[station]) % 6]; };
     constexpr auto any_at = [](int station) { return N >= kStations[station] ? kB : kA; };
-    constexpr bool kOfB = N >= kStations[3], kThatLast = kOfB ? kBLast : kALast;
-    if constexpr (kB) square<at(0), kBLast>(s, b);
+    const Block& pulled = N >= kStations[3] ? b : a;
+    if constexpr (kB) square<at(0)>(s, b);
     if constexpr (any_at(1)) begin_root<at(1)>();
     if constexpr (any_at(2)) end_root<at(2)>();
-    if constexpr (any_at(3)) pull<at(3), kThatLast>(s, kOfB ? b : a);
+    if constexpr (any_at(3)) pull<at(3)>(s, pulled);
     if constexpr (any_at(3) && at(3) == kDown2) {
-      Law::template finish<kThatLast>(s, kOfB ? b : a, own);
-      if constexpr (Law::kWatched && kThatLast)
+      Law::finish(s, pulled, own);
+      if constexpr (Law::kWatched)
         if (any(overlong)) {
-          Law::tell(s, (kOfB ? b : a).constants / kFamilies);
+          Law::tell(s, (pulled.constants - s.constants) / kFamilies);
           overlong = WideInt{};
         }
     }
@@ -199,49 +189,32 @@ struct Pipeline {
 
   // Squares block b and gives it its first pulls, while the block before, a, gets its last ones and
   // moves.
-  template <bool kA, bool kALast, bool kB, bool kBLast>
+  template <bool kA, bool kB>
   WEFT_INLINE void turn(const Rows& s, const Block& a, const Block& b) {
-    step<0, kA, kALast, kB, kBLast>(s, a, b);
-    step<1, kA, kALast, kB, kBLast>(s, a, b);
-    step<2, kA, kALast, kB, kBLast>(s, a, b);
-    step<3, kA, kALast, kB, kBLast>(s, a, b);
-    step<4, kA, kALast, kB, kBLast>(s, a, b);
-    step<5, kA, kALast, kB, kBLast>(s, a, b);
+    step<0, kA, kB>(s, a, b);
+    step<1, kA, kB>(s, a, b);
+    step<2, kA, kB>(s, a, b);
+    step<3, kA, kB>(s, a, b);
+    step<4, kA, kB>(s, a, b);
+    step<5, kA, kB>(s, a, b);
   }
 };
 
 template <class Law>
 WEFT_INLINE void plain_rows(const typename Law::Rows& given) {
   const typename Law::Rows s = given;
-  // A block is whole when all its constraints two to the right exist.
-  const auto last = [&](const Block& b) { return b.i + kLanes + 2 > s.columns; };
   Pipeline<Law> p{};
   p.plane = s.x.y - s.x.x;
-  p.carry_plane = s.carry[0].y - s.carry[0].x;
-  Block b = first_block(s, s.begin);
-  if (last(b))
-    p.template turn<false, false, true, true>(s, b, b);
-  else
-    p.template turn<false, false, true, false>(s, b, b);
+  auto b = Block<Law>::first(s, s.begin);
+  p.template turn<false, true>(s, b, b);
   for (int j = s.begin;;) {
-    for (b = after(b); !last(b); b = after(b))
-      p.template turn<true, false, true, false>(s, before(b), b);
-    for (; b.i < s.columns; b = after(b)) {
-      if (last(before(b)))
-        p.template turn<true, true, true, true>(s, before(b), b);
-      else
-        p.template turn<true, false, true, true>(s, before(b), b);
+    const auto a = b;
+    b = b.next();
+    if (b.left <= 0) {
+      if (++j == s.end) return p.template turn<true, false>(s, a, a);
+      b = Block<Law>::first(s, j);
     }
-    const Block a = before(b);
-    if (++j == s.end) {
-      p.template turn<true, true, false, false>(s, a, a);
-      return;
-    }
-    b = first_block(s, j);
-    if (last(b))
-      p.template turn<true, true, true, true>(s, a, b);
-    else
-      p.template turn<true, true, true, false>(s, a, b);
+    p.template turn<true, true>(s, a, b);
   }
 }
 

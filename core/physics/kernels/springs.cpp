@@ -16,28 +16,29 @@ enum class Tear { never, torn, watched };
 template <bool kDamped, Tear kTear, bool kAlike = false>
 struct SpringLaw {
   using Rows = SpringRows;
+  using Constants = SpringConstants;
+  using Block = WEFT_KERNELS::Block<SpringLaw>;
   static constexpr bool kRates = kDamped, kTorn = kTear != Tear::never,
                         kWatched = kTear == Tear::watched;
   template <PlainFamily F>
-  WEFT_INLINE static Wide scale(const Rows& r, const Block& b, Wide reciprocal, Wide rate) {
-    const SpringConstants& c = r.springs[b.constants + F];
+  WEFT_INLINE static Wide scale(const Rows&, const Block& b, Wide reciprocal, Wide rate) {
+    const SpringConstants& c = b.constants[F];
     const Wide spring = fnma(wide(c.kl), reciprocal, wide(c.k));
     if constexpr (!kDamped) return spring;
     return fma(c.damping * rate, reciprocal * reciprocal, spring);
   }
   template <PlainFamily F>
-  WEFT_INLINE static WideInt too_long(const Rows& r, const Block& b, Wide reciprocal) {
-    return reciprocal < r.springs[b.constants + F].taut;
+  WEFT_INLINE static WideInt too_long(const Rows&, const Block& b, Wide reciprocal) {
+    return reciprocal < b.constants[F].taut;
   }
   WEFT_INLINE static void tell(const Rows& r, std::ptrdiff_t row) { r.overlong[row] = 1; }
-  template <bool kLast>
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 force) {
     const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
     const Wide3 before = load_planes(r.v.x + lane, plane);
     Wide3 velocity;
     if constexpr (kAlike) {
       velocity = moved(before, r.alike, force, r.advance);
-      if constexpr (kLast) velocity = select(lanes_below(r.columns - b.i), velocity, Wide3{});
+      velocity = select(lanes_below(b.left), velocity, Wide3{});
     } else {
       velocity = moved(before, load(r.w + lane), force, r.advance);
     }

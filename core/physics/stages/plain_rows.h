@@ -17,16 +17,11 @@ class PlainRowsStage : public RowStage {
                  const ClothParts& parts)
       : RowStage(stage_name, stage_detail, 2, parts.constraints(), "constraints"), parts_(parts) {}
 
-  void reserve_slots(int slots) override { carry_ = Rows(kCarries * slots, parts_.lattice.stride); }
-  std::size_t bytes() const override { return carry_.bytes(); }
-  void start(const Substep& s) override {
-    for (int k = 0; k < kCarries; ++k)
-      zero(carry_.row(kCarries * s.slot + k), parts_.lattice.stride);
-  }
+  void reserve_slots(int slots) override { carry_ = AlignedArray<float>(slots * carried()); }
+  std::size_t bytes() const override { return carry_.size() * sizeof(float); }
+  void start(const Substep& s) override { std::fill_n(carry(s), carried(), 0.0f); }
 
  protected:
-  static constexpr int kCarries = 3;
-
   // Everything but the law's own. The first row of a substep finds nothing carried.
   void fill(PlainRows& r, int begin, int end, const Substep& s) {
     Lattice& l = parts_.lattice;
@@ -43,13 +38,16 @@ class PlainRowsStage : public RowStage {
       r.alive[f] = links ? links->row(0) : nullptr;
     }
     if (begin == 0) start(s);
-    for (int k = 0; k < kCarries; ++k) r.carry[k] = carry_.row(kCarries * s.slot + k);
+    r.carry = carry(s);
   }
 
   ClothParts parts_;
 
  private:
-  Rows carry_;
+  std::size_t carried() const { return 6 * std::size_t(parts_.lattice.stride); }
+  float* carry(const Substep& s) { return carry_.data() + s.slot * carried(); }
+
+  AlignedArray<float> carry_;
 };
 
 }  // namespace weft::physics

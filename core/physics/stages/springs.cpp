@@ -47,7 +47,7 @@ class PlainSprings final : public PlainRowsStage {
   void run_alike(int begin, int end, float alike, const Substep& s) {
     SpringRows r{};
     fill(r, begin, end, s);
-    r.springs = springs_.data();
+    r.constants = springs_.data();
     r.damped = damped_;
     r.alike = alike;
     r.overlong = parts_.overlong;

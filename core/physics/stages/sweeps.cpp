@@ -224,7 +224,7 @@ class PlainJacobi final : public PlainRowsStage {
       JacobiRows r{};
       fill(r, first, last, s);
       r.alike = same;
-      r.constraints = constraints_.data();
+      r.constants = constraints_.data();
       for (int f = 0; f < kPlainFamilies; ++f)
         r.rest[f] = float(parts_.families[std::size_t(f)].rest);
       r.weight = weight_;
