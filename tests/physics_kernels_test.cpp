@@ -81,7 +81,7 @@ void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, b
         constraints.push_back({std::numeric_limits<float>::infinity(), 0, 0});
     }
   fill(r, p, begin, end, torn);
-  r.alike = alike;
+  r.alike = alike ? 0.8f : 0;
   r.constants = constraints.data();
   r.weight = 3;
   r.inverse_dt = compliance > 0 ? 100.0f : 0.0f;

@@ -9,7 +9,8 @@
 namespace weft::WEFT_KERNELS {
 namespace {
 
-template <bool kMayTear, bool kAlike>
+// kAlike: all particles have one mass; kGains: velocities gain what positions do.
+template <bool kMayTear, bool kAlike, bool kGains>
 struct JacobiLaw {
   using Rows = physics::JacobiRows;
   using Constants = physics::JacobiConstants;
@@ -30,14 +31,21 @@ struct JacobiLaw {
   }
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 sum) {
     const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
-    const Wide3 change = sum * load(r.w + lane);
+    Wide3 change = sum * (kAlike ? wide(r.alike) : load(r.w + lane));
+    if constexpr (kAlike) change = select(lanes_below(b.left), change, Wide3{});
     store_planes(b.x, plane, load_planes(b.x, plane) + change);
-    if (r.inverse_dt > 0) {
+    if constexpr (kGains) {
       float* const v = r.v.x + lane;
       store_planes(v, plane, fma(change, wide(r.inverse_dt), load_planes(v, plane)));
     }
   }
 };
+
+template <bool kMayTear, bool kAlike>
+void jacobi_rows_of(const physics::JacobiRows& r) {
+  r.inverse_dt > 0 ? plain_rows<JacobiLaw<kMayTear, kAlike, true>>(r)
+                   : plain_rows<JacobiLaw<kMayTear, kAlike, false>>(r);
+}
 
 // The corrections of a block of constraints by unit inverse mass.
 template <bool Multipliers>
@@ -88,10 +96,10 @@ void sum_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
 }  // namespace
 
 void jacobi_rows(const physics::JacobiRows& r) {
-  if (r.alike)
-    r.alive[0] ? plain_rows<JacobiLaw<true, true>>(r) : plain_rows<JacobiLaw<false, true>>(r);
+  if (r.alive[0])
+    r.alike > 0 ? jacobi_rows_of<true, true>(r) : jacobi_rows_of<true, false>(r);
   else
-    r.alive[0] ? plain_rows<JacobiLaw<true, false>>(r) : plain_rows<JacobiLaw<false, false>>(r);
+    r.alike > 0 ? jacobi_rows_of<false, true>(r) : jacobi_rows_of<false, false>(r);
 }
 
 void jacobi_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {

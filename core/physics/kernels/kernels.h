@@ -84,7 +84,7 @@ struct JacobiConstants {
 
 // A Jacobi sweep: the corrections of all constraints, added up.
 struct JacobiRows : PlainRows {
-  bool alike;                        // whether all particles of rows begin … end+1 have one mass
+  float alike;  // inverse mass of every particle of rows begin … end+1, 0 where they differ [1/kg]
   const JacobiConstants* constants;  // six for each row, as the springs
   float rest[kPlainFamilies];        // m
   float weight;                      // of w_a + w_b: 1/relaxation

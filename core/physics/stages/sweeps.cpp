@@ -202,9 +202,13 @@ class PlainJacobi final : public PlainRowsStage {
       : PlainRowsStage("jacobi", "all families, corrections added up and relaxed", parts),
         options_(options),
         relaxation_(relaxation(parts.families, parts.scene.solver.iterations)),
-        constraints_(std::size_t(parts.lattice.rows) * kPlainFamilies) {}
+        constraints_(std::size_t(parts.lattice.rows) * kPlainFamilies) {
+    for (int j = 0; j < parts.lattice.rows; ++j)
+      free_inverse_mass_.push_back(float(1 / particle_mass(parts.cloth, 0, j)));
+  }
   std::size_t bytes() const override {
-    return PlainRowsStage::bytes() + constraints_.size() * sizeof(JacobiConstants);
+    return PlainRowsStage::bytes() + constraints_.size() * sizeof(JacobiConstants) +
+           free_inverse_mass_.size() * sizeof(float);
   }
   void prepare(double dt) override {
     const float share = options_.compliant ? 1.0f : float(2 * parts_.cloth.positional_k);
@@ -218,7 +222,7 @@ class PlainJacobi final : public PlainRowsStage {
   Velocities velocities(double) const override { return velocities_of(options_); }
   void run(int begin, int end, const Substep& s) override {
     for (int first = begin; first < end;) {
-      const bool same = alike(first);
+      const float same = alike(first);
       int last = first + 1;
       while (last < end && alike(last) == same) ++last;
       JacobiRows r{};
@@ -235,27 +239,28 @@ class PlainJacobi final : public PlainRowsStage {
   }
 
  private:
-  float free_inverse_mass(int j) const { return float(1 / particle_mass(parts_.cloth, 0, j)); }
-
   JacobiConstants constants_of(const Family& family, int j, double dt) const {
     if (j + family.dj >= parts_.lattice.rows) return {std::numeric_limits<float>::infinity(), 0, 0};
     const float compliance = options_.compliant ? compliance_of(parts_, family, j, dt) : 0;
-    const float k = 1 / (2 * free_inverse_mass(j) * weight_ + compliance);
+    const float k = 1 / (2 * free_inverse_mass_[std::size_t(j)] * weight_ + compliance);
     return {compliance, k, k * float(family.rest)};
   }
 
-  // Whether everything that row j's constraints join has the inverse mass of row j, nothing pinned.
-  bool alike(int j) const {
-    if (parts_.scene.solver.order != 1) return false;  // it changes inverse masses on its way
+  // The inverse mass of everything that row j's constraints join; 0: not all have that of row j, or
+  // something is pinned.
+  float alike(int j) const {
+    if (parts_.scene.solver.order != 1) return 0;  // it changes inverse masses on its way
     const Lattice& l = parts_.lattice;
+    const float free = free_inverse_mass_[std::size_t(j)];
     for (int n = j; n <= std::min(j + reach, l.rows - 1); ++n)
-      if (l.row_inverse_mass[std::size_t(n)] != free_inverse_mass(j)) return false;
-    return true;
+      if (l.row_inverse_mass[std::size_t(n)] != free) return 0;
+    return free;
   }
 
   SweepOptions options_;
   float relaxation_;
   std::vector<JacobiConstants> constraints_;
+  std::vector<float> free_inverse_mass_;  // of every row's particles, unless pinned [1/kg]
   float weight_ = 1, inverse_dt_ = 0;
 };
 
