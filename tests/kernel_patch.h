@@ -20,7 +20,9 @@ inline constexpr int kGuard = 16;  // zero lanes that springs along a row read b
 struct Patch {
   int columns, stride;
   Rows x, v, f, previous;
-  AlignedArray<float> w, row_w, lambda, scratch, carry;
+  Rows
+      carry;  // the two sums that fused kernels carry from row to row, and a row that nothing changes
+  AlignedArray<float> w, row_w, lambda, scratch;
   AlignedArray<std::int32_t> lanes, alive;
 
   Patch(int columns_, float padding)
@@ -30,18 +32,18 @@ struct Patch {
         v(kRows, stride),
         f(kRows, stride),
         previous(kRows, stride),
+        carry(kRows, stride),
         w(std::size_t(kRows) * stride),
         row_w(kRows),
         lambda(std::size_t(stride)),
         scratch(kGuard + 3 * std::size_t(stride)),
-        carry(6 * std::size_t(stride)),
         lanes(2 * std::size_t(stride)),
         alive(std::size_t(kPlainFamilies * kRows) * stride) {
     Random random(5, std::uint64_t(columns));
     for (int j = 0; j < kRows; ++j)
       for (int i = 0; i < stride; ++i) {
         const bool used = i < columns;
-        for (Rows* rows : {&x, &v, &f, &previous})
+        for (Rows* rows : {&x, &v, &f, &previous, &carry})
           for (int axis = 0; axis < 3; ++axis)
             rows->at(axis, j, i) = used ? float(random.symmetric()) : padding;
         if (used) {
@@ -79,7 +81,7 @@ struct Patch {
       numbers &= std::isfinite(value);
       all.push_back(std::bit_cast<std::uint32_t>(value));
     };
-    for (const Rows* rows : {&x, &v, &f, &previous})
+    for (const Rows* rows : {&x, &v, &f, &previous, &carry})
       for (int axis = 0; axis < 3; ++axis)
         for (int j = 0; j < kRows; ++j)
           for (int i = 0; i < columns; ++i) add(rows->at(axis, j, i));
@@ -90,6 +92,34 @@ struct Patch {
 
 inline Advance advance() {
   return {0.01f, 0.008f, 0.98f, 0.01f, -0.0981f, 0.003f};
+}
+
+// Calls visit(number, axis, lane, where a fused kernel keeps it): what rows carry lies in blocks as wide as
+// the kernel's vectors.
+template <class Visit>
+void for_each_carried(const KernelTable& k, int stride, Visit&& visit) {
+  int width = 1;
+  for (const auto& [simd, lanes] : {std::pair(Simd::sse2, 4), {Simd::avx2, 8}, {Simd::avx512, 16}})
+    if (simd_available(simd) && &kernel_table(simd) == &k) width = lanes;
+  for (int number = 0; number < 2; ++number)
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < stride; ++i)
+        visit(number, axis, i,
+              std::size_t((i / width * 6 + number * 3 + axis) * width + i % width));
+}
+
+// Calls a fused kernel with what rows carry in its own order.
+template <class Kernel, class Rows>
+void call_carrying(const KernelTable& k, Kernel kernel, Rows& r, Patch& p) {
+  AlignedArray<float> carried(6 * std::size_t(p.stride));
+  for_each_carried(k, p.stride, [&](int number, int axis, int i, std::size_t at) {
+    carried[at] = p.carry.at(axis, number, i);
+  });
+  r.carry = carried.data();
+  (k.*kernel)(r);
+  for_each_carried(k, p.stride, [&](int number, int axis, int i, std::size_t at) {
+    p.carry.at(axis, number, i) = carried[at] + 0.0f;  // a zero's sign means nothing here
+  });
 }
 
 inline void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
@@ -103,7 +133,6 @@ inline void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
   r.x = p.x.row(0);
   r.v = p.v.row(0);
   r.w = p.weights(0);
-  r.carry = p.carry.data();
 }
 
 // Rows begin … end-1 of the patch with the six families of a plain cloth; given overlong, springs past
@@ -127,7 +156,7 @@ inline void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, 
   r.overlong = overlong;
   r.alike = alike;
   r.advance = advance();
-  k.spring_rows(r);
+  call_carrying(k, &KernelTable::spring_rows, r, p);
 }
 
 }  // namespace weft::physics

@@ -85,7 +85,7 @@ void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, b
   r.constants = constraints.data();
   r.weight = 3;
   r.inverse_dt = compliance > 0 ? 100.0f : 0.0f;
-  k.jacobi_rows(r);
+  call_carrying(k, &KernelTable::jacobi_rows, r, p);
 }
 
 // A kernel over all rows at once, and in two parts.

@@ -4,7 +4,7 @@
 //
 // Conventions: a row holds `columns` particles in component arrays; all arrays are 64-byte aligned
 // at lane 0 and have at least 16 lanes of padding behind the last particle, which kernels may read
-// and may overwrite with values of no meaning.
+// and may overwrite with finite values of no meaning.
 #pragma once
 
 #include <cstddef>

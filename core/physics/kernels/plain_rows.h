@@ -74,7 +74,8 @@ struct Block {
 // of the families.
 //
 // Lanes past a row's last constraint pull nothing: their scale is zero. So the delays need no reset
-// between rows, and one loop goes over the blocks of all rows.
+// between rows, and one loop goes over the blocks of all rows. Such a zero has a sign, which depends on
+// the padding: sums begin with a zero that is positive, and so never show it.
 inline constexpr PlainFamily kOrder[] = {kRight, kAntidiagonal, kDown, kDiagonal, kRight2, kDown2};
 constexpr bool divided(PlainFamily f) {
   return f == kRight || f == kDown || f == kRight2;
@@ -136,16 +137,15 @@ struct Pipeline {
     const Wide3 e = edge[F];
     const Wide reciprocal = divided(F) ? length[F] : root[F].result();
     Wide scale = Law::template scale<F>(s, b, reciprocal, rate[F]);
-    // Down a column, lanes without a particle pull each other alone.
-    if constexpr (F != kDown && F != kDown2)
-      scale = select(lane_numbers() + (F == kRight2 ? 2 : 1) < b.left, scale, Wide{});
+    constexpr int across = F == kRight2 ? 2 : F == kDown || F == kDown2 ? 0 : 1;
+    scale = select(lane_numbers() + across < b.left, scale, Wide{});
     if constexpr (Law::kTorn) {
       const WideInt alive = lanes_at(s.alive[F] + (b.x - s.x.x));
       scale = select(alive, scale, Wide{});
       if constexpr (Law::kWatched) overlong |= alive & Law::template too_long<F>(s, b, reciprocal);
     }
     if constexpr (F == kRight) {
-      own = e * scale;
+      own = fma(e, scale, Wide3{});
     } else if constexpr (F == kAntidiagonal) {
       own = own + to_right.next(fms(e, scale, own));
       below = fma(e, scale, load_planes(b.sum2(), kLanes));
