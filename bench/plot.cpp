@@ -213,7 +213,7 @@ void target(std::ostream& out, const Plot& plot, const Axis& x, const Axis& y) {
   out << "<path d=\"M" << fixed(kLeft) << ' ' << fixed(ty) << 'H' << fixed(tx) << 'V'
       << fixed(kBottom) << "\" fill=\"none\" stroke=\"" << kInk
       << "\" stroke-dasharray=\"5 4\" stroke-opacity=\"0.55\"/>\n"
-      << "<text x=\"" << fixed(kLeft + 8) << "\" y=\"" << fixed(ty + 16)
+      << "<text x=\"" << fixed(kLeft + 8) << "\" y=\"" << fixed(ty - 6)
       << "\" font-style=\"italic\">asked of springs, one thread</text>\n";
 }
 
