@@ -35,7 +35,7 @@ struct Patch {
         carry(kRows, stride),
         w(std::size_t(kRows) * stride),
         row_w(kRows),
-        lambda(std::size_t(stride)),
+        lambda(std::size_t(kRows) * stride),
         scratch(kGuard + 3 * std::size_t(stride)),
         lanes(2 * std::size_t(stride)),
         alive(std::size_t(kPlainFamilies * kRows) * stride) {
@@ -53,7 +53,9 @@ struct Patch {
           w[std::size_t(j) * stride + i] = random.unit() < 0.125 ? 0 : float(0.5 + random.unit());
         }
       }
-    for (int i = 0; i < stride; ++i) lambda[i] = i < columns ? float(random.symmetric()) : padding;
+    for (int j = 0; j < kRows; ++j)
+      for (int i = 0; i < stride; ++i)
+        lambda[std::size_t(j) * stride + i] = i < columns ? float(random.symmetric()) : padding;
     // One constraint in four is torn.
     const int reach[kPlainFamilies] = {1, 0, 1, 1, 2, 0};
     for (int f = 0; f < kPlainFamilies; ++f)
@@ -85,7 +87,8 @@ struct Patch {
       for (int axis = 0; axis < 3; ++axis)
         for (int j = 0; j < kRows; ++j)
           for (int i = 0; i < columns; ++i) add(rows->at(axis, j, i));
-    for (int i = 0; i < columns; ++i) add(lambda[std::size_t(i)]);
+    for (int j = 0; j < kRows; ++j)
+      for (int i = 0; i < columns; ++i) add(lambda[std::size_t(j) * stride + i]);
     return all;
   }
 };

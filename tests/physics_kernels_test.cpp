@@ -175,7 +175,9 @@ void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Featur
   r.dj = dj;
   r.rest = has.limit ? 1.1f : 0.9f;
   r.weight = has.weight;
-  if (has.compliance > 0) r.compliance = &has.compliance;
+  std::array<float, kRows> compliance;
+  compliance.fill(has.compliance);
+  if (has.compliance > 0) r.compliance = compliance.data();
   if (has.multipliers) r.lambda = p.lambda.data();
   r.limit = has.limit;
   if (has.limit) r.inverse_dt = 100;
@@ -188,7 +190,8 @@ void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Featur
   for (int a = 0; dj == 0 && a < r.count; ++a) p.lanes[std::size_t(a / di % 2 * p.stride + a)] = -1;
   r.lanes = p.lanes.data();
   if (jacobi) return k.jacobi_family(r, 0, p.f.row(0), p.f.row(dj));
-  k.project({&r, 1, 0, 1, 0});
+  // Along rows all of them: two may be worked through together.
+  k.project({&r, 1, 0, dj == 0 ? kRows : 1, 0});
 }
 
 void add_projections(std::vector<Case>& cases) {

@@ -64,7 +64,7 @@ void Passes::run(const Substeps& given, Threads& threads, std::span<const RowSpa
   });
 }
 
-// What velocities gain from positions at the end of a substep, where nobody looks at them but what
+// What velocities gain from the sweeps at the end of a substep, where nobody looks at them but what
 // predicts the next, need not be added: it can do that itself.
 void Passes::prepare(double dt) {
   prepared_dt_ = dt;

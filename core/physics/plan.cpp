@@ -120,7 +120,7 @@ void ClothStep::choose_stages() {
     sweep.corrections = corrections_.get();
     if (solver.order == 2) history_ = std::make_unique<History>(lattice_);
     stages_.push_back(history_ ? make_predict_second_order(parts, *history_, multipliers_.get())
-                               : make_predict(parts, multipliers_.get()));
+                               : make_predict(parts, multipliers_.get(), corrections_.get()));
     if (auto wind = make_wind(parts, seed_)) stages_.push_back(std::move(wind));
     if (auto pins = make_keyed_pins(parts)) stages_.push_back(std::move(pins));
     if (auto tethers = solver.tethers ? make_tethers(parts, sweep.compliant) : nullptr)

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kTileBytes = 384 * 1024;
 // So many stages that their rows are better kept in the first-level cache: measured with sweeps.
 constexpr std::size_t kManyStages = 5;
-constexpr std::size_t kFirstLevelBytes = 64 * 1024;
+constexpr std::size_t kFirstLevelBytes = 40 * 1024;
 constexpr int kManyStagesLeast = 4, kManyStagesMost = 16;  // rows
 constexpr int kSharedHeight = 16;  // so that all threads are busy to the end of a frame
 // The least work worth a task [ns].

@@ -27,8 +27,15 @@ WEFT_INLINE Wide3 gained(const AdvanceRow& r, Wide3 x, int i) {
 void predict(const AdvanceRow& given) {
   const AdvanceRow r = given;  // a copy that no store can alias
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide3 x = load3(r.x, i);
-    const Wide3 before = r.inverse_dt > 0 ? gained(r, x, i) : load3(r.v, i);
+    Wide3 x = load3(r.x, i), before = load3(r.v, i);
+    if (r.f.x) {
+      const Wide3 change = load3(r.f, i);
+      x = x + change;
+      before = before + change * wide(r.inverse_dt);
+      store3(r.f, i, Wide3{});
+    } else if (r.inverse_dt > 0) {
+      before = gained(r, x, i);
+    }
     const Wide3 v = moved(before, load(r.w + i), Wide3{}, r.advance);
     const Wide3 there = x + v * wide(r.advance.dt);
     store3(r.v, i, v);

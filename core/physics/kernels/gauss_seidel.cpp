@@ -61,9 +61,8 @@ WEFT_INLINE void move_end(const ProjectRows& p, const ProjectedRow& r, int i, Wi
   if constexpr (R == Rule::limit) {
     const WideInt some = (change.x != 0.0f) | (change.y != 0.0f) | (change.z != 0.0f);
     if (!any(some)) return;
-    const std::ptrdiff_t at = r.x.x + i - p.x.x;
-    const Row3 v{p.v.x + at, p.v.y + at, p.v.z + at};
-    store3(v, 0, load3(v, 0) + change * wide(p.inverse_dt));
+    float* const v = p.v.x + (r.x + i - p.x.x);
+    store_planes(v, r.plane, load_planes(v, r.plane) + change * wide(p.inverse_dt));
   }
   shift<displaced(R)>(r, i, change);
 }
@@ -97,112 +96,141 @@ WEFT_INLINE void between_rows(const ProjectRows& p, int j) {
   }
 }
 
-// The same between rows whose particles all have the inverse mass of c.
-template <Rule R>
+// The same between rows whose particles all have the inverse mass of c, of one column or, as kNear and
+// kFar say, from lane a+1 to a or a to a+1. Ends are loaded and stored in whole blocks, and their lanes
+// shifted: a load has at hand what was stored a moment ago only if it wants those very bytes.
+template <Rule R, int kNear, int kFar>
 class BetweenRowsAlike {
  public:
-  WEFT_INLINE BetweenRowsAlike(const ProjectRows& p, int j, const Alike& c)
+  // For other offsets than 0 and 1, the ends lie `near` and `far` lanes on.
+  WEFT_INLINE BetweenRowsAlike(const ProjectRows& p, int j, const Alike& c, int near, int far)
       : count_(p.count),
         c_(c),
-        near_(projected_row(p, j, p.near)),
-        far_(projected_row(p, j + p.dj, p.far)),
+        near_(projected_row(p, j, near)),
+        far_(projected_row(p, j + p.dj, far)),
         lambdas_(p.lambda + std::ptrdiff_t(j) * p.stride) {}
 
-  // Two blocks side by side, 16 lanes apart at any width, so that neither waits for its root alone.
-  WEFT_INLINE void run() const {
-    for (int a = 0; a < count_; a += 32)
-      for (int b = a; b < a + 16; b += kLanes)
-        if (b + 16 < count_)
-          blocks<2>(b);
-        else if (b < count_)
-          blocks<1>(b);
+  WEFT_INLINE void run() {
+    const int end = count_ + (kNear | kFar);
+    if constexpr (kShifted) next_ = position<kDisplaced>(kNear ? near_ : far_, 0);
+    for (int a = 0; a < end; a += kLanes) block(a, end);
   }
 
  private:
   static constexpr bool kMultipliers = R == Rule::multipliers, kDisplaced = displaced(R);
+  static constexpr bool kShifted = kNear + kFar > 0;
 
-  template <int K>
-  WEFT_INLINE void blocks(int first) const {
-    Wide3 e[K];
-    for (int k = 0; k < K; ++k) {
-      const int a = first + k * 16;
-      e[k] = position<kDisplaced>(far_, a) - position<kDisplaced>(near_, a);
+  WEFT_INLINE Wide3 edge(int a, int end) {
+    if constexpr (kShifted) {
+      const Wide3 b = next_;
+      if (a + kLanes < end) next_ = position<kDisplaced>(kNear ? near_ : far_, a + kLanes);
+      const Wide3 shifted{following<1>(b.x, next_.x), following<1>(b.y, next_.y),
+                          following<1>(b.z, next_.z)};
+      const Wide3 other = position<kDisplaced>(kNear ? far_ : near_, a);
+      return kNear ? other - shifted : shifted - other;
     }
-    Wide lambda[K], scale[K];
-    if constexpr (kMultipliers)
-      for (int k = 0; k < K; ++k) lambda[k] = load(lambdas_ + first + k * 16);
-    const Wide before = lambda[K - 1];
-    scales_alike<kMultipliers, K>(c_, e, lambda, scale);
-    if (const int last = first + (K - 1) * 16; last + kLanes > count_) {
-      const WideInt active = lanes_below(count_ - last);
-      scale[K - 1] = select(active, scale[K - 1], Wide{});
-      lambda[K - 1] = select(active, lambda[K - 1], before);
+    return position<kDisplaced>(far_, a) - position<kDisplaced>(near_, a);
+  }
+
+  WEFT_INLINE void block(int a, int end) {
+    const Wide3 e = edge(a, end);
+    Wide lambda{};
+    if constexpr (kMultipliers) lambda = load(lambdas_ + a);
+    const Wide before = lambda;
+    Wide scale = scale_alike<kMultipliers>(c_, e, lambda);
+    if (a + kLanes > count_) {
+      const WideInt active = lanes_below(count_ - a);
+      scale = select(active, scale, Wide{});
+      lambda = select(active, lambda, before);
     }
-    for (int k = 0; k < K; ++k) {
-      const int a = first + k * 16;
-      if constexpr (kMultipliers) store(lambdas_ + a, lambda[k]);
-      const Row3 near = kDisplaced ? near_.u : near_.x, far = kDisplaced ? far_.u : far_.x;
-      store3(near, a, fma(e[k], scale[k], load3(near, a)));
-      store3(far, a, fnma(e[k], scale[k], load3(far, a)));
+    if constexpr (kMultipliers) store(lambdas_ + a, lambda);
+    Wide3 past_e;
+    Wide past_scale;
+    if constexpr (kShifted) {
+      past_e = edges_.next(e);
+      past_scale = scales_.next(scale);
     }
+    float* const near = movable<kDisplaced>(near_) + a;
+    float* const far = movable<kDisplaced>(far_) + a;
+    const std::ptrdiff_t plane = near_.plane;
+    store_planes(near, plane,
+                 fma(kNear ? past_e : e, kNear ? past_scale : scale, load_planes(near, plane)));
+    store_planes(far, plane,
+                 fnma(kFar ? past_e : e, kFar ? past_scale : scale, load_planes(far, plane)));
   }
 
   const int count_;
   const Alike& c_;
   const ProjectedRow near_, far_;
   float* const lambdas_;
+  Wide3 next_;  // positions of the shifted ends' next block
+  Delay3<1> edges_;
+  Delay<1> scales_;
 };
 
 // Both colours along row j, N lanes from end to end. Two blocks at a time take their first colour;
-// the second, which reaches into the next two blocks, follows behind.
-template <Rule R, int N>
+// the second, which reaches into the next two blocks, follows behind. The two blocks are neighbours in
+// the row, or, with kRows, of the same lanes in rows j and j+1: which leaves fewer lanes idle.
+template <Rule R, int N, bool kRows>
 class AlongRowAlike {
  public:
   WEFT_INLINE AlongRowAlike(const ProjectRows& p, int j, const Alike& c)
-      : p_(p),
-        c_(c),
+      : c_(c),
+        count_(p.count),
         row_(projected_row(p, j, 0)),
-        lambdas_(p.lambda + std::ptrdiff_t(j) * p.stride) {}
+        lambdas_(p.lambda + std::ptrdiff_t(j) * p.stride),
+        apart_(kRows ? p.stride : kNext) {}
 
   // Two pairs of blocks behind, so that neither colour waits for the other's roots.
   WEFT_INLINE void run() {
-    constexpr int kPair = 2 * kLanes;
-    const int end = p_.count + N;
-    Blocks last = first_colour(0), before{};
-    int a = kPair;
-    if (a < end) {
-      before = last;
-      last = first_colour(a);
+    for (int first = 0; first < kChains; ++first) {
+      for (Wide& c : carried_) c = Wide{};
+      run_from(first, count_ + N);
     }
-    for (a += kPair; a < end; a += kPair) {
-      const Blocks now = first_colour(a);
-      second_colour(before, last, a - 2 * kPair);
-      before = last;
-      last = now;
-    }
-    if (end > kPair) second_colour(before, last, a - 2 * kPair);
-    second_colour(last, Blocks{}, end > kPair ? a - kPair : 0);
   }
 
  private:
-  // Two blocks, parted: positions, and what is to be stored in the end (positions or corrections).
-  struct Blocks {
-    Parting<N> base[3], moved[3], lambda;
-  };
+  // Lane by lane, a row is N chains whose links are N lanes long.
+  static constexpr int kChains = kLanes == 1 ? N : 1, kNext = kLanes == 1 ? N : kLanes;
+  static constexpr int kStep = kRows ? kLanes : 2 * kNext;  // lanes from pair to pair
+  static constexpr int kGroup = kRows ? kLanes / 2 : kLanes;
   static constexpr bool kMultipliers = R == Rule::multipliers, kDisplaced = displaced(R);
 
-  WEFT_INLINE static Wide near_end(const Blocks& b, int k) {
-    return kDisplaced ? b.base[k].near + b.moved[k].near : b.moved[k].near;
+  // Two blocks, parted: where their first colour has put them, and by how much it has moved them.
+  struct Blocks {
+    Parting<N> at[3];
+    Wide change[3];
+    Parting<N> lambda;
+  };
+
+  WEFT_INLINE void run_from(int a, int end) {
+    Blocks last = first_colour(a), before{};
+    a += kStep;
+    if (a < end) {
+      before = last;
+      last = first_colour(a);
+      for (a += kStep; a < end; a += kStep) {
+        const Blocks now = first_colour(a);
+        second_colour(before, last, a - 2 * kStep);
+        before = last;
+        last = now;
+      }
+      second_colour(before, last, a - 2 * kStep);
+    }
+    second_colour(last, Blocks{}, a - kStep);
   }
-  WEFT_INLINE static Wide far_end(const Blocks& b, int k) {
-    return kDisplaced ? b.base[k].far + b.moved[k].far : b.moved[k].far;
+
+  WEFT_INLINE Parting<N> lambdas(int a) const {
+    return {load(lambdas_ + a), load(lambdas_ + a + apart_)};
   }
+
+  // Of the constraints whose number in the first block's row is that of its lane from a on.
   WEFT_INLINE Wide scale(Wide3 e, Wide& lambda, int a) const {
     const Wide before = lambda;
-    Wide s;
-    scales_alike<kMultipliers, 1>(c_, &e, &lambda, &s);
-    if (a + 2 * kLanes > p_.count) {
-      const WideInt active = Parting<N>::numbers() < p_.count - a;
+    Wide s = scale_alike<kMultipliers>(c_, e, lambda);
+    if (a + kStep > count_) {
+      const WideInt l = lane_numbers() % kGroup;
+      const WideInt active = l / N * (2 * N) + l % N < count_ - a;
       s = select(active, s, Wide{});
       lambda = select(active, lambda, before);
     }
@@ -211,58 +239,55 @@ class AlongRowAlike {
 
   WEFT_INLINE Blocks first_colour(int a) const {
     Blocks b;
-    const float* const x[3] = {row_.x.x, row_.x.y, row_.x.z};
-    const float* const u[3] = {row_.u.x, row_.u.y, row_.u.z};
+    const Wide3 one = position<kDisplaced>(row_, a), two = position<kDisplaced>(row_, a + apart_);
+    b.at[0] = {one.x, two.x};
+    b.at[1] = {one.y, two.y};
+    b.at[2] = {one.z, two.z};
+    if constexpr (kMultipliers) b.lambda = lambdas(a);
+    Wide e[3];
+    for (int k = 0; k < 3; ++k) e[k] = b.at[k].far - b.at[k].near;
+    const Wide s = scale({e[0], e[1], e[2]}, b.lambda.near, a);
     for (int k = 0; k < 3; ++k) {
-      if constexpr (kDisplaced) b.base[k] = Parting<N>(x[k] + a);
-      b.moved[k] = Parting<N>((kDisplaced ? u[k] : x[k]) + a);
-    }
-    if constexpr (kMultipliers) b.lambda = Parting<N>(lambdas_ + a);
-    const Wide3 e{far_end(b, 0) - near_end(b, 0), far_end(b, 1) - near_end(b, 1),
-                  far_end(b, 2) - near_end(b, 2)};
-    const Wide s = scale(e, b.lambda.near, a);
-    const Wide change[3] = {e.x * s, e.y * s, e.z * s};
-    for (int k = 0; k < 3; ++k) {
-      b.moved[k].near = b.moved[k].near + change[k];
-      b.moved[k].far = b.moved[k].far - change[k];
+      b.change[k] = e[k] * s;
+      b.at[k].near = b.at[k].near + b.change[k];
+      b.at[k].far = b.at[k].far - b.change[k];
     }
     return b;
   }
 
-  // The lanes of `a` from lane N on, followed by the first N of `b`.
-  template <int... L>
-  WEFT_INLINE static Wide next(Wide a, Wide b, std::integer_sequence<int, L...>) {
-    return __builtin_shufflevector(a, b, (L + N)...);
-  }
-  // The last N lanes of `a`, followed by the others of `b`.
-  template <int... L>
-  WEFT_INLINE static Wide past(Wide a, Wide b, std::integer_sequence<int, L...>) {
-    return __builtin_shufflevector(a, b, (L + kLanes - N)...);
-  }
-
   // From the far ends of b, whose first lane is a, to the near ends that follow; stores b.
-  WEFT_INLINE void second_colour(Blocks b, const Blocks& after, int a) {
-    constexpr auto lanes = std::make_integer_sequence<int, kLanes>{};
+  WEFT_INLINE void second_colour(const Blocks& b, const Blocks& after, int a) {
     Wide e[3];
     for (int k = 0; k < 3; ++k)
-      e[k] = next(near_end(b, k), near_end(after, k), lanes) - far_end(b, k);
-    const Wide s = scale({e[0], e[1], e[2]}, b.lambda.far, a + N);
-    float* const moved[3] = {kDisplaced ? row_.u.x : row_.x.x, kDisplaced ? row_.u.y : row_.x.y,
-                             kDisplaced ? row_.u.z : row_.x.z};
+      e[k] = following<N, kGroup>(b.at[k].near, after.at[k].near) - b.at[k].far;
+    Parting<N> lambda = b.lambda;
+    const Wide s = scale({e[0], e[1], e[2]}, lambda.far, a + N);
     for (int k = 0; k < 3; ++k) {
-      const Wide change = e[k] * s;
-      b.moved[k].far = b.moved[k].far + change;
-      b.moved[k].near = b.moved[k].near - past(carried_[k], change, lanes);
+      const Wide change = e[k] * s, back = preceding<N, kGroup>(carried_[k], change);
       carried_[k] = change;
-      b.moved[k].weave(moved[k] + a);
+      Parting<N> moved;
+      moved.near = (kDisplaced ? b.change[k] : b.at[k].near) - back;
+      moved.far = kDisplaced ? change - b.change[k] : b.at[k].far + change;
+      float* const at = movable<kDisplaced>(row_) + k * row_.plane + a;
+      Wide first = moved.first(), second = moved.second();
+      if constexpr (kDisplaced) {
+        first = load(at) + first;
+        second = load(at + apart_) + second;
+      }
+      store(at, first);
+      store(at + apart_, second);
     }
-    if constexpr (kMultipliers) b.lambda.weave(lambdas_ + a);
+    if constexpr (kMultipliers) {
+      store(lambdas_ + a, lambda.first());
+      store(lambdas_ + a + apart_, lambda.second());
+    }
   }
 
-  const ProjectRows& p_;
   const Alike& c_;
+  const int count_;
   const ProjectedRow row_;
   float* const lambdas_;
+  const std::ptrdiff_t apart_;  // floats from the first to the second block
   Wide carried_[3]{};
 };
 
@@ -279,9 +304,7 @@ WEFT_INLINE void along_row_alike(const ProjectRows& p, int j, int colour, const 
     const Wide3 e = position<displaced(R)>(far, a) - position<displaced(R)>(near, a);
     Wide lambda{}, before{};
     if constexpr (kMultipliers) lambda = before = load(lambdas + a);
-    Wide scale;
-    scales_alike<kMultipliers, 1>(c, &e, &lambda, &scale);
-    scale = select(active, scale, Wide{});
+    const Wide scale = select(active, scale_alike<kMultipliers>(c, e, lambda), Wide{});
     if constexpr (kMultipliers) store(lambdas + a, select(active, lambda, before));
     const Wide3 change = e * scale;
     shift<displaced(R)>(near, a, change - delay.next(change));
@@ -291,12 +314,28 @@ WEFT_INLINE void along_row_alike(const ProjectRows& p, int j, int colour, const 
 // Row j of a family whose rows have one inverse mass and no torn constraints.
 template <Rule R>
 WEFT_INLINE void row_alike(const ProjectRows& p, int j, const Alike& c) {
-  if (p.dj > 0) return BetweenRowsAlike<R>(p, j, c).run();
-  if constexpr (kLanes > 1) {
-    if (p.far == 1) return AlongRowAlike<R, 1>(p, j, c).run();
-    if (p.far == 2) return AlongRowAlike<R, 2>(p, j, c).run();
+  if (p.dj > 0) {
+    if (p.near == 1) return BetweenRowsAlike<R, 1, 0>(p, j, c, 0, 0).run();
+    if (p.far == 1) return BetweenRowsAlike<R, 0, 1>(p, j, c, 0, 0).run();
+    return BetweenRowsAlike<R, 0, 0>(p, j, c, p.near, p.far).run();
   }
+  if (p.far == 1) return AlongRowAlike<R, 1, false>(p, j, c).run();
+  if (p.far == 2) return AlongRowAlike<R, 2, false>(p, j, c).run();
   for (int colour = 0; colour < 2; ++colour) along_row_alike<R>(p, j, colour, c);
+}
+
+// Rows j and j+1 at once of a family along rows, where that is possible.
+template <Rule R>
+WEFT_INLINE bool two_rows_alike(const ProjectRows& p, int j, const Alike& c) {
+  if (kLanes == 1 || p.dj > 0 || p.far > 2) return false;
+  if (p.row_w[j + 1] != c.w || compliance_at(p, j + 1) != c.compliance) return false;
+  if constexpr (kLanes > 1) {
+    if (p.far == 1)
+      AlongRowAlike<R, 1, true>(p, j, c).run();
+    else
+      AlongRowAlike<R, 2, true>(p, j, c).run();
+  }
+  return true;
 }
 
 // Whether any constraint of row j is longer than its rest length. Rows where none is, most of them,
@@ -306,7 +345,7 @@ WEFT_INLINE bool any_too_long(const ProjectRows& p, int j) {
   const ProjectedRow near = projected_row(p, j, p.near), far = projected_row(p, j + p.dj, p.far);
   WideInt over{};
   for (int a = 0; a < p.count; a += kLanes) {
-    const Wide3 e = load3(far.x, a) - load3(near.x, a);
+    const Wide3 e = position<false>(far, a) - position<false>(near, a);
     WideInt longer = dot(e, e) > p.rest * p.rest;
     if (a + kLanes > p.count) longer = longer & lanes_below(p.count - a);
     if constexpr (kTorn) longer = longer & alive_lanes(p, j, a);
@@ -330,7 +369,10 @@ void sweep_family(const ProjectRows& family, const physics::Projection& given) {
         // A division is long to wait for, and mostly the row before has had the same.
         if (w != constants.w || compliance_at(p, j) != constants.compliance)
           constants = alike(p, j, w);
-        row_alike<R>(p, j, constants);
+        if (j + 1 < end && two_rows_alike<R>(p, j, constants))
+          ++j;
+        else
+          row_alike<R>(p, j, constants);
         continue;
       }
     }

@@ -52,7 +52,7 @@ template <bool Multipliers>
 WEFT_INLINE Wide3 correction(const ProjectRows& p, const ProjectedRow& near,
                              const ProjectedRow& far, int j, int a) {
   const Wide compliance = wide(p.compliance ? p.compliance[j] : 0);
-  const Wide3 e = load3(far.x, a) - load3(near.x, a);
+  const Wide3 e = position<false>(far, a) - position<false>(near, a);
   const Wide length = sqrt(squared_length(e));
   const Wide inertia = (load(near.w + a) + load(far.w + a)) * p.weight + compliance;
   Wide violation = length - p.rest;

@@ -143,11 +143,11 @@ struct AdvanceRow {
   int columns;
   Row3 x, v;
   const float* w;
-  Row3 f;          // force [N], negated never; unused by predict
+  Row3 f;  // force [N]; corrections [m]: predict first does as apply_corrections would, if given
   Row3 predicted;  // where predict took particles, if given; what velocity compares with
   Advance advance;
-  // 1/s; predict: > 0 where velocities still lack how far free particles are from `predicted`, times
-  // this.
+  // 1/s; predict: > 0 where velocities still lack how far free particles are from `predicted`, or the
+  // corrections `f`, times this.
   float inverse_dt;
 };
 

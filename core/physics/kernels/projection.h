@@ -14,28 +14,33 @@
 namespace weft::WEFT_KERNELS {
 
 struct ProjectedRow {
-  Row3 x, u;
+  float *x, *u;          // first component
+  std::ptrdiff_t plane;  // floats from one component to the next
   const float* w;
 };
 
 // Lane a of the result is an end of constraint a.
 WEFT_INLINE ProjectedRow projected_row(const ProjectRows& p, int j, int first) {
   const std::ptrdiff_t at = std::ptrdiff_t(j) * p.stride + first;
-  return {{p.x.x + at, p.x.y + at, p.x.z + at},
-          p.u.x ? Row3{p.u.x + at, p.u.y + at, p.u.z + at} : Row3{},
-          p.w + at};
+  return {p.x.x + at, p.u.x ? p.u.x + at : nullptr, p.x.y - p.x.x, p.w + at};
 }
 
 template <bool Displaced>
 WEFT_INLINE Wide3 position(const ProjectedRow& r, std::ptrdiff_t i) {
-  if constexpr (Displaced) return load3(r.x, i) + load3(r.u, i);
-  return load3(r.x, i);
+  if constexpr (Displaced) return load_planes(r.x + i, r.plane) + load_planes(r.u + i, r.plane);
+  return load_planes(r.x + i, r.plane);
+}
+
+// What the sweeps change.
+template <bool Displaced>
+WEFT_INLINE float* movable(const ProjectedRow& r) {
+  return Displaced ? r.u : r.x;
 }
 
 template <bool Displaced>
 WEFT_INLINE void shift(const ProjectedRow& r, std::ptrdiff_t i, Wide3 change) {
-  const Row3& moved = Displaced ? r.u : r.x;
-  store3(moved, i, load3(moved, i) + change);
+  float* const at = movable<Displaced>(r) + i;
+  store_planes(at, r.plane, load_planes(at, r.plane) + change);
 }
 
 // Constraints a … of row j that are not torn.
@@ -64,22 +69,45 @@ WEFT_INLINE Alike alike(const ProjectRows& p, int j, float w) {
   return {k, k * p.rest, p.rest, compliance, 1 / inertia, w};
 }
 
-// The scales of e that move the near ends of K blocks of constraints by e times it.
-template <bool Multipliers, int K>
-WEFT_INLINE void scales_alike(const Alike& c, const Wide3* e, Wide* lambda, Wide* scale) {
-  Wide squared[K], reciprocal[K];
-  for (int k = 0; k < K; ++k) squared[k] = squared_length(e[k]);
-  reciprocal_roots<K>(squared, reciprocal);
-  for (int k = 0; k < K; ++k) {
-    if constexpr (!Multipliers) {
-      scale[k] = fnma(wide(c.kl), reciprocal[k], wide(c.k));
-    } else {
-      const Wide violation = fms(squared[k], reciprocal[k], wide(c.rest));
-      const Wide change = fma(wide(c.compliance), lambda[k], violation) * c.inverse_inertia;
-      lambda[k] = lambda[k] - change;
-      scale[k] = (change * c.w) * reciprocal[k];
-    }
-  }
+// The scale of e that moves the near ends of a block of constraints by e times it.
+template <bool kMultipliers>
+WEFT_INLINE Wide scale_alike(const Alike& c, Wide3 e, Wide& lambda) {
+  const Wide length = sqrt(squared_length(e)), reciprocal = 1.0f / length;
+  if constexpr (!kMultipliers) return fnma(wide(c.kl), reciprocal, wide(c.k));
+  const Wide violation = length - c.rest;
+  const Wide change = fma(wide(c.compliance), lambda, violation) * c.inverse_inertia;
+  lambda = lambda - change;
+  return (change * c.w) * reciprocal;
+}
+
+// The lanes of a from lane N on, followed by the first N of b: of every group of kGroup lanes.
+template <int N, int kGroup, int... L>
+WEFT_INLINE Wide following(Wide a, Wide b, std::integer_sequence<int, L...>) {
+  constexpr auto from = [](int l) {
+    return l % kGroup + N < kGroup ? l + N : kLanes + l + N - kGroup;
+  };
+  return __builtin_shufflevector(a, b, from(L)...);
+}
+template <int N, int kGroup = kLanes>
+WEFT_INLINE Wide following(Wide a, Wide b) {
+  if constexpr (kLanes > 1)
+    return following<N, kGroup>(a, b, std::make_integer_sequence<int, kLanes>{});
+  else
+    return b;
+}
+
+// The last N lanes of a, followed by the first of b: of every group of kGroup lanes.
+template <int N, int kGroup, int... L>
+WEFT_INLINE Wide preceding(Wide a, Wide b, std::integer_sequence<int, L...>) {
+  constexpr auto from = [](int l) { return l % kGroup < N ? l + kGroup - N : kLanes + l - N; };
+  return __builtin_shufflevector(a, b, from(L)...);
+}
+template <int N, int kGroup = kLanes>
+WEFT_INLINE Wide preceding(Wide a, Wide b) {
+  if constexpr (kLanes > 1)
+    return preceding<N, kGroup>(a, b, std::make_integer_sequence<int, kLanes>{});
+  else
+    return a;
 }
 
 // Constraints (i, i+N) of one colour along a row fill every other group of N lanes. Two blocks of
@@ -88,32 +116,30 @@ template <int N>
 struct Parting {
   Wide near, far;
   WEFT_INLINE Parting() : near{}, far{} {}
-  WEFT_INLINE explicit Parting(const float* p) : Parting(load(p), load(p + kLanes)) {}
   WEFT_INLINE Parting(Wide first, Wide second)
       : Parting(first, second, std::make_integer_sequence<int, kLanes>{}) {}
-  WEFT_INLINE void weave(float* p) const { weave(p, std::make_integer_sequence<int, kLanes>{}); }
-
-  // Number of the constraint in lane l of the near ends, counted from the first lane of the blocks.
-  WEFT_INLINE static WideInt numbers() {
-    const WideInt l = lane_numbers();
-    return l / N * (2 * N) + l % N;
+  WEFT_INLINE Wide first() const { return woven<0>(std::make_integer_sequence<int, kLanes>{}); }
+  WEFT_INLINE Wide second() const {
+    return woven<kLanes>(std::make_integer_sequence<int, kLanes>{});
   }
 
- private:
-  // Lane l of the near ends lies in lane place(l) of the two blocks, its far end N lanes on.
+  // Lane of the two blocks that lane l of the near ends comes from; its far end lies N lanes on.
   static constexpr int place(int l) { return l / N * 2 * N + l % N; }
+
+ private:
   // Lane m of the two blocks holds near end index(m), or kLanes + far end.
   static constexpr int index(int m) {
     return m / (2 * N) * N + m % N + (m / N % 2 == 0 ? 0 : kLanes);
   }
   template <int... L>
   WEFT_INLINE Parting(Wide a, Wide b, std::integer_sequence<int, L...>)
-      : near(__builtin_shufflevector(a, b, place(L)...)),
-        far(__builtin_shufflevector(a, b, (place(L) + N)...)) {}
-  template <int... L>
-  WEFT_INLINE void weave(float* p, std::integer_sequence<int, L...>) const {
-    store(p, __builtin_shufflevector(near, far, index(L)...));
-    store(p + kLanes, __builtin_shufflevector(near, far, index(L + kLanes)...));
+      // One lane alone is an end whatever N is, and its index without meaning.
+      : near(kLanes > 1 ? __builtin_shufflevector(a, b, (place(L) % (2 * kLanes))...) : a),
+        far(kLanes > 1 ? __builtin_shufflevector(a, b, ((place(L) + N) % (2 * kLanes))...) : b) {}
+  template <int kFirst, int... L>
+  WEFT_INLINE Wide woven(std::integer_sequence<int, L...>) const {
+    if constexpr (kLanes == 1) return kFirst ? far : near;
+    return __builtin_shufflevector(near, far, (index(L + kFirst) % (2 * kLanes))...);
   }
 };
 

@@ -34,23 +34,11 @@ class ReciprocalRoot {
   Wide guess_, e_, series_;
 };
 
-// Those of one or two values side by side; of two, the second by the processor's root and division, so
-// that its divider works beside its multipliers.
-template <int K>
-WEFT_INLINE void reciprocal_roots(const Wide* s, Wide* results) {
-  static_assert(K == 1 || K == 2);
-  ReciprocalRoot r;
-  r.guess(s[0]);
-  if constexpr (K == 2) results[1] = sqrt(s[1]);
-  r.refine();
-  if constexpr (K == 2) results[1] = 1.0f / results[1];
-  results[0] = r.result();
-}
-
 WEFT_INLINE Wide reciprocal_root(Wide s) {
-  Wide result;
-  reciprocal_roots<1>(&s, &result);
-  return result;
+  ReciprocalRoot r;
+  r.guess(s);
+  r.refine();
+  return r.result();
 }
 
 // |e|², but not zero: two coincident particles have no direction, and e times whatever comes of their

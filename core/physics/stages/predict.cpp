@@ -1,7 +1,7 @@
 // Stages "predict" and "velocity" of the methods that project positions: before the sweeps every
 // particle moves by its velocity and gravity, after them the velocity gains what the sweeps moved it
-// by. Between substeps where nobody else looks at velocities that is left to the next predict
-// (passes.h).
+// by, or both position and velocity the corrections that the sweeps have found. Between substeps where
+// nobody else looks that is left to the next predict (passes.h).
 #include "physics/stages/stages.h"
 
 namespace weft::physics {
@@ -21,16 +21,20 @@ AdvanceRow rows_of(const ClothParts& parts, int begin, int end) {
 
 class Predict final : public RowStage {
  public:
-  Predict(const ClothParts& parts, Multipliers* multipliers)
+  Predict(const ClothParts& parts, Multipliers* multipliers, Rows* corrections)
       : RowStage("predict", "positions by velocity and gravity", 0, parts.particles(), "particles"),
         parts_(parts),
-        multipliers_(multipliers) {}
+        multipliers_(multipliers),
+        corrections_(corrections) {}
   // Where what the sweeps did is not in them yet, it adds that itself.
   Velocities velocities(double) const override { return Velocities::left_alone; }
   void run(int begin, int end, const Substep& s) override {
     AdvanceRow a = rows_of(parts_, begin, end);
     a.advance = advance_of(parts_, s);
-    if (!s.velocities_known) a.inverse_dt = float(1 / s.dt);
+    if (!s.velocities_known) {
+      a.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
+      if (corrections_) a.f = corrections_->row(begin);
+    }
     parts_.kernels.predict(a);
     if (multipliers_) multipliers_->clear(begin, end);
   }
@@ -38,6 +42,7 @@ class Predict final : public RowStage {
  private:
   ClothParts parts_;
   Multipliers* multipliers_;
+  Rows* corrections_;
 };
 
 class Velocity final : public RowStage {
@@ -64,6 +69,29 @@ class Velocity final : public RowStage {
   bool compliant_;
 };
 
+// What the sweeps of the compliant method have found goes into positions and velocities.
+class Corrections final : public RowStage {
+ public:
+  Corrections(const ClothParts& parts, Rows& corrections)
+      : RowStage("velocity", "positions and velocities gain the corrections", 0, parts.particles(),
+                 "particles"),
+        parts_(parts),
+        corrections_(corrections) {}
+  Velocities velocities(double) const override { return Velocities::from_positions; }
+  void run(int begin, int end, const Substep& s) override {
+    if (!s.velocities_wanted) return;
+    AdvanceRow a = rows_of(parts_, begin, end);
+    a.w = nullptr;  // they are weighed already
+    a.f = corrections_.row(begin);
+    a.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
+    parts_.kernels.apply_corrections(a);
+  }
+
+ private:
+  ClothParts parts_;
+  Rows& corrections_;
+};
+
 }  // namespace
 
 Multipliers::Multipliers(const Lattice& lattice, std::size_t families_)
@@ -80,8 +108,13 @@ void Multipliers::clear(int begin, int end) {
   for (std::size_t f = 0; f < families; ++f) std::fill(row(f, begin), row(f, end), 0.0f);
 }
 
-std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* multipliers) {
-  return std::make_unique<Predict>(parts, multipliers);
+std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* multipliers,
+                                       Rows* corrections) {
+  return std::make_unique<Predict>(parts, multipliers, corrections);
+}
+
+std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections) {
+  return std::make_unique<Corrections>(parts, corrections);
 }
 
 std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant) {

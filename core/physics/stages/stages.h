@@ -60,7 +60,9 @@ int greatest_reach(const ClothParts& parts);
 Advance advance_of(const ClothParts& parts, const Substep& substep);
 
 std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped);
-std::unique_ptr<RowStage> make_predict(const ClothParts& parts, struct Multipliers* multipliers);
+// `corrections`: what sweeps have found, if they gather it.
+std::unique_ptr<RowStage> make_predict(const ClothParts& parts, struct Multipliers* multipliers,
+                                       Rows* corrections);
 std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant);
 std::unique_ptr<RowStage> make_keyed_pins(const ClothParts& parts);
 // m, past which a constraint tears.

@@ -141,30 +141,6 @@ class GaussSeidel final : public RowStage {
   int colour_;
 };
 
-// What the sweeps of the compliant method have found goes into positions and velocities.
-class Corrections final : public RowStage {
- public:
-  Corrections(const ClothParts& parts, Rows& corrections)
-      : RowStage("velocity", "positions and velocities gain the corrections", 0, parts.particles(),
-                 "particles"),
-        parts_(parts),
-        corrections_(corrections) {}
-  void run(int begin, int end, const Substep& s) override {
-    Lattice& l = parts_.lattice;
-    AdvanceRow a{};
-    a.columns = (end - begin) * l.stride;  // rows as one long row, padding and all
-    a.x = l.x.row(begin);
-    a.v = l.v.row(begin);
-    a.f = corrections_.row(begin);
-    a.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
-    parts_.kernels.apply_corrections(a);
-  }
-
- private:
-  ClothParts parts_;
-  Rows& corrections_;
-};
-
 // Relaxation ω of the summed corrections. n sweeps leave the share p = (1 - ω λ)^n of a mode of the
 // constraint system with the eigenvalue λ, relative to its diagonal. Where velocities are made of
 // positions the mode follows z² - p (2 z - 1) = 0, so that |z| <= 1 for -1/3 <= p <= 1. The largest
@@ -331,10 +307,6 @@ void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options, S
         stages.push_back(
             std::make_unique<GaussSeidel>(parts, name, dj, colour, std::move(families)));
     }
-}
-
-std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections) {
-  return std::make_unique<Corrections>(parts, corrections);
 }
 
 std::unique_ptr<RowStage> make_jacobi(const ClothParts& parts, const SweepOptions& options) {
