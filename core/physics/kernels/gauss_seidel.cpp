@@ -192,8 +192,8 @@ class AlongRowAlike {
  private:
   // Lane by lane, a row is N chains whose links are N lanes long.
   static constexpr int kChains = kLanes == 1 ? N : 1, kNext = kLanes == 1 ? N : kLanes;
-  static constexpr int kStep = kRows ? kLanes : 2 * kNext;  // lanes from pair to pair
-  static constexpr int kGroup = kRows ? kLanes / 2 : kLanes;
+  static constexpr int kStep = kRows ? kLanes : 2 * kNext;    // lanes from pair to pair
+  static constexpr int kGroup = kRows ? kLanes / 2 : kLanes;  // ends of one row
   static constexpr bool kMultipliers = R == Rule::multipliers, kDisplaced = displaced(R);
 
   // Two blocks, parted: where their first colour has put them, and by how much it has moved them.
@@ -224,7 +224,7 @@ class AlongRowAlike {
     return {load(lambdas_ + a), load(lambdas_ + a + apart_)};
   }
 
-  // Of the constraints whose number in the first block's row is that of its lane from a on.
+  // What scales the edges e of one colour. In its row, the constraint of lane 0 has number a.
   WEFT_INLINE Wide scale(Wide3 e, Wide& lambda, int a) const {
     const Wide before = lambda;
     Wide s = scale_alike<kMultipliers>(c_, e, lambda);
