@@ -72,6 +72,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
   first_site_.resize(blocks_.all().size());
   bodies_.resize(n);
   separated_.resize(n);
+  owners_.resize(n);
   friction_.resize(n);
 }
 
@@ -107,6 +108,8 @@ void SelfContact::sort(double margin, Threads& threads) {
 
 void SelfContact::find(double margin, Threads& threads) {
   search_.find(thickness_ + float(margin), threads);
+  owners_end_.resize(search_.chunks());
+  threads.share(search_.chunks(), search_.few(), [&](std::size_t k) { list_owners(k); });
   found_ = 0;
   for (std::size_t k = 0; k < search_.chunks(); ++k) found_ += search_.pairs(k).count;
 }
@@ -171,7 +174,7 @@ SelfContact::Overlaps SelfContact::overlaps() {
 
 std::size_t SelfContact::bytes() const {
   std::size_t bytes = search_.bytes() + blocks_.bytes();
-  bytes += particles_ * (2 * sizeof(Body) + 4) + speeds_.capacity() * 4;
+  bytes += particles_ * (2 * sizeof(Body) + sizeof(Owner) + 4) + speeds_.capacity() * 4;
   for (const Close& c : close_) bytes += 8 * c.owner.capacity();
   for (const Room& r : rooms_) bytes += r.asked.capacity() * (sizeof(Asked) + 8);
   return bytes;

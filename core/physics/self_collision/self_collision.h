@@ -73,6 +73,7 @@ class SelfContact {
   SelfContact(const Scene& scene, std::vector<Sheet> sheets, const KernelTable& kernels);
   void list_sites(Threads& threads);
   bool few_pairs() const { return found_ < 8192; }  // one thread pushes them apart faster
+  void list_owners(std::size_t chunk);
   void begin_response(Threads& threads);
   void gather(std::size_t chunk);
   void list_close(std::size_t chunk);
@@ -87,6 +88,13 @@ class SelfContact {
   std::vector<std::size_t> first_site_;  // of every block
   std::size_t found_ = 0;                // pairs
   std::size_t count_ = 0;                // particles of active blocks
+  struct Owner {                         // a sorted particle with pairs
+    std::int32_t number;                 // among the sorted
+    std::uint32_t sheet;
+    std::size_t offset;  // in the arrays of the sheet's lattice
+  };
+  std::vector<Owner> owners_;            // of chunk k from search_.begin(k) on,
+  std::vector<std::size_t> owners_end_;  // to here
   struct Close {                         // pairs of a chunk that may touch in this run
     std::vector<std::int32_t> owner, neighbour;
     int count = 0;

@@ -14,29 +14,42 @@ constexpr std::size_t kPadding = 32;  // that kernels may write
 
 }  // namespace
 
-void SelfContact::gather(std::size_t chunk) {
+// Once a search: without branches, as who has pairs cannot be foretold.
+void SelfContact::list_owners(std::size_t chunk) {
+  std::size_t end = search_.begin(chunk);
   for (std::size_t a = search_.begin(chunk); a < search_.begin(chunk + 1); ++a) {
-    if (search_.counts()[a] == 0) continue;
     const Site s = search_.site(a);
     const Sheet& sheet = sheets_[s.cloth];
-    Lattice& l = *sheet.lattice;
-    const Row3 x = l.x.row(s.row), v = l.v.row(s.row);
-    const float held = sheet.course ? sheet.thickness : sheet.thickness * kHeld;
-    bodies_[a] = {{x.x[s.column], x.y[s.column], x.z[s.column], held},
-                  {v.x[s.column], v.y[s.column], v.z[s.column], l.w(s.row, s.column)}};
+    const auto stride = std::size_t(sheet.lattice->stride);
     friction_[a] = sheet.course ? kCourseRule : sheet.friction;
+    owners_[end] = {std::int32_t(a), s.cloth, s.row * stride + s.column};
+    end += search_.counts()[a] > 0;
+  }
+  owners_end_[chunk] = end;
+}
+
+void SelfContact::gather(std::size_t chunk) {
+  for (std::size_t k = search_.begin(chunk); k < owners_end_[chunk]; ++k) {
+    const Owner o = owners_[k];
+    const Sheet& sheet = sheets_[o.sheet];
+    Lattice& l = *sheet.lattice;
+    const Row3 x = l.x.row(0), v = l.v.row(0);
+    const auto a = std::size_t(o.number), i = o.offset;
+    const float held = sheet.course ? sheet.thickness : sheet.thickness * kHeld;
+    bodies_[a] = {{x.x[i], x.y[i], x.z[i], held}, {v.x[i], v.y[i], v.z[i], l.inverse_mass[i]}};
   }
 }
 
 void SelfContact::scatter(std::size_t chunk) {
-  for (std::size_t a = search_.begin(chunk); a < search_.begin(chunk + 1); ++a) {
-    const Body b = bodies_[a];
-    if (search_.counts()[a] == 0 || b.v[3] <= 0) continue;
-    const Site s = search_.site(a);
-    Lattice& l = *sheets_[s.cloth].lattice;
-    const Row3 x = l.x.row(s.row), v = l.v.row(s.row);
-    x.x[s.column] = b.x[0], x.y[s.column] = b.x[1], x.z[s.column] = b.x[2];
-    v.x[s.column] = b.v[0], v.y[s.column] = b.v[1], v.z[s.column] = b.v[2];
+  for (std::size_t k = search_.begin(chunk); k < owners_end_[chunk]; ++k) {
+    const Owner o = owners_[k];
+    const Body& b = bodies_[std::size_t(o.number)];
+    if (b.v[3] <= 0) continue;
+    const std::size_t i = o.offset;
+    Lattice& l = *sheets_[o.sheet].lattice;
+    const Row3 x = l.x.row(0), v = l.v.row(0);
+    x.x[i] = b.x[0], x.y[i] = b.x[1], x.z[i] = b.x[2];
+    v.x[i] = b.v[0], v.y[i] = b.v[1], v.z[i] = b.v[2];
   }
 }
 
