@@ -142,7 +142,12 @@ void add_moves(std::vector<Case>& cases) {
     return [=](const KernelTable& k, Patch& p) { (k.*kernel)(advance_row(p)); };
   };
   cases.push_back({"integrate", 2, move(&KernelTable::integrate)});
-  cases.push_back({"predict", 2, move(&KernelTable::predict)});
+  cases.push_back({"predict, velocities first", 2, [](const KernelTable& k, Patch& p) {
+                     AdvanceRow r = advance_row(p);
+                     r.f = {};
+                     k.predict(r);
+                   }});
+  cases.push_back({"predict, corrections first", 2, move(&KernelTable::predict)});
   cases.push_back({"velocity", 2, move(&KernelTable::velocity)});
   cases.push_back({"apply_corrections", 2, move(&KernelTable::apply_corrections)});
 }

@@ -71,7 +71,7 @@ void Passes::prepare(double dt) {
   for (Pass& p : passes_)
     if (p.whole) p.whole->prepare(dt);
   velocities_between_ =
-      stages_.empty() || stages_.back()->velocities(dt) != Velocities::from_positions ||
+      stages_.empty() || stages_.back()->velocities(dt) != Velocities::from_sweeps ||
       !std::all_of(stages_.begin(), stages_.end() - 1, [&](const std::unique_ptr<Stage>& s) {
         return s->velocities(dt) == Velocities::left_alone;
       });

@@ -51,7 +51,7 @@ struct Substeps {
 
 // What a stage has to do with the velocities of particles: it reads or changes them as it moves
 // particles; it leaves them alone; or it gives them what the sweeps have brought, which can wait.
-enum class Velocities { used, left_alone, from_positions };
+enum class Velocities { used, left_alone, from_sweeps };
 
 // Rows begin … end-1.
 struct RowSpan {

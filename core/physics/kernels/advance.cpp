@@ -32,7 +32,7 @@ void predict(const AdvanceRow& given) {
       const Wide3 change = load3(r.f, i);
       x = x + change;
       before = before + change * wide(r.inverse_dt);
-      store3(r.f, i, Wide3{});
+      store3(r.f, i, Wide3{});  // for the next sweeps
     } else if (r.inverse_dt > 0) {
       before = gained(r, x, i);
     }

@@ -110,7 +110,8 @@ struct FamilyRow {
 };
 
 // One family of projected constraints. Which of the optional parts are given picks the rule: a strain
-// limit, compliance with multipliers, compliance alone, or rigid constraints.
+// limit, compliance with multipliers, compliance alone, or rigid constraints. The component arrays of x,
+// v and u lie equally far apart.
 struct ProjectRows {
   int rows;
   int stride;

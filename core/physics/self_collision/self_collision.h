@@ -88,14 +88,16 @@ class SelfContact {
   std::vector<std::size_t> first_site_;  // of every block
   std::size_t found_ = 0;                // pairs
   std::size_t count_ = 0;                // particles of active blocks
-  struct Owner {                         // a sorted particle with pairs
-    std::int32_t number;                 // among the sorted
+  // A sorted particle with pairs.
+  struct Owner {
+    std::int32_t number;  // among the sorted
     std::uint32_t sheet;
     std::size_t offset;  // in the arrays of the sheet's lattice
   };
   std::vector<Owner> owners_;            // of chunk k from search_.begin(k) on,
   std::vector<std::size_t> owners_end_;  // to here
-  struct Close {                         // pairs of a chunk that may touch in this run
+  // Pairs of a chunk that may touch in this run.
+  struct Close {
     std::vector<std::int32_t> owner, neighbour;
     int count = 0;
   };

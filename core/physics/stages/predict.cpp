@@ -53,7 +53,7 @@ class Velocity final : public RowStage {
         parts_(parts),
         compliant_(compliant) {}
   Velocities velocities(double dt) const override {
-    return velocity_from_positions(parts_.scene.solver, compliant_, dt) ? Velocities::from_positions
+    return velocity_from_positions(parts_.scene.solver, compliant_, dt) ? Velocities::from_sweeps
                                                                         : Velocities::left_alone;
   }
   void run(int begin, int end, const Substep& s) override {
@@ -77,7 +77,7 @@ class Corrections final : public RowStage {
                  "particles"),
         parts_(parts),
         corrections_(corrections) {}
-  Velocities velocities(double) const override { return Velocities::from_positions; }
+  Velocities velocities(double) const override { return Velocities::from_sweeps; }
   void run(int begin, int end, const Substep& s) override {
     if (!s.velocities_wanted) return;
     AdvanceRow a = rows_of(parts_, begin, end);

@@ -82,7 +82,7 @@ class Velocity final : public RowStage {
         parts_(parts),
         history_(history) {}
   Velocities velocities(double dt) const override {
-    return velocity_from_positions(parts_.scene.solver, true, dt) ? Velocities::from_positions
+    return velocity_from_positions(parts_.scene.solver, true, dt) ? Velocities::from_sweeps
                                                                   : Velocities::used;
   }
   void run(int begin, int end, const Substep& s) override {
