@@ -65,7 +65,7 @@ void Wavefront::choose_tiles(int count, int threads) {
       const int worth = std::min(8, int(std::ceil(kTaskNanoseconds / tile)));
       // At both ends of a frame threads wait for each other, the longer the longer chunks are.
       chunk_substeps_ =
-          std::min(std::max(chunk_substeps_, worth), std::max(count / (4 * threads), kShortChunk));
+          std::min(std::max(chunk_substeps_, worth), std::max(count / (2 * threads), kShortChunk));
     }
     chunk_substeps_ = std::clamp(count / threads, 1, chunk_substeps_);
   }
@@ -87,7 +87,9 @@ Wavefront::Chunk Wavefront::chunk(int number, int first, int count) const {
   return {first, count, slot, tiles, span, std::max(0, tiles - 1 - span)};
 }
 
-// Chunks grow evenly up to the longest and shrink again at the end.
+// The first chunks grow and the last shrink. The first lasts just until the last thread has begun,
+// which is when all chunks before that thread's are `ahead` tiles further; the same backwards in time.
+// Those between are as long as each other, a whole number for every thread.
 void Wavefront::choose_chunks(int count, int threads) {
   chunks_.clear();
   most_tiles_ = 0;
@@ -96,14 +98,21 @@ void Wavefront::choose_chunks(int count, int threads) {
     most_tiles_ = std::max(most_tiles_, chunks_.back().tiles);
     first += length;
   };
-  const auto length = [&](int n) { return std::max(1, chunk_substeps_ * n / threads); };
+  const Chunk whole = chunk(0, 0, chunk_substeps_);
+  const double ahead = (whole.span + 1) * threads;
+  const double share = std::min(1.0, ahead / std::max(2 * whole.tiles - ahead, 1.0));
+  const auto length = [&](int n) {
+    const double grown = share + (1 - share) * (n - 1) / std::max(threads - 1, 1);
+    return std::max(1, int(std::lround(chunk_substeps_ * grown)));
+  };
   int rising = 1;
   for (; rising < threads && count >= 2 * length(rising) + chunk_substeps_; ++rising) {
     add(length(rising));
     count -= 2 * length(rising);
   }
-  const int between = (count + chunk_substeps_ - 1) / chunk_substeps_;
-  for (int n = 0; n < between; ++n) add(count * (n + 1) / between - count * n / between);
+  int between = (count + chunk_substeps_ - 1) / chunk_substeps_;
+  between = std::min(count, (between + threads - 1) / threads * threads);
+  for (int n = 0; n < between; ++n) add(count / between + (n < count % between));
   while (--rising > 0) add(length(rising));
 }
 
