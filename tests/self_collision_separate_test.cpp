@@ -22,13 +22,16 @@ struct Pairs {
 // Bodies at random in a cube of side 2, some of them pinned, some at the same place, and all ordered pairs
 // of the first `owners` with any.
 struct Crowd {
-  Crowd(int count, int owners, bool course) : owners(owners) {
+  Crowd(int count, int owners, bool course, bool alike = false) : owners(owners) {
     Random random(std::uint64_t(count), 0);
     const auto next = [&] { return float(random.symmetric()); };
     for (int a = 0; a < count; ++a) {
       bodies.push_back({{next(), next(), next(), kDistance * (1 + 0.2f * next())},
                         {next(), next(), next(), a % 7 == 3 ? 0 : 1 + 0.5f * next()}});
-      friction.push_back(course ? kCourseRule : a % 3 == 0 ? 0 : 0.5f * std::abs(next()));
+      friction.push_back(course       ? kCourseRule
+                         : alike      ? 0.3f
+                         : a % 3 == 0 ? 0
+                                      : 0.5f * std::abs(next()));
     }
     if (count > 8) std::copy_n(bodies[2].x, 3, bodies[5].x);
     for (int a = 0; a < owners; ++a)
@@ -99,33 +102,44 @@ class Separating : public testing::TestWithParam<Simd> {
   void SetUp() override {
     if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
   }
-  static Pairs within(const Crowd& crowd, float reach, Simd simd) {
-    Pairs found;
-    found.owner.resize(crowd.pairs.owner.size());
-    found.neighbour.resize(crowd.pairs.owner.size());
-    const int count = kernel_table(simd).pairs_within(
-        {crowd.bodies.data(), crowd.count_pairs, crowd.pairs.owner.data(),
-         crowd.pairs.neighbour.data(), reach, found.owner.data(), found.neighbour.data()});
-    found.owner.resize(std::size_t(count));
-    found.neighbour.resize(std::size_t(count));
-    return found;
+  // Those that touch and, where asked for, those that are close.
+  static std::pair<Pairs, Pairs> found(const Crowd& crowd, float reach, bool close, Simd simd) {
+    Pairs touching = crowd.pairs, near = crowd.pairs;
+    ClosePairs p{crowd.bodies.data(),
+                 crowd.count_pairs,
+                 crowd.pairs.owner.data(),
+                 crowd.pairs.neighbour.data(),
+                 reach,
+                 {},
+                 {touching.owner.data(), touching.neighbour.data()}};
+    if (close) p.close = {near.owner.data(), near.neighbour.data()};
+    const CloseFound count = kernel_table(simd).close_pairs(p);
+    touching.owner.resize(std::size_t(count.touching + kPadding));  // kernels read beyond the last
+    touching.neighbour.resize(touching.owner.size());
+    near.owner.resize(std::size_t(count.close));
+    near.neighbour.resize(near.owner.size());
+    return {touching, near};
   }
-  static std::vector<Body> separated(const Crowd& crowd, float& fastest, Simd simd) {
+  static std::vector<Body> separated(const Crowd& crowd, float& fastest, bool alike, Simd simd) {
     std::vector<Body> out = crowd.bodies;
-    Pairs room{crowd.pairs};
-    std::vector<Asked> asked(crowd.pairs.owner.size());
-    fastest =
+    Pairs touching = found(crowd, 1, false, simd).first;
+    std::vector<Asked> asked(touching.owner.size());
+    std::vector<std::int32_t> owner(touching.owner.size());
+    std::vector<Body> moved(touching.owner.size());
+    const Separated done =
         kernel_table(simd).separate({crowd.bodies.data(),
-                                     0,
-                                     crowd.owners,
-                                     crowd.count_pairs,
-                                     crowd.pairs.owner.data(),
-                                     crowd.pairs.neighbour.data(),
-                                     crowd.friction.data(),
+                                     int(touching.owner.size()) - kPadding,
+                                     {touching.owner.data(), touching.neighbour.data()},
+                                     asked.data(),
+                                     alike ? nullptr : crowd.friction.data(),
+                                     crowd.friction[0],
                                      0.25f,
                                      100,
-                                     out.data(),
-                                     {room.owner.data(), room.neighbour.data(), asked.data()}});
+                                     owner.data(),
+                                     moved.data()});
+    for (int n = 0; n < done.moved; ++n)
+      out[std::size_t(owner[std::size_t(n)])] = moved[std::size_t(n)];
+    fastest = done.fastest;
     return out;
   }
 };
@@ -134,25 +148,35 @@ TEST_P(Separating, FindsThePairsWithinADistance) {
   for (const int count : {1, 2, 5, 40, 67})
     for (const float reach : {0.5f, 1.0f, 2.5f}) {
       const Crowd crowd(count, count, false);
-      const Pairs found = within(crowd, reach, GetParam());
-      Pairs expected;
-      for (int k = 0; k < crowd.count_pairs; ++k) {
-        const int a = crowd.pairs.owner[std::size_t(k)], b = crowd.pairs.neighbour[std::size_t(k)];
-        if (!crowd.near(a, b, reach)) continue;
-        expected.owner.push_back(a);
-        expected.neighbour.push_back(b);
-      }
-      EXPECT_EQ(found.owner, expected.owner);
-      EXPECT_EQ(found.neighbour, expected.neighbour);
+      const auto [touching, close] = found(crowd, reach, true, GetParam());
+      const auto expected = [&](double within) {
+        Pairs pairs;
+        for (int k = 0; k < crowd.count_pairs; ++k) {
+          const int a = crowd.pairs.owner[std::size_t(k)];
+          const int b = crowd.pairs.neighbour[std::size_t(k)];
+          if (!crowd.near(a, b, within)) continue;
+          pairs.owner.push_back(a);
+          pairs.neighbour.push_back(b);
+        }
+        return pairs;
+      };
+      EXPECT_EQ(close.owner, expected(reach).owner);
+      EXPECT_EQ(close.neighbour, expected(reach).neighbour);
+      const Pairs touch = expected(1);
+      ASSERT_EQ(touching.owner.size(), touch.owner.size() + kPadding);
+      EXPECT_TRUE(std::equal(touch.owner.begin(), touch.owner.end(), touching.owner.begin()));
+      EXPECT_TRUE(
+          std::equal(touch.neighbour.begin(), touch.neighbour.end(), touching.neighbour.begin()));
     }
 }
 
 TEST_P(Separating, MovesOwnersAsTheRulesSay) {
-  for (const bool course : {false, true})
+  for (const int rule : {0, 1, 2})
     for (const int count : {2, 9, 40, 67}) {
-      const Crowd crowd(count, count - 1, course);
+      const bool course = rule == 1, alike = rule == 2;
+      const Crowd crowd(count, count - 1, course, alike);
       float fastest = 0;
-      const std::vector<Body> out = separated(crowd, fastest, GetParam());
+      const std::vector<Body> out = separated(crowd, fastest, alike, GetParam());
       double greatest = 0;
       int moved = 0;
       for (int a = 0; a < count; ++a) {
@@ -180,8 +204,8 @@ TEST_P(Separating, HasTheBitsOfTheScalarKernel) {
   for (const bool course : {false, true}) {
     const Crowd crowd(67, 50, course);
     float fastest = 0, fastest_scalar = 0;
-    const std::vector<Body> out = separated(crowd, fastest, GetParam());
-    const std::vector<Body> expected = separated(crowd, fastest_scalar, Simd::scalar);
+    const std::vector<Body> out = separated(crowd, fastest, course, GetParam());
+    const std::vector<Body> expected = separated(crowd, fastest_scalar, course, Simd::scalar);
     EXPECT_EQ(fastest, fastest_scalar);
     for (std::size_t a = 0; a < out.size(); ++a)
       for (int k = 0; k < 4; ++k) {
@@ -189,6 +213,111 @@ TEST_P(Separating, HasTheBitsOfTheScalarKernel) {
         EXPECT_EQ(out[a].v[k], expected[a].v[k]);
       }
   }
+}
+
+// Of a block in the middle of a lattice: bodies are the particles, and particles become the bodies.
+TEST_P(Separating, BodiesAreTheParticles) {
+  constexpr int kColumns = 21, kRows = 5, kStride = 48, kFirst = kStride + 16;
+  constexpr std::size_t kFloats = std::size_t(kStride) * (kRows + 2);
+  std::vector<float> lattice[7];
+  Random random(1, 0);
+  for (auto& component : lattice)
+    for (std::size_t n = 0; n < kFloats; ++n) component.push_back(float(random.symmetric()));
+  std::vector<Body> bodies(kFloats);
+  const auto at = [&](int c) { return lattice[c].data() + kFirst; };
+  std::vector<float> load[3], ahead[3];
+  for (int k = 0; k < 3; ++k) {
+    load[k].resize(kFloats);
+    ahead[k].resize(kFloats);
+  }
+  BodyBlock block{};
+  block.columns = kColumns;
+  block.rows = kRows;
+  block.stride = kStride;
+  block.x = {at(0), at(1), at(2)};
+  block.v = {at(3), at(4), at(5)};
+  block.w = at(6);
+  block.held = 0.25f;
+  block.bodies = bodies.data() + kFirst;
+  block.load = {load[0].data() + kFirst, load[1].data() + kFirst, load[2].data() + kFirst};
+  block.ahead = {ahead[0].data() + kFirst, ahead[1].data() + kFirst, ahead[2].data() + kFirst};
+  block.since = 0.5f;
+  block.inverse_since = 2;
+  block.advance = 0.5f;
+  kernel_table(GetParam()).gather_bodies(block);
+  const auto each = [&](auto&& visit) {
+    for (int j = 0; j < kRows; ++j)
+      for (int i = 0; i < kColumns; ++i) visit(std::size_t(kFirst + j * kStride + i));
+  };
+  each([&](std::size_t n) {
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(bodies[n].x[k], lattice[k][n]);
+      EXPECT_EQ(bodies[n].v[k], lattice[3 + k][n]);
+      bodies[n].x[k] += 1;
+      bodies[n].v[k] -= 1;
+    }
+    EXPECT_EQ(bodies[n].x[3], 0.25f);
+    EXPECT_EQ(bodies[n].v[3], lattice[6][n]);
+  });
+  std::vector<float> expected[7];
+  std::copy(std::begin(lattice), std::end(lattice), std::begin(expected));
+  each([&](std::size_t n) {
+    for (int k = 0; k < 3; ++k) {
+      expected[k][n] += 1;
+      expected[3 + k][n] -= 1;
+    }
+  });
+  kernel_table(GetParam()).scatter_bodies(block);
+  for (int c = 0; c < 7; ++c) EXPECT_EQ(lattice[c], expected[c]);
+}
+
+// A row of particles that contact gives the same velocity, time after time: half of it comes in advance
+// from the second time on, and nothing where it comes from the other side or a particle is pinned.
+TEST_P(Separating, LoadsThatLastAreCarriedInAdvance) {
+  constexpr int kColumns = 20;
+  constexpr std::size_t kFloats = 48;
+  constexpr float kSince = 0.25f, kGain = 2;
+  std::vector<float> x(kFloats, 1), v[3], w(kFloats, 1), load[3], ahead[3];
+  for (int k = 0; k < 3; ++k)
+    for (auto* component : {&v[k], &load[k], &ahead[k]}) component->resize(kFloats);
+  w[3] = 0;
+  std::vector<Body> bodies(kFloats);
+  BodyBlock block{};
+  block.columns = kColumns;
+  block.rows = 1;
+  block.x = {x.data(), x.data(), x.data()};
+  block.v = {v[0].data(), v[1].data(), v[2].data()};
+  block.w = w.data();
+  block.bodies = bodies.data();
+  block.load = {load[0].data(), load[1].data(), load[2].data()};
+  block.ahead = {ahead[0].data(), ahead[1].data(), ahead[2].data()};
+  block.since = kSince;
+  block.inverse_since = 1 / kSince;
+  block.advance = 0.5f;
+  // What contact gives besides what it gave in advance, which has been used up by the next time.
+  const auto press = [&](float gain) {
+    for (auto& component : v) std::fill(component.begin(), component.end(), 0.0f);
+    kernel_table(GetParam()).gather_bodies(block);
+    for (std::size_t i = 0; i < kColumns; ++i) bodies[i].v[1] += w[i] > 0 ? gain - ahead[1][i] : 0;
+    kernel_table(GetParam()).scatter_bodies(block);
+  };
+  const auto given = [&](std::size_t i) { return std::vector<float>{v[1][i], ahead[1][i]}; };
+  press(kGain);
+  EXPECT_EQ(given(19), std::vector<float>({kGain, 0}));
+  press(kGain);
+  EXPECT_EQ(given(19), std::vector<float>({1.5f * kGain, 0.5f * kGain}));
+  EXPECT_EQ(load[1][19], kGain / kSince);
+  press(kGain);
+  EXPECT_EQ(given(19), std::vector<float>({kGain, 0.5f * kGain}));
+  press(0.75f * kGain);  // contact had to give a quarter
+  EXPECT_EQ(ahead[1][19], 0.25f * kGain);
+  press(0.25f * kGain);  // and now nothing
+  EXPECT_EQ(ahead[1][19], 0);
+  press(kGain);
+  EXPECT_EQ(ahead[1][19], 0.125f * kGain);  // half of what both agree on
+  press(-kGain);
+  EXPECT_EQ(ahead[1][19], 0);
+  EXPECT_EQ(given(3), std::vector<float>({0, 0}));
 }
 
 INSTANTIATE_TEST_SUITE_P(, Separating,

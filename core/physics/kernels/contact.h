@@ -43,10 +43,12 @@ struct NearRoom {
 
 // Particles in order of their buckets (cell_grid.h), and the nine runs of three buckets about each.
 struct NearSearch {
-  ConstRow3 x;  // sorted, 16 lanes of padding
-  // Of every sorted particle: its place on the flat sheet, in spacings of its columns, those of
-  // different sheets far apart, and the square of the distance there below which two are no pair.
+  ConstRow3 x;  // sorted, 16 lanes of padding before them and after
+  // Of every sorted particle, padded likewise: its place on the flat sheet, in spacings of its columns,
+  // those of different sheets far apart, and the square of the distance there below which two are no
+  // pair.
   const float *u, *w, *apart_squared;
+  const std::int32_t* names;  // by which they are listed; null: by their number in sorted order
   const std::int32_t* bucket;
   const std::int32_t* start;  // of every bucket, one more than `table`
   std::int64_t table;         // buckets
@@ -54,9 +56,8 @@ struct NearSearch {
   float range_squared;        // m²
   int begin, end;             // sorted particles to search about
   bool once;                  // pairs are listed by the first of the two alone, else by both
-  std::int32_t* counts;       // out, per particle: how many are in range and no neighbours
-  std::int32_t* neighbour;    // out, particle after particle: their numbers in sorted order
-  std::int32_t* owner;        // out, for each of them, the number of the particle
+  std::int32_t* neighbour;    // out, particle after particle: those in range and no neighbours
+  std::int32_t* owner;        // out, for each of them, the particle
   int pairs_room;             // of both
   NearRoom room;
 };
@@ -78,14 +79,38 @@ struct alignas(32) Body {
   float v[4];  // velocity [m/s] and inverse mass [1/kg]
 };
 
-// Pairs, one owner's after another's, and where those of them go that are nearer than a distance.
-struct PairsWithin {
-  const Body* bodies;  // of all particles with pairs; the others may hold anything
+// A block of particles in the lattice, and as bodies, laid out alike.
+struct BodyBlock {
+  int columns, rows;
+  std::ptrdiff_t stride;
+  Row3 x, v;       // the first particle; in whole groups of lanes, beyond the columns too
+  const float* w;  // inverse mass [1/kg]
+  float held;      // the distance at which they are held from their like [m]
+  Body* bodies;
+  // For scattering, laid out as x: by how much contact has to change their velocities, their load
+  // [m/s²]; and what it has given of that in advance the last time, and then gives now [m/s].
+  Row3 load, ahead;
+  float since, inverse_since;  // the last time: s, 1/s
+  float advance;               // share of a lasting load that is given in advance
+};
+
+// Room for pairs, and 16 lanes of padding.
+struct PairRoom {
+  std::int32_t *owner, *neighbour;
+};
+
+// Pairs, one owner's after another's, and where those of them go that are close, nearer than `reach` of
+// the distances at which they are held, and those that touch, nearer than these.
+struct ClosePairs {
+  const Body* bodies;
   int pairs;
   const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of particles
-  float reach;                            // in distances at which they are held
-  // out, and 16 lanes of padding
-  std::int32_t *within_owner, *within_neighbour;
+  float reach;
+  PairRoom close, touching;  // out
+};
+
+struct CloseFound {
+  int close, touching;
 };
 
 // What a pair that touches asks of its owner, times its weight.
@@ -94,23 +119,24 @@ struct alignas(32) Asked {
   float gain[4];  // velocity [m/s]
 };
 
-// Room for the pairs of one call that touch, and 16 lanes of padding.
-struct SeparateRoom {
-  std::int32_t *owner, *neighbour;
-  Asked* asked;
-};
-
-// Particles from `begin` to `end`, and the pairs that they own.
+// Pairs that touch, one owner's after another's, and where their owners go.
 struct SeparateOwners {
   const Body* bodies;
-  int begin, end;
   int pairs;
-  const std::int32_t *owner, *neighbour;
-  const float* friction;  // of every particle with pairs, or kCourseRule
-  float course_share;     // of a correction, per run
-  float inverse_dt;       // 1/s
-  Body* out;              // of all particles
-  SeparateRoom room;
+  PairRoom touching;      // overwritten
+  Asked* asked;           // room for what these ask for
+  const float* friction;  // of every body, or kCourseRule; null: alike
+  float friction_alike;
+  float course_share;  // of a correction, per run
+  float inverse_dt;    // 1/s
+  // out, owners, and 16 lanes of padding
+  std::int32_t* moved_owner;
+  Body* moved;
+};
+
+struct Separated {
+  int moved;      // owners
+  float fastest;  // greatest squared relative speed of two that touch [m²/s²]
 };
 
 }  // namespace weft::physics

@@ -268,7 +268,10 @@ struct LineStrip;  // kernels/line.h
 struct BlockRows;  // kernels/contact.h
 struct NearSearch;
 struct NearFound;
-struct PairsWithin;
+struct ClosePairs;
+struct CloseFound;
+struct BodyBlock;
+struct Separated;
 struct SeparateOwners;
 struct SquaresWithin;
 struct SurfacePairs;  // kernels/surface.h
@@ -317,9 +320,10 @@ struct KernelTable {
   void (*push)(const PushRow&);
   void (*block_bounds)(const BlockRows&);      // how a block lies and moves
   NearFound (*near_pairs)(const NearSearch&);  // who is in range of whom
-  int (*pairs_within)(const PairsWithin&);     // returns how many are
-  // Pushes pairs apart; returns the greatest squared relative speed of two that touch [m²/s²].
-  float (*separate)(const SeparateOwners&);
+  CloseFound (*close_pairs)(const ClosePairs&);
+  Separated (*separate)(const SeparateOwners&);  // where pairs that touch are pushed
+  void (*gather_bodies)(const BodyBlock&);
+  void (*scatter_bodies)(const BodyBlock&);
   int (*squares_within)(const SquaresWithin&);  // returns how many are
   int (*surface_pairs)(const SurfacePairs&);    // measures them; returns how many touch
   // The greatest size of `count` values, a multiple of 16; infinite if one is not a number.

@@ -44,6 +44,11 @@ WEFT_INLINE Runs runs_about(const NearSearch& s, std::int64_t bucket, int begin)
   return r;
 }
 
+// Of the sorted particles from number i on.
+WEFT_INLINE WideInt names_at(const NearSearch& s, int i) {
+  return s.names ? lanes_at(s.names + i) : lane_numbers() + i;
+}
+
 // From a box to points outside, axis by axis. Rounding keeps it no longer than from any point inside.
 WEFT_INLINE Wide outside(Wide x, float low, float high) {
   return max(max(low - x, x - high), Wide{});
@@ -75,7 +80,7 @@ WEFT_INLINE int bring_together(const NearSearch& s, const Runs& runs, int begin,
       store_lanes(room.x.z + count, kept, p.z);
       store_lanes(room.u + count, kept, load(s.u + i));
       store_lanes(room.w + count, kept, load(s.w + i));
-      count += store_lanes(room.number + count, kept, lane_numbers() + i);
+      count += store_lanes(room.number + count, kept, names_at(s, i));
     }
   }
   for (int i = 0; i < 16; i += kLanes)
@@ -122,16 +127,34 @@ WEFT_INLINE int near_one(const NearSearch& s, int candidates, int m, std::int32_
   return seeker.found;
 }
 
-// The same among the runs themselves.
+// The same among the runs themselves, which are short: as many as fit share a group.
 template <bool kOnce>
 WEFT_INLINE int near_one(const NearSearch& s, const Runs& runs, int m, std::int32_t* near) {
   Seeker seeker(s, m, near);
+  Wide3 x{};
+  Wide u{}, w{};
+  WideInt number{};
+  int held = 0;
+  const auto test = [&] {
+    seeker.test<kOnce>(s, x, u, w, number, lanes_below(held));
+    held = 0;
+  };
   for (int r = 0; r < runs.count; ++r) {
     const int last = runs.run[r].last;
-    for (int i = runs.run[r].first; i < last; i += kLanes)
-      seeker.test<kOnce>(s, load3(s.x, i), load(s.u + i), load(s.w + i), lane_numbers() + i,
-                         lanes_below(last - i));
+    for (int i = runs.run[r].first; i < last;) {
+      const WideInt kept = lanes_below(held);
+      const int at = i - held;
+      x = select(kept, x, load3(s.x, at));
+      u = select(kept, u, load(s.u + at));
+      w = select(kept, w, load(s.w + at));
+      number = kept ? number : names_at(s, at);
+      const int taken = last - i < kLanes - held ? last - i : kLanes - held;
+      held += taken;
+      i += taken;
+      if (held == kLanes) test();
+    }
   }
+  test();
   return seeker.found;
 }
 
@@ -150,13 +173,12 @@ WEFT_INLINE NearFound search(const NearSearch& given) {
     const int near = together ? bring_together(s, runs, m, end) : runs.candidates;
     for (; m < end; ++m) {
       if (s.pairs_room - found < needed) return {m, found, needed};
-      int& count = s.counts[m];
-      if (near <= 1)
-        count = 0;
-      else
+      int count = 0;
+      if (near > 1)
         count = together ? near_one<kOnce>(s, near, m, s.neighbour + found)
                          : near_one<kOnce>(s, runs, m, s.neighbour + found);
-      for (int i = 0; i < count; i += kLanes) put_lanes(s.owner + found + i, WideInt{} + m);
+      const WideInt owner = WideInt{} + (s.names ? s.names[m] : m);
+      for (int i = 0; i < count; i += kLanes) put_lanes(s.owner + found + i, owner);
       found += count;
     }
   }

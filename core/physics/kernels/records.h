@@ -11,19 +11,28 @@ struct Wide4 {
   Wide last;
 };
 
-// Record k has its four floats at records + stride * number[k].
-WEFT_INLINE Wide4 records_at(const float* records, int stride, const std::int32_t* number) {
+// Record k has its four floats at address(k).
+template <class Address>
+WEFT_INLINE Wide4 records_from(const Address& address) {
 #if WEFT_LANES >= 4
   Wide r[4];
   for (int k = 0; k < 4; ++k)
-    r[k] = join_quarters(
-        [&](int l) { return load_four(records + std::ptrdiff_t(stride) * number[l + k]); });
+    r[k] = join_quarters([&](int l) { return load_four(address(l + k)); });
   turn(r);
   return {{r[0], r[1], r[2]}, r[3]};
 #else
-  const float* r = records + std::ptrdiff_t(stride) * *number;
+  const float* r = address(0);
   return {wide3(r[0], r[1], r[2]), wide(r[3])};
 #endif
+}
+
+// At records + stride * number[k].
+WEFT_INLINE Wide4 records_at(const float* records, int stride, const std::int32_t* number) {
+  return records_from([&](int k) { return records + std::ptrdiff_t(stride) * number[k]; });
+}
+// At records + stride * k.
+WEFT_INLINE Wide4 records_in_row(const float* records, int stride) {
+  return records_from([&](int k) { return records + std::ptrdiff_t(stride) * k; });
 }
 
 // Record k goes to records + stride * k.

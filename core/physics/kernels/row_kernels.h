@@ -114,8 +114,10 @@ void wind(const physics::WindRow&);
 void push(const physics::PushRow&);
 void block_bounds(const physics::BlockRows&);
 physics::NearFound near_pairs(const physics::NearSearch&);
-int pairs_within(const physics::PairsWithin&);
-float separate(const physics::SeparateOwners&);
+physics::CloseFound close_pairs(const physics::ClosePairs&);
+physics::Separated separate(const physics::SeparateOwners&);
+void gather_bodies(const physics::BodyBlock&);
+void scatter_bodies(const physics::BodyBlock&);
 int squares_within(const physics::SquaresWithin&);
 int surface_pairs(const physics::SurfacePairs&);
 

@@ -1,10 +1,15 @@
 // Self-collision: how pairs that are too near are pushed apart (Jacobi: every owner looks at the same
 // state). The pairs that touch are brought together first, kLanes of them say what they ask for, and
-// each owner sums up what its own ask, in their order.
+// each owner sums up what its own ask, in their order. Owners move when all have been asked.
 //
 //   stiff:   Δx_a = n (t - d) w_a/(w_a + w_b); the velocity into the other is lost, and the tangential
 //            velocity loses up to μ times as much as was pressed (Coulomb; μ the mean of both);
 //            averaged over the pairs, each weighing as much as it is deep
+//            What contact has to take from a particle's velocity run after run, its load, it gives in
+//            part beforehand (scatter_bodies): pressed by a load a, a particle that leaves with a Δt/2
+//            is back in its place at the next run, while one that leaves with nothing has sunk in by
+//            a Δt²/2. Only what this run and the one before agree on counts, and no more than what contact
+//            had to give now: a blow is no load, and what is let go gets nothing.
 //   course:  Δx_a = n (t - d), averaged over the pairs and divided by the substeps, velocity included
 //            (seeds 001 and 004: the position before stays)
 #include "physics/kernels/contact.h"
@@ -17,7 +22,11 @@ namespace {
 
 using physics::Asked;
 using physics::Body;
-using physics::PairsWithin;
+using physics::BodyBlock;
+using physics::CloseFound;
+using physics::ClosePairs;
+using physics::PairRoom;
+using physics::Separated;
 using physics::SeparateOwners;
 
 // Of the thickness, at once: what starts intersecting comes apart slowly.
@@ -25,15 +34,17 @@ constexpr float kMostPush = 0.5f;
 constexpr float kTiny = 1e-12f;
 constexpr int kStride = sizeof(Body) / sizeof(float);
 
-WEFT_INLINE Wide friction_of(const float* friction, const std::int32_t* owner) {
+WEFT_INLINE Wide friction_of(const SeparateOwners& s, const std::int32_t* body) {
+  if (!s.friction) return wide(s.friction_alike);
   Wide r{};
-  for (int l = 0; l < kLanes; ++l) r[l] = friction[owner[l]];
+  for (int l = 0; l < kLanes; ++l) r[l] = s.friction[body[l]];
   return r;
 }
 
 // What kLanes pairs of the room from `at` on ask for; returns their greatest squared relative speed.
 WEFT_INLINE Wide ask(const SeparateOwners& s, int at) {
-  const std::int32_t *const owner = s.room.owner + at, *const neighbour = s.room.neighbour + at;
+  const std::int32_t* const owner = s.touching.owner + at;
+  const std::int32_t* const neighbour = s.touching.neighbour + at;
   const Wide4 p = records_at(s.bodies->x, kStride, owner);
   const Wide4 q = records_at(s.bodies->x, kStride, neighbour);
   const Wide held = 0.5f * (p.last + q.last);
@@ -50,7 +61,7 @@ WEFT_INLINE Wide ask(const SeparateOwners& s, int at) {
   const Wide depth = held - distance;
   const Wide4 own = records_at(s.bodies->v, kStride, owner);
   const Wide4 other = records_at(s.bodies->v, kStride, neighbour);
-  const Wide mine = friction_of(s.friction, owner), theirs = friction_of(s.friction, neighbour);
+  const Wide mine = friction_of(s, owner), theirs = friction_of(s, neighbour);
   const WideInt course = mine < 0.0f;
   const Wide friction = select(theirs < 0.0f, mine, 0.5f * (mine + theirs));
   const Wide share = own.last / (own.last + other.last);
@@ -65,9 +76,8 @@ WEFT_INLINE Wide ask(const SeparateOwners& s, int at) {
     const Wide sliding = sqrt(dot(slide, slide));
     rubbed = select(sliding > kTiny, min(wide(1), friction * lost / sliding), Wide{});
   }
-  put_records(s.room.asked[at].push, kStride, {n * lift, weight});
-  put_records(s.room.asked[at].gain, kStride,
-              {(n * lost - slide * rubbed) * (share * weight), Wide{}});
+  put_records(s.asked[at].push, kStride, {n * lift, weight});
+  put_records(s.asked[at].gain, kStride, {(n * lost - slide * rubbed) * (share * weight), Wide{}});
   return dot(u, u);
 }
 
@@ -80,61 +90,108 @@ WEFT_INLINE int sum_up(const SeparateOwners& s, int count) {
   std::int32_t last = -1;
   int owners = -1;
   for (int i = 0; i < count; ++i) {
-    const std::int32_t owner = s.room.owner[i];
+    const std::int32_t owner = s.touching.owner[i];
     const int goes_on = -int(owner == last);
     const FourInt kept = FourInt{} + goes_on;
-    push = (Four)((FourInt)push & kept) + load_four(s.room.asked[i].push);
-    gain = (Four)((FourInt)gain & kept) + load_four(s.room.asked[i].gain);
+    push = (Four)((FourInt)push & kept) + load_four(s.asked[i].push);
+    gain = (Four)((FourInt)gain & kept) + load_four(s.asked[i].gain);
     owners += 1 + goes_on;
-    s.room.owner[owners] = last = owner;
-    *reinterpret_cast<Four*>(s.room.asked[owners].push) = push;
-    *reinterpret_cast<Four*>(s.room.asked[owners].gain) = gain;
+    s.touching.owner[owners] = last = owner;
+    *reinterpret_cast<Four*>(s.asked[owners].push) = push;
+    *reinterpret_cast<Four*>(s.asked[owners].gain) = gain;
   }
   return owners + 1;
 }
 
-// Moves an owner by the mean of what it is asked.
-WEFT_INLINE void move(const SeparateOwners& s, std::int32_t owner, const Asked& asked) {
-  Body& b = s.out[owner];
-  const Four push = load_four(asked.push), gain = load_four(asked.gain);
-  const float weight = push[3];
-  if (b.v[3] <= 0 || !(weight > 0)) return;
-  const bool course = s.friction[owner] < 0;
-  const float mean = 1 / weight, of_push = mean * (course ? s.course_share : 1);
-  const Four pushed = push * Four{of_push, of_push, of_push, 0};
-  *reinterpret_cast<Four*>(b.x) += pushed;
-  *reinterpret_cast<Four*>(b.v) += course ? pushed * s.inverse_dt : gain * mean;
+// Moves kLanes owners, from number `at` on in the room, by the mean of what they are asked.
+WEFT_INLINE void move(const SeparateOwners& s, int at) {
+  const std::int32_t* const owner = s.touching.owner + at;
+  const Wide4 x = records_at(s.bodies->x, kStride, owner);
+  const Wide4 v = records_at(s.bodies->v, kStride, owner);
+  const Wide4 push = records_in_row(s.asked[at].push, kStride);
+  const Wide3 gain = records_in_row(s.asked[at].gain, kStride).xyz;
+  const Wide weight = push.last;
+  const WideInt moves = (v.last > 0.0f) & (weight > 0.0f);
+  const WideInt course = friction_of(s, owner) < 0.0f;
+  const Wide mean = 1.0f / weight;
+  const Wide3 by = push.xyz * (mean * select(course, wide(s.course_share), wide(1)));
+  const Wide3 faster = select(course, by * wide(s.inverse_dt), gain * mean);
+  put_records(s.moved[at].x, kStride, {select(moves, x.xyz + by, x.xyz), x.last});
+  put_records(s.moved[at].v, kStride, {select(moves, v.xyz + faster, v.xyz), v.last});
+  put_lanes(s.moved_owner + at, lanes_at(owner));
 }
 
 }  // namespace
 
-int pairs_within(const PairsWithin& given) {
-  const PairsWithin s = given;
-  int count = 0;
+CloseFound close_pairs(const ClosePairs& given) {
+  const ClosePairs s = given;
+  const float reach2 = s.reach * s.reach;
+  CloseFound found{};
+  const auto put = [](const PairRoom& room, int at, WideInt which, WideInt owner,
+                      WideInt neighbour) {
+    store_lanes(room.owner + at, which, owner);
+    return at + store_lanes(room.neighbour + at, which, neighbour);
+  };
   for (int k = 0; k < s.pairs; k += kLanes) {
     const Wide4 p = records_at(s.bodies->x, kStride, s.owner + k);
     const Wide4 q = records_at(s.bodies->x, kStride, s.neighbour + k);
-    const Wide distance = (0.5f * s.reach) * (p.last + q.last);
+    const WideInt owner = lanes_at(s.owner + k), neighbour = lanes_at(s.neighbour + k);
+    const Wide held = 0.5f * (p.last + q.last);
     const Wide3 d = p.xyz - q.xyz;
-    const WideInt within = (dot(d, d) < distance * distance) & lanes_below(s.pairs - k);
-    store_lanes(s.within_owner + count, within, lanes_at(s.owner + k));
-    count += store_lanes(s.within_neighbour + count, within, lanes_at(s.neighbour + k));
+    const Wide square = dot(d, d), held2 = held * held;
+    const WideInt there = lanes_below(s.pairs - k);
+    if (s.close.owner)
+      found.close = put(s.close, found.close, (square < reach2 * held2) & there, owner, neighbour);
+    found.touching = put(s.touching, found.touching, (square < held2) & there, owner, neighbour);
   }
-  for (int l = 0; l < kLanes; ++l) s.within_owner[count + l] = s.within_neighbour[count + l] = 0;
-  return count;
+  const auto pad = [](const PairRoom& room, int end) {
+    put_lanes(room.owner + end, WideInt{});
+    put_lanes(room.neighbour + end, WideInt{});
+  };
+  if (s.close.owner) pad(s.close, found.close);
+  pad(s.touching, found.touching);
+  return found;
 }
 
-float separate(const SeparateOwners& given) {
+Separated separate(const SeparateOwners& given) {
   const SeparateOwners s = given;
-  const int count =
-      pairs_within({s.bodies, s.pairs, s.owner, s.neighbour, 1, s.room.owner, s.room.neighbour});
   Wide fastest{};
-  for (int i = 0; i < count; i += kLanes)
-    fastest = max(fastest, select(lanes_below(count - i), ask(s, i), Wide{}));
-  for (int a = s.begin; a < s.end; ++a) s.out[a] = s.bodies[a];
-  const int owners = sum_up(s, count);
-  for (int i = 0; i < owners; ++i) move(s, s.room.owner[i], s.room.asked[i]);
-  return greatest(fastest);
+  for (int i = 0; i < s.pairs; i += kLanes)
+    fastest = max(fastest, select(lanes_below(s.pairs - i), ask(s, i), Wide{}));
+  const int owners = sum_up(s, s.pairs);
+  for (int i = 0; i < owners; i += kLanes) move(s, i);
+  return {owners, greatest(fastest)};
+}
+
+void gather_bodies(const BodyBlock& given) {
+  const BodyBlock b = given;
+  for (int j = 0; j < b.rows; ++j)
+    for (int i = 0; i < b.columns; i += kLanes) {
+      const std::ptrdiff_t at = j * b.stride + i;
+      put_records(b.bodies[at].x, kStride, {load3(b.x, at), wide(b.held)});
+      put_records(b.bodies[at].v, kStride, {load3(b.v, at), load(b.w + at)});
+    }
+}
+
+void scatter_bodies(const BodyBlock& given) {
+  const BodyBlock b = given;
+  for (int j = 0; j < b.rows; ++j)
+    for (int i = 0; i < b.columns; i += kLanes) {
+      const std::ptrdiff_t at = j * b.stride + i;
+      store3(b.x, at, records_in_row(b.bodies[at].x, kStride).xyz);
+      const Wide4 now = records_in_row(b.bodies[at].v, kStride);
+      const Wide3 gain = now.xyz - load3(b.v, at);
+      const Wide3 load = (gain + load3(b.ahead, at)) * wide(b.inverse_since);
+      const Wide square = dot(load, load);
+      const Wide lasting =
+          b.advance * b.since * min(wide(1), dot(load, load3(b.load, at)) / square);
+      const Wide share = max(Wide{}, min(lasting, dot(gain, load) / square));
+      const WideInt pressed = (now.last > 0.0f) & (square > 0.0f);
+      const Wide3 ahead = load * select(pressed, share, Wide{});
+      store3(b.load, at, load);
+      store3(b.ahead, at, ahead);
+      store3(b.v, at, now.xyz + ahead);
+    }
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -36,7 +36,7 @@ void CellGrid::reserve(std::size_t particles) {
   number_.resize(particles);
   bucket_.resize(particles);
   start_.reserve(std::size_t(largest_table(particles)) + 1);
-  for (AlignedArray<float>* a : {&x_, &y_, &z_}) *a = AlignedArray<float>(particles + 16);
+  for (AlignedArray<float>* a : {&x_, &y_, &z_}) *a = AlignedArray<float>(particles + 2 * kPadding);
 }
 
 // The whole box when it fits the table; else strides for which the nine runs of the 27 cells stay
@@ -125,9 +125,9 @@ void CellGrid::sort_part(ConstRow3 x, int part) {
     const auto at = std::size_t(start[key_[p]]++);
     number_[at] = std::int32_t(p);
     bucket_[at] = key_[p];
-    x_[at] = x.x[p];
-    y_[at] = x.y[p];
-    z_[at] = x.z[p];
+    x_[kPadding + at] = x.x[p];
+    y_[kPadding + at] = x.y[p];
+    z_[kPadding + at] = x.z[p];
   }
   // Each start has moved to its bucket's end, the start of the next.
   for (std::int64_t k = last - 1; k > first; --k) start[k] = start[k - 1];

@@ -21,16 +21,21 @@ namespace weft::physics {
 
 class CellGrid {
  public:
+  static constexpr std::size_t kPadding = 16;
+
   // Makes room for this many particles.
   void reserve(std::size_t particles);
   // Sorts particles into cells of `size` [m]; all lie in the box.
   void build(ConstRow3 x, std::size_t particles, const Spread& box, float size, Threads& threads);
 
   std::size_t particles() const { return count_; }
-  // Numbers of the particles in sorted order, their buckets and positions (16 lanes of padding).
+  // Numbers of the particles in sorted order, their buckets and positions (kPadding lanes before them
+  // and after).
   const std::int32_t* numbers() const { return number_.data(); }
   const std::int32_t* buckets() const { return bucket_.data(); }
-  ConstRow3 sorted() const { return {x_.data(), y_.data(), z_.data()}; }
+  ConstRow3 sorted() const {
+    return {x_.data() + kPadding, y_.data() + kPadding, z_.data() + kPadding};
+  }
   // Where the buckets start, one more than table().
   const std::int32_t* starts() const { return start_.data(); }
   std::int64_t table() const { return table_; }
@@ -53,7 +58,7 @@ class CellGrid {
   float low_[3] = {}, inverse_ = 1;
   std::int32_t dealt_to_[kParts + 1][kShares] = {};  // where a share's particles of a part begin
   std::vector<std::int32_t> key_, dealt_, number_, bucket_, start_;
-  AlignedArray<float> x_, y_, z_;  // 16 more than particles
+  AlignedArray<float> x_, y_, z_;  // padded
 };
 
 }  // namespace weft::physics

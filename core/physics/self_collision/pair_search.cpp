@@ -29,10 +29,9 @@ PairSearch::PairSearch(std::size_t most_points, const std::vector<RestMetric>& m
   const std::size_t n = most_points;
   sites_.resize(n);
   for (AlignedArray<float>* a : {&x_, &y_, &z_, &u_, &w_, &apart_squared_})
-    *a = AlignedArray<float>(n + 16);
+    *a = AlignedArray<float>(n + 2 * CellGrid::kPadding);
   grid_.reserve(n);
   sorted_sites_.resize(n);
-  counts_.resize(n);
   chunks_.resize((n + kChunk - 1) / kChunk);
   for (Chunk& c : chunks_) {
     c.owner.resize(kPairsReserved * kChunk + kCandidates);
@@ -48,29 +47,30 @@ void PairSearch::sort(std::size_t count, const Spread& box, float range, Threads
       const Site& s = sites_[std::size_t(grid_.numbers()[p])];
       sorted_sites_[p] = s;
       const FlatSheet& flat = flat_[s.cloth];
-      u_[p] = flat.begin + float(s.column) + flat.shear * float(s.row);
-      w_[p] = flat.height * float(s.row);
+      u_[CellGrid::kPadding + p] = flat.begin + float(s.column) + flat.shear * float(s.row);
+      w_[CellGrid::kPadding + p] = flat.height * float(s.row);
       apart_squared_[p] = flat.apart_squared;
     }
   });
 }
 
-void PairSearch::find(float range, Threads& threads) {
+void PairSearch::find(float range, Threads& threads, const std::int32_t* names) {
   const bool alone = few() || threads.count() == 1;
   rooms_.resize(std::size_t(threads.count()));
   threads.share(chunks(), alone, [&](std::size_t k) {
-    find_chunk(k, range, rooms_[alone ? 0 : std::size_t(Threads::index())]);
+    find_chunk(k, range, rooms_[alone ? 0 : std::size_t(Threads::index())], names);
   });
 }
 
-void PairSearch::find_chunk(std::size_t k, float range, Room& room) {
+void PairSearch::find_chunk(std::size_t k, float range, Room& room, const std::int32_t* names) {
   Chunk& c = chunks_[k];
   c.found = 0;
   NearSearch s{};
   s.x = grid_.sorted();
-  s.u = u_.data();
-  s.w = w_.data();
+  s.u = u_.data() + CellGrid::kPadding;
+  s.w = w_.data() + CellGrid::kPadding;
   s.apart_squared = apart_squared_.data();
+  s.names = names;
   s.bucket = grid_.buckets();
   s.start = grid_.starts();
   s.table = grid_.table();
@@ -79,7 +79,6 @@ void PairSearch::find_chunk(std::size_t k, float range, Room& room) {
   s.begin = int(begin(k));
   s.end = int(begin(k + 1));
   s.once = once_;
-  s.counts = counts_.data();
   for (std::size_t needed = kCandidates; s.begin < s.end;) {
     if (room.number.size() < needed) {
       room.number.resize(2 * needed);
@@ -111,7 +110,7 @@ void PairSearch::find_chunk(std::size_t k, float range, Room& room) {
 }
 
 std::size_t PairSearch::bytes() const {
-  std::size_t bytes = sites_.size() * (2 * sizeof(Site) + 4) + 6 * x_.size() * 4 + grid_.bytes();
+  std::size_t bytes = sites_.size() * 2 * sizeof(Site) + 6 * x_.size() * 4 + grid_.bytes();
   for (const Chunk& c : chunks_) bytes += 2 * c.owner.capacity() * 4;
   for (const Room& r : rooms_) bytes += 6 * r.number.capacity() * 4;
   return bytes;

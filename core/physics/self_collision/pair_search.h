@@ -24,6 +24,8 @@ struct RestMetric {
 
 class PairSearch {
  public:
+  static constexpr std::size_t kChunk = 128;  // points
+
   // `metrics`: of every sheet; `once`: each pair is listed by the first of the two alone, else by both.
   PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics, bool once,
              const KernelTable& kernels);
@@ -34,8 +36,9 @@ class PairSearch {
 
   // Sorts the first `count` points, all in the box, for searches within `range` [m].
   void sort(std::size_t count, const Spread& box, float range, Threads& threads);
-  // Finds the pairs within a range [m].
-  void find(float range, Threads& threads);
+  // Finds the pairs within a range [m]. They are listed by the sorted points' numbers, or by `names`
+  // of these, padded as those of a grid.
+  void find(float range, Threads& threads, const std::int32_t* names = nullptr);
 
   // Sorted points are cut into chunks: chunk k has those from begin(k) to begin(k + 1), and the pairs
   // that they list, one point's after another's.
@@ -43,21 +46,19 @@ class PairSearch {
   std::size_t chunks() const { return (count_ + kChunk - 1) / kChunk; }
   std::size_t begin(std::size_t k) const { return std::min(k * kChunk, count_); }
   struct Pairs {
-    const std::int32_t *owner, *neighbour;  // numbers of sorted points, and 16 more of any
+    const std::int32_t *owner, *neighbour;  // and 16 more of any
     std::size_t count;
   };
   Pairs pairs(std::size_t k) const {
     const Chunk& c = chunks_[k];
     return {c.owner.data(), c.neighbour.data(), c.found};
   }
-  const std::int32_t* counts() const { return counts_.data(); }  // pairs of every sorted point
   const Site& site(std::size_t sorted) const { return sorted_sites_[sorted]; }
   // Whether one thread is faster.
   bool few() const { return count_ < 2048; }
   std::size_t bytes() const;
 
  private:
-  static constexpr std::size_t kChunk = 128;
   struct Chunk {
     std::vector<std::int32_t> owner, neighbour;  // as long as each other
     std::size_t found = 0;
@@ -66,7 +67,7 @@ class PairSearch {
     std::vector<std::int32_t> number;
     std::vector<float> place;  // five arrays as long as `number`
   };
-  void find_chunk(std::size_t k, float range, Room& room);
+  void find_chunk(std::size_t k, float range, Room& room, const std::int32_t* names);
 
   // Where a particle lies on its flat sheet: u = column + shear row, w = height row, in spacings of
   // its columns; and below which distance squared two of them are no pair.
@@ -82,7 +83,6 @@ class PairSearch {
   AlignedArray<float> x_, y_, z_;
   CellGrid grid_;
   AlignedArray<float> u_, w_, apart_squared_;  // as sorted
-  std::vector<std::int32_t> counts_;
   std::vector<Chunk> chunks_;
   std::vector<Room> rooms_;
 };

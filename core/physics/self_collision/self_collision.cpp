@@ -12,11 +12,14 @@ namespace weft::physics {
 namespace {
 
 constexpr double kNeighbour = 1.3;  // thicknesses: pairs nearer than that at rest are none
-constexpr double kSkin = 0.45;      // of the thickness
+// Of the thickness: wider where the list of pairs was good for a few runs only, narrower where it was
+// for many.
+constexpr float kLeastSkin = 0.45f, kMostSkin = 1.1f;
+constexpr int kFewRuns = 3, kManyRuns = 8;
 // Of the thickness, relative motion between two runs: of those that touch; of others, which must
 // not come from a thickness apart to the other side.
 constexpr double kMotion = 0.4, kMotionApart = 0.9;
-constexpr double kFall = 0.002;    // of the thickness, twice the fall from rest between two runs
+constexpr double kFall = 0.0034;   // of the thickness, twice the fall from rest between two runs
 constexpr int kMostSubsteps = 32;  // between two looks
 constexpr int kMostSubstepsTouching = 12;
 constexpr int kMostSubstepsCourse = 4;  // its push acts like a spring, stable up to here
@@ -68,12 +71,32 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
     thickness_ = std::max(thickness_, s.thickness);
     course_ |= s.course;
   }
-  const std::size_t n = particles_;
   first_site_.resize(blocks_.all().size());
-  bodies_.resize(n);
-  separated_.resize(n);
-  owners_.resize(n);
-  friction_.resize(n);
+  names_ = AlignedArray<std::int32_t>(particles_ + 2 * CellGrid::kPadding);
+  std::size_t bodies = 0;
+  for (const Sheet& s : sheets_) {
+    first_body_.push_back(bodies);
+    load_.emplace_back(s.lattice->rows, s.lattice->stride);
+    ahead_.emplace_back(s.lattice->rows, s.lattice->stride);
+    bodies += std::size_t(s.lattice->rows) * std::size_t(s.lattice->stride);
+  }
+  bodies_.resize(bodies);
+  const auto friction = [](const Sheet& s) { return s.course ? kCourseRule : s.friction; };
+  friction_alike_ = friction(sheets_[0]);
+  if (std::any_of(sheets_.begin(), sheets_.end(),
+                  [&](const Sheet& s) { return friction(s) != friction_alike_; }))
+    for (const Sheet& s : sheets_)
+      friction_.resize(
+          friction_.size() + std::size_t(s.lattice->rows) * std::size_t(s.lattice->stride),
+          friction(s));
+}
+
+void SelfContact::forget_loads(const Block& block) {
+  for (auto* sheets : {&load_, &ahead_})
+    for (int j = block.row; j < block.row + block.rows; ++j) {
+      const Row3 row = (*sheets)[std::size_t(block.sheet)].row(j);
+      for (float* r : {row.x, row.y, row.z}) std::fill_n(r + block.column, block.columns, 0.0f);
+    }
 }
 
 // The particles of active blocks, block by block, and where they are.
@@ -87,7 +110,7 @@ void SelfContact::list_sites(Threads& threads) {
   const Row3 to = search_.points();
   threads.share(blocks.size(), count_ < kFew, [&](std::size_t b) {
     const Block& block = blocks[b];
-    if (!block.active) return;
+    if (!block.active) return forget_loads(block);
     std::size_t at = first_site_[b];
     for (int j = block.row; j < block.row + block.rows; ++j, at += std::size_t(block.columns)) {
       const Row3 row = sheets_[std::size_t(block.sheet)].lattice->x.row(j);
@@ -104,12 +127,26 @@ void SelfContact::list_sites(Threads& threads) {
 void SelfContact::sort(double margin, Threads& threads) {
   list_sites(threads);
   search_.sort(count_, blocks_.box(), thickness_ + float(margin), threads);
+  threads.share(search_.chunks(), search_.few(), [&](std::size_t k) {
+    for (std::size_t p = search_.begin(k); p < search_.begin(k + 1); ++p) {
+      const Site s = search_.site(p);
+      const auto stride = std::size_t(sheets_[s.cloth].lattice->stride);
+      names_[CellGrid::kPadding + p] =
+          std::int32_t(first_body_[s.cloth] + s.row * stride + s.column);
+    }
+  });
+}
+
+Site SelfContact::site(std::int32_t body) const {
+  std::size_t sheet = sheets_.size() - 1;
+  while (std::size_t(body) < first_body_[sheet]) --sheet;
+  const std::size_t at = std::size_t(body) - first_body_[sheet];
+  const auto stride = std::size_t(sheets_[sheet].lattice->stride);
+  return {std::uint16_t(sheet), std::uint16_t(at / stride), std::uint16_t(at % stride)};
 }
 
 void SelfContact::find(double margin, Threads& threads) {
-  search_.find(thickness_ + float(margin), threads);
-  owners_end_.resize(search_.chunks());
-  threads.share(search_.chunks(), search_.few(), [&](std::size_t k) { list_owners(k); });
+  search_.find(thickness_ + float(margin), threads, names_.data() + CellGrid::kPadding);
   found_ = 0;
   for (std::size_t k = 0; k < search_.chunks(); ++k) found_ += search_.pairs(k).count;
 }
@@ -122,16 +159,31 @@ void SelfContact::search(double margin, Threads& threads) {
   valid_ = false;
 }
 
+void SelfContact::restart() {
+  valid_ = false;
+  skin_ = 0;
+  kept_runs_ = 0;
+  for (auto* sheets : {&load_, &ahead_})
+    for (Rows& rows : *sheets) rows.clear();
+}
+
 int SelfContact::run(double dt, int since, Threads& threads) {
-  const float skin = float(kSkin) * thickness_, motion = float(kMotionApart) * thickness_;
+  const float motion = float(kMotionApart) * thickness_;
   ++runs_;
+  ++kept_runs_;
   blocks_.measure(kernels_, threads);
-  const Blocks::Outlook now = blocks_.look(thickness_, skin, motion, kMostSubsteps * dt);
+  const Blocks::Outlook now =
+      blocks_.look(thickness_, skin_ * thickness_, motion, kMostSubsteps * dt);
   if (!valid_ || !now.covered) {
+    if (kept_runs_ <= kFewRuns) skin_ *= 1.2f;
+    if (kept_runs_ > kManyRuns) skin_ *= 0.8f;
+    skin_ = std::clamp(skin_, kLeastSkin, kMostSkin);
+    const float skin = skin_ * thickness_;
     blocks_.choose(thickness_ + skin);
     sort(skin, threads);
     find(skin, threads);
     ++searches_;
+    kept_runs_ = 0;
     valid_ = true;
   }
   passed_over_ += std::int64_t(particles_ - count_);
@@ -174,8 +226,12 @@ SelfContact::Overlaps SelfContact::overlaps() {
 
 std::size_t SelfContact::bytes() const {
   std::size_t bytes = search_.bytes() + blocks_.bytes();
-  bytes += particles_ * (2 * sizeof(Body) + sizeof(Owner) + 4) + speeds_.capacity() * 4;
-  for (const Close& c : close_) bytes += 8 * c.owner.capacity();
+  bytes += bodies_.size() * sizeof(Body) + 4 * (names_.size() + friction_.size());
+  for (const auto* sheets : {&load_, &ahead_})
+    for (const Rows& rows : *sheets) bytes += rows.bytes();
+  bytes += speeds_.capacity() * 4;
+  for (const Close& c : close_)
+    bytes += 8 * c.owner.capacity() + (4 + sizeof(Body)) * c.moved.capacity();
   for (const Room& r : rooms_) bytes += r.asked.capacity() * (sizeof(Asked) + 8);
   return bytes;
 }

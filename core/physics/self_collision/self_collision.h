@@ -7,7 +7,8 @@
 // against each other (Verlet 1967), and is made anew then. Blocks are looked at, and pairs pushed
 // apart, as often as the motion asks for: never more than a share of the thickness in between. A pair
 // corrects both its ends from the same state (Jacobi), each particle gathering what its own pairs
-// say, so that no order matters.
+// say, so that no order matters. What contact takes from a particle's velocity time after time it gives
+// in part beforehand, so that layers that lie on each other do not sink in between two times.
 #pragma once
 
 #include <memory>
@@ -48,8 +49,7 @@ class SelfContact {
     for (std::size_t k = 0; k < search_.chunks(); ++k) {
       const PairSearch::Pairs pairs = search_.pairs(k);
       for (std::size_t i = 0; i < pairs.count; ++i)
-        visit(search_.site(std::size_t(pairs.owner[i])),
-              search_.site(std::size_t(pairs.neighbour[i])));
+        visit(site(pairs.owner[i]), site(pairs.neighbour[i]));
     }
   }
 
@@ -61,7 +61,7 @@ class SelfContact {
   double respond(double dt, int since, Threads& threads);
 
   const std::vector<Sheet>& sheets() const { return sheets_; }
-  void restart() { valid_ = false; }
+  void restart();
   // Share of the times so far that the list of pairs was still complete.
   double kept() const { return runs_ > 0 ? 1 - double(searches_) / double(runs_) : 0; }
   // Share of the particles so far that were in blocks that nothing could touch.
@@ -71,13 +71,18 @@ class SelfContact {
 
  private:
   SelfContact(const Scene& scene, std::vector<Sheet> sheets, const KernelTable& kernels);
+  struct Room {  // of one thread, for the pairs of a chunk that touch
+    std::vector<std::int32_t> owner, neighbour;
+    std::vector<Asked> asked;
+  };
+  void forget_loads(const Block& block);
   void list_sites(Threads& threads);
   bool few_pairs() const { return found_ < 8192; }  // one thread pushes them apart faster
-  void list_owners(std::size_t chunk);
+  Site site(std::int32_t body) const;
+  BodyBlock bodies_of(const Block& block, double since);
   void begin_response(Threads& threads);
-  void gather(std::size_t chunk);
-  void list_close(std::size_t chunk);
-  void scatter(std::size_t chunk);
+  int list_close(std::size_t chunk, bool anew, Room& room);
+  void move(std::size_t chunk);
 
   const Scene& scene_;
   std::vector<Sheet> sheets_;
@@ -88,32 +93,29 @@ class SelfContact {
   std::vector<std::size_t> first_site_;  // of every block
   std::size_t found_ = 0;                // pairs
   std::size_t count_ = 0;                // particles of active blocks
-  // A sorted particle with pairs.
-  struct Owner {
-    std::int32_t number;  // among the sorted
-    std::uint32_t sheet;
-    std::size_t offset;  // in the arrays of the sheet's lattice
-  };
-  std::vector<Owner> owners_;            // of chunk k from search_.begin(k) on,
-  std::vector<std::size_t> owners_end_;  // to here
-  // Pairs of a chunk that may touch in this run.
+  // Bodies lie as the particles do in the lattices, sheet after sheet.
+  std::vector<std::size_t> first_body_;  // of every sheet
+  AlignedArray<std::int32_t> names_;     // of the sorted particles, padded: their bodies
+  std::vector<Body> bodies_;             // those of active blocks are up to date in a run
+  std::vector<float> friction_;          // of every body, or kCourseRule; empty where all are alike
+  float friction_alike_ = 0;
+  std::vector<Rows> load_, ahead_;  // of every sheet: BodyBlock
+  // Pairs of a chunk that may touch in this run, and where those of their owners go that do.
   struct Close {
     std::vector<std::int32_t> owner, neighbour;
     int count = 0;
+    std::vector<std::int32_t> moved_owner;
+    std::vector<Body> moved;
+    int moved_count = 0;
   };
   std::vector<Close> close_;
-  struct Room {  // of one thread, for the pairs of a chunk that touch
-    std::vector<std::int32_t> owner, neighbour;
-    std::vector<Asked> asked;
-  };
   std::vector<Room> rooms_;
-  // Of every sorted particle with pairs; friction or kCourseRule.
-  std::vector<Body> bodies_, separated_;
-  std::vector<float> friction_;
   std::vector<float> speeds_;  // of a chunk's pairs that touch, squared, at most
   float thickness_ = 0;        // greatest of the sheets [m]
   bool course_ = false;        // whether any sheet has the course's rule
   bool valid_ = false;
+  float skin_ = 0;     // of the thickness
+  int kept_runs_ = 0;  // since the list of pairs was made
   std::int64_t runs_ = 0, searches_ = 0, passed_over_ = 0;
 };
 

@@ -9,57 +9,59 @@ namespace weft::physics {
 namespace {
 
 constexpr int kIterations = 3;        // of pushing apart, in one run
-constexpr float kClose = 1.15f;       // distances at which two are held: may touch in this run
+constexpr float kClose = 1.1f;        // distances at which two are held: may touch in this run
+constexpr float kAdvance = 0.5f;      // BodyBlock
 constexpr std::size_t kPadding = 32;  // that kernels may write
 
 }  // namespace
 
-// Once a search: without branches, as who has pairs cannot be foretold.
-void SelfContact::list_owners(std::size_t chunk) {
-  std::size_t end = search_.begin(chunk);
-  for (std::size_t a = search_.begin(chunk); a < search_.begin(chunk + 1); ++a) {
-    const Site s = search_.site(a);
-    const Sheet& sheet = sheets_[s.cloth];
-    const auto stride = std::size_t(sheet.lattice->stride);
-    friction_[a] = sheet.course ? kCourseRule : sheet.friction;
-    owners_[end] = {std::int32_t(a), s.cloth, s.row * stride + s.column};
-    end += search_.counts()[a] > 0;
-  }
-  owners_end_[chunk] = end;
+BodyBlock SelfContact::bodies_of(const Block& block, double since) {
+  const auto sheet = std::size_t(block.sheet);
+  Lattice& l = *sheets_[sheet].lattice;
+  const auto from = [&](Rows& rows) {
+    const Row3 r = rows.row(block.row);
+    return Row3{r.x + block.column, r.y + block.column, r.z + block.column};
+  };
+  BodyBlock b{};
+  b.columns = block.columns;
+  b.rows = block.rows;
+  b.stride = l.stride;
+  b.x = from(l.x);
+  b.v = from(l.v);
+  b.w = l.w(block.row) + block.column;
+  b.held = sheets_[sheet].thickness * (sheets_[sheet].course ? 1 : kHeld);
+  b.bodies = bodies_.data() + first_body_[sheet] + std::size_t(block.row) * std::size_t(l.stride) +
+             std::size_t(block.column);
+  b.load = from(load_[sheet]);
+  b.ahead = from(ahead_[sheet]);
+  b.since = float(since);
+  b.inverse_since = float(1 / since);
+  b.advance = sheets_[sheet].course ? 0 : kAdvance;
+  return b;
 }
 
-void SelfContact::gather(std::size_t chunk) {
-  for (std::size_t k = search_.begin(chunk); k < owners_end_[chunk]; ++k) {
-    const Owner o = owners_[k];
-    const Sheet& sheet = sheets_[o.sheet];
-    Lattice& l = *sheet.lattice;
-    const Row3 x = l.x.row(0), v = l.v.row(0);
-    const auto a = std::size_t(o.number), i = o.offset;
-    const float held = sheet.course ? sheet.thickness : sheet.thickness * kHeld;
-    bodies_[a] = {{x.x[i], x.y[i], x.z[i], held}, {v.x[i], v.y[i], v.z[i], l.inverse_mass[i]}};
-  }
-}
-
-void SelfContact::scatter(std::size_t chunk) {
-  for (std::size_t k = search_.begin(chunk); k < owners_end_[chunk]; ++k) {
-    const Owner o = owners_[k];
-    const Body& b = bodies_[std::size_t(o.number)];
-    if (b.v[3] <= 0) continue;
-    const std::size_t i = o.offset;
-    Lattice& l = *sheets_[o.sheet].lattice;
-    const Row3 x = l.x.row(0), v = l.v.row(0);
-    x.x[i] = b.x[0], x.y[i] = b.x[1], x.z[i] = b.x[2];
-    v.x[i] = b.v[0], v.y[i] = b.v[1], v.z[i] = b.v[2];
-  }
-}
-
-// The pairs that are pushed apart now, or that others may push into each other.
-void SelfContact::list_close(std::size_t chunk) {
-  const PairSearch::Pairs pairs = search_.pairs(chunk);
+// The pairs that touch go into the room; `anew`, those are chosen that others may push into each other
+// in this run. Returns how many touch.
+int SelfContact::list_close(std::size_t chunk, bool anew, Room& room) {
   Close& close = close_[chunk];
-  close.count =
-      kernels_.pairs_within({bodies_.data(), int(pairs.count), pairs.owner, pairs.neighbour, kClose,
-                             close.owner.data(), close.neighbour.data()});
+  ClosePairs p{};
+  p.bodies = bodies_.data();
+  p.reach = kClose;
+  p.touching = {room.owner.data(), room.neighbour.data()};
+  if (!anew) {
+    p.pairs = close.count;
+    p.owner = close.owner.data();
+    p.neighbour = close.neighbour.data();
+    return kernels_.close_pairs(p).touching;
+  }
+  const PairSearch::Pairs pairs = search_.pairs(chunk);
+  p.pairs = int(pairs.count);
+  p.owner = pairs.owner;
+  p.neighbour = pairs.neighbour;
+  p.close = {close.owner.data(), close.neighbour.data()};
+  const CloseFound found = kernels_.close_pairs(p);
+  close.count = found.close;
+  return found.touching;
 }
 
 // Makes room.
@@ -75,6 +77,10 @@ void SelfContact::begin_response(Threads& threads) {
   std::size_t most = 0;
   for (std::size_t k = 0; k < search_.chunks(); ++k) {
     grown(close_[k], search_.pairs(k).count);
+    if (close_[k].moved.empty()) {
+      close_[k].moved.resize(PairSearch::kChunk + kPadding);
+      close_[k].moved_owner.resize(PairSearch::kChunk + kPadding);
+    }
     most = std::max(most, search_.pairs(k).count);
   }
   rooms_.resize(std::size_t(threads.count()));
@@ -82,36 +88,47 @@ void SelfContact::begin_response(Threads& threads) {
     if (grown(r, most)) r.asked.resize(r.owner.size());
 }
 
+void SelfContact::move(std::size_t chunk) {
+  const Close& c = close_[chunk];
+  for (int n = 0; n < c.moved_count; ++n)
+    bodies_[std::size_t(c.moved_owner[std::size_t(n)])] = c.moved[std::size_t(n)];
+}
+
 double SelfContact::respond(double dt, int since, Threads& threads) {
   if (found_ == 0) return 0;
   begin_response(threads);
   const bool alone = few_pairs() || threads.count() == 1;
-  const auto each = [&](auto&& work) { threads.share(search_.chunks(), alone, work); };
-  each([&](std::size_t k) { gather(k); });
+  const auto each_chunk = [&](auto&& work) { threads.share(search_.chunks(), alone, work); };
+  const auto each_block = [&](auto kernel) {
+    threads.share(blocks_.all().size(), alone, [&](std::size_t b) {
+      if (blocks_.all()[b].active) kernel(bodies_of(blocks_.all()[b], since * dt));
+    });
+  };
+  each_block(kernels_.gather_bodies);
   // The course's push for as many substeps as have passed.
   const double steps = scene_.time.substeps > 0 ? scene_.time.substeps : scene_.time.frame / dt;
   const int iterations = course_ ? 1 : kIterations;
   for (int i = 0; i < iterations; ++i) {
-    each([&](std::size_t k) {
-      if (i == 0) list_close(k);
+    each_chunk([&](std::size_t k) {
       Room& room = rooms_[alone ? 0 : std::size_t(Threads::index())];
-      const Close& close = close_[k];
-      speeds_[k] =
-          kernels_.separate({bodies_.data(),
-                             int(search_.begin(k)),
-                             int(search_.begin(k + 1)),
-                             close.count,
-                             close.owner.data(),
-                             close.neighbour.data(),
-                             friction_.data(),
-                             float(since / steps),
-                             float(1 / dt),
-                             separated_.data(),
-                             {room.owner.data(), room.neighbour.data(), room.asked.data()}});
+      Close& close = close_[k];
+      const int touching = list_close(k, i == 0, room);
+      const Separated done = kernels_.separate({bodies_.data(),
+                                                touching,
+                                                {room.owner.data(), room.neighbour.data()},
+                                                room.asked.data(),
+                                                friction_.empty() ? nullptr : friction_.data(),
+                                                friction_alike_,
+                                                float(since / steps),
+                                                float(1 / dt),
+                                                close.moved_owner.data(),
+                                                close.moved.data()});
+      close.moved_count = done.moved;
+      speeds_[k] = done.fastest;
     });
-    std::swap(bodies_, separated_);
+    each_chunk([&](std::size_t k) { move(k); });
   }
-  each([&](std::size_t k) { scatter(k); });
+  each_block(kernels_.scatter_bodies);
   return std::sqrt(*std::max_element(speeds_.begin(), speeds_.end()));
 }
 
