@@ -87,9 +87,13 @@ Wavefront::Chunk Wavefront::chunk(int number, int first, int count) const {
   return {first, count, slot, tiles, span, std::max(0, tiles - 1 - span)};
 }
 
-// The first chunks grow and the last shrink. The first lasts just until the last thread has begun,
-// which is when all chunks before that thread's are `ahead` tiles further; the same backwards in time.
-// Those between are as long as each other, a whole number for every thread.
+// The first chunks grow evenly up to the longest, and the last shrink. A thread begins when the one
+// before it is span + 1 tiles ahead, the last of T threads so when (span + 1) T tiles of the mean
+// length (first + longest)/2 are done; the first chunk, of t tiles, is to last just as long:
+//
+//   first/longest = (span + 1) T / (2 t - (span + 1) T).
+//
+// The chunks between are as long as each other, as many for every thread.
 void Wavefront::choose_chunks(int count, int threads) {
   chunks_.clear();
   most_tiles_ = 0;
@@ -100,10 +104,10 @@ void Wavefront::choose_chunks(int count, int threads) {
   };
   const Chunk whole = chunk(0, 0, chunk_substeps_);
   const double ahead = (whole.span + 1) * threads;
-  const double share = std::min(1.0, ahead / std::max(2 * whole.tiles - ahead, 1.0));
+  const double first_share = std::min(1.0, ahead / std::max(2 * whole.tiles - ahead, 1.0));
   const auto length = [&](int n) {
-    const double grown = share + (1 - share) * (n - 1) / std::max(threads - 1, 1);
-    return std::max(1, int(std::lround(chunk_substeps_ * grown)));
+    const double share = first_share + (1 - first_share) * (n - 1) / (threads - 1);
+    return std::max(1, int(std::lround(chunk_substeps_ * share)));
   };
   int rising = 1;
   for (; rising < threads && count >= 2 * length(rising) + chunk_substeps_; ++rising) {

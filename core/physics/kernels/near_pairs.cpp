@@ -154,7 +154,7 @@ WEFT_INLINE int near_one(const NearSearch& s, const Runs& runs, int m, std::int3
       if (held == kLanes) test();
     }
   }
-  test();
+  if (held > 0) test();
   return seeker.found;
 }
 

@@ -92,19 +92,15 @@ void Blocks::measure(const KernelTable& kernels, Threads& threads) {
 void Blocks::measure_block(std::size_t b, const KernelTable& kernels) {
   const Block& block = blocks_[b];
   Lattice& l = *sheets_[std::size_t(block.sheet)].lattice;
-  const auto from = [&](Rows& rows) {
-    const Row3 r = rows.row(block.row);
-    return Row3{r.x + block.column, r.y + block.column, r.z + block.column};
-  };
   BlockRows rows{};
   rows.columns = block.columns;
   rows.rows = block.rows;
   rows.edges_along = std::min(block.columns, l.columns - 1 - block.column);
   rows.edges_across = std::min(block.rows, l.rows - 1 - block.row);
   rows.stride = l.stride;
-  rows.x = from(l.x);
-  rows.v = from(l.v);
-  rows.then = block.active ? ConstRow3(from(then_[std::size_t(block.sheet)]))
+  rows.x = first_of(block, l.x);
+  rows.v = first_of(block, l.v);
+  rows.then = block.active ? ConstRow3(first_of(block, then_[std::size_t(block.sheet)]))
                            : ConstRow3(nullptr, nullptr, nullptr);
   rows.bounds = &bounds_[b];
   kernels.block_bounds(rows);

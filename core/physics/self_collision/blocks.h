@@ -44,6 +44,12 @@ struct Block {
   bool active;       // searched for pairs the last time
 };
 
+// A block's first particle in the rows of its sheet.
+inline Row3 first_of(const Block& block, Rows& rows) {
+  const Row3 r = rows.row(block.row);
+  return {r.x + block.column, r.y + block.column, r.z + block.column};
+}
+
 class Blocks {
  public:
   // `neighbour`: pairs closer than so many thicknesses at rest are none.

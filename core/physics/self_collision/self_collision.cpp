@@ -92,11 +92,19 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
 }
 
 void SelfContact::forget_loads(const Block& block) {
+  const auto sheet = std::size_t(block.sheet);
+  for (Rows* rows : {&load_[sheet], &ahead_[sheet]}) {
+    const Row3 first = first_of(block, *rows);
+    for (float* component : {first.x, first.y, first.z})
+      for (int j = 0; j < block.rows; ++j)
+        std::fill_n(component + std::ptrdiff_t(j) * sheets_[sheet].lattice->stride, block.columns,
+                    0.0f);
+  }
+}
+
+void SelfContact::forget_loads() {
   for (auto* sheets : {&load_, &ahead_})
-    for (int j = block.row; j < block.row + block.rows; ++j) {
-      const Row3 row = (*sheets)[std::size_t(block.sheet)].row(j);
-      for (float* r : {row.x, row.y, row.z}) std::fill_n(r + block.column, block.columns, 0.0f);
-    }
+    for (Rows& rows : *sheets) rows.clear();
 }
 
 // The particles of active blocks, block by block, and where they are.
@@ -149,6 +157,7 @@ void SelfContact::find(double margin, Threads& threads) {
   search_.find(thickness_ + float(margin), threads, names_.data() + CellGrid::kPadding);
   found_ = 0;
   for (std::size_t k = 0; k < search_.chunks(); ++k) found_ += search_.pairs(k).count;
+  if (found_ == 0) forget_loads();
 }
 
 void SelfContact::search(double margin, Threads& threads) {
@@ -163,8 +172,7 @@ void SelfContact::restart() {
   valid_ = false;
   skin_ = 0;
   kept_runs_ = 0;
-  for (auto* sheets : {&load_, &ahead_})
-    for (Rows& rows : *sheets) rows.clear();
+  forget_loads();
 }
 
 int SelfContact::run(double dt, int since, Threads& threads) {

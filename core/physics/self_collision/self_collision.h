@@ -75,7 +75,9 @@ class SelfContact {
     std::vector<std::int32_t> owner, neighbour;
     std::vector<Asked> asked;
   };
+  // Of what nothing may touch.
   void forget_loads(const Block& block);
+  void forget_loads();
   void list_sites(Threads& threads);
   bool few_pairs() const { return found_ < 8192; }  // one thread pushes them apart faster
   Site site(std::int32_t body) const;

@@ -18,22 +18,18 @@ constexpr std::size_t kPadding = 32;  // that kernels may write
 BodyBlock SelfContact::bodies_of(const Block& block, double since) {
   const auto sheet = std::size_t(block.sheet);
   Lattice& l = *sheets_[sheet].lattice;
-  const auto from = [&](Rows& rows) {
-    const Row3 r = rows.row(block.row);
-    return Row3{r.x + block.column, r.y + block.column, r.z + block.column};
-  };
   BodyBlock b{};
   b.columns = block.columns;
   b.rows = block.rows;
   b.stride = l.stride;
-  b.x = from(l.x);
-  b.v = from(l.v);
+  b.x = first_of(block, l.x);
+  b.v = first_of(block, l.v);
   b.w = l.w(block.row) + block.column;
   b.held = sheets_[sheet].thickness * (sheets_[sheet].course ? 1 : kHeld);
   b.bodies = bodies_.data() + first_body_[sheet] + std::size_t(block.row) * std::size_t(l.stride) +
              std::size_t(block.column);
-  b.load = from(load_[sheet]);
-  b.ahead = from(ahead_[sheet]);
+  b.load = first_of(block, load_[sheet]);
+  b.ahead = first_of(block, ahead_[sheet]);
   b.since = float(since);
   b.inverse_since = float(1 / since);
   b.advance = sheets_[sheet].course ? 0 : kAdvance;
