@@ -15,6 +15,10 @@ namespace {
 constexpr int kPadding = 32;
 constexpr float kDistance = 0.6f;
 
+struct Body {
+  float x[4], v[4];  // Place, Motion
+};
+
 struct Pairs {
   std::vector<std::int32_t> owner, neighbour;
 };
@@ -48,6 +52,17 @@ struct Crowd {
     const Body &p = bodies[std::size_t(a)], &q = bodies[std::size_t(b)];
     return std::hypot(double(p.x[0]) - q.x[0], double(p.x[1]) - q.x[1], double(p.x[2]) - q.x[2]) <
            reach * 0.5 * (double(p.x[3]) + q.x[3]);
+  }
+
+  std::vector<Place> places() const {
+    std::vector<Place> places;
+    for (const Body& b : bodies) places.push_back({{b.x[0], b.x[1], b.x[2], b.x[3]}});
+    return places;
+  }
+  std::vector<Motion> motions() const {
+    std::vector<Motion> motions;
+    for (const Body& b : bodies) motions.push_back({{b.v[0], b.v[1], b.v[2], b.v[3]}});
+    return motions;
   }
 
   int owners, count_pairs;
@@ -105,7 +120,8 @@ class Separating : public testing::TestWithParam<Simd> {
   // Those that touch and, where asked for, those that are close.
   static std::pair<Pairs, Pairs> found(const Crowd& crowd, float reach, bool close, Simd simd) {
     Pairs touching = crowd.pairs, near = crowd.pairs;
-    ClosePairs p{crowd.bodies.data(),
+    const std::vector<Place> places = crowd.places();
+    ClosePairs p{places.data(),
                  crowd.count_pairs,
                  crowd.pairs.owner.data(),
                  crowd.pairs.neighbour.data(),
@@ -121,24 +137,23 @@ class Separating : public testing::TestWithParam<Simd> {
     return {touching, near};
   }
   static std::vector<Body> separated(const Crowd& crowd, float& fastest, bool alike, Simd simd) {
-    std::vector<Body> out = crowd.bodies;
-    Pairs touching = found(crowd, 1, false, simd).first;
-    std::vector<Asked> asked(touching.owner.size());
+    std::vector<Place> place = crowd.places();
+    std::vector<Motion> motion = crowd.motions();
+    const BodyFriction friction{alike ? nullptr : crowd.friction.data(), crowd.friction[0]};
+    const Pairs touching = found(crowd, 1, false, simd).first;
+    std::vector<Asked> asked(touching.owner.size()), sum(touching.owner.size());
     std::vector<std::int32_t> owner(touching.owner.size());
-    std::vector<Body> moved(touching.owner.size());
-    const Separated done =
-        kernel_table(simd).separate({crowd.bodies.data(),
-                                     int(touching.owner.size()) - kPadding,
-                                     {touching.owner.data(), touching.neighbour.data()},
-                                     asked.data(),
-                                     alike ? nullptr : crowd.friction.data(),
-                                     crowd.friction[0],
-                                     0.25f,
-                                     100,
-                                     owner.data(),
-                                     moved.data()});
-    for (int n = 0; n < done.moved; ++n)
-      out[std::size_t(owner[std::size_t(n)])] = moved[std::size_t(n)];
+    const KernelTable& kernels = kernel_table(simd);
+    const AskFound done = kernels.ask_pairs(
+        {place.data(), motion.data(), friction, int(touching.owner.size()) - kPadding,
+         touching.owner.data(), touching.neighbour.data(), asked.data(), owner.data(), sum.data()});
+    kernels.move_owners(
+        {place.data(), motion.data(), friction, done.owners, owner.data(), sum.data(), 0.25f, 100});
+    std::vector<Body> out = crowd.bodies;
+    for (std::size_t a = 0; a < out.size(); ++a) {
+      std::copy_n(place[a].x, 4, out[a].x);
+      std::copy_n(motion[a].v, 4, out[a].v);
+    }
     fastest = done.fastest;
     return out;
   }
@@ -223,7 +238,9 @@ TEST_P(Separating, BodiesAreTheParticles) {
   Random random(1, 0);
   for (auto& component : lattice)
     for (std::size_t n = 0; n < kFloats; ++n) component.push_back(float(random.symmetric()));
-  std::vector<Body> bodies(kFloats);
+  constexpr int kBodyStride = kStride + 5, kFirstBody = 7;
+  std::vector<Place> place(kFirstBody + std::size_t(kBodyStride) * kRows);
+  std::vector<Motion> motion(place.size());
   const auto at = [&](int c) { return lattice[c].data() + kFirst; };
   std::vector<float> load[3], ahead[3];
   for (int k = 0; k < 3; ++k) {
@@ -238,30 +255,34 @@ TEST_P(Separating, BodiesAreTheParticles) {
   block.v = {at(3), at(4), at(5)};
   block.w = at(6);
   block.held = 0.25f;
-  block.bodies = bodies.data() + kFirst;
+  block.body_stride = kBodyStride;
+  block.place = place.data() + kFirstBody;
+  block.motion = motion.data() + kFirstBody;
   block.load = {load[0].data() + kFirst, load[1].data() + kFirst, load[2].data() + kFirst};
   block.ahead = {ahead[0].data() + kFirst, ahead[1].data() + kFirst, ahead[2].data() + kFirst};
   block.since = 0.5f;
   block.inverse_since = 2;
   block.advance = 0.5f;
   kernel_table(GetParam()).gather_bodies(block);
+  // visit(number in the lattice, of the body)
   const auto each = [&](auto&& visit) {
     for (int j = 0; j < kRows; ++j)
-      for (int i = 0; i < kColumns; ++i) visit(std::size_t(kFirst + j * kStride + i));
+      for (int i = 0; i < kColumns; ++i)
+        visit(std::size_t(kFirst + j * kStride + i), std::size_t(kFirstBody + j * kBodyStride + i));
   };
-  each([&](std::size_t n) {
+  each([&](std::size_t n, std::size_t body) {
     for (int k = 0; k < 3; ++k) {
-      EXPECT_EQ(bodies[n].x[k], lattice[k][n]);
-      EXPECT_EQ(bodies[n].v[k], lattice[3 + k][n]);
-      bodies[n].x[k] += 1;
-      bodies[n].v[k] -= 1;
+      EXPECT_EQ(place[body].x[k], lattice[k][n]);
+      EXPECT_EQ(motion[body].v[k], lattice[3 + k][n]);
+      place[body].x[k] += 1;
+      motion[body].v[k] -= 1;
     }
-    EXPECT_EQ(bodies[n].x[3], 0.25f);
-    EXPECT_EQ(bodies[n].v[3], lattice[6][n]);
+    EXPECT_EQ(place[body].x[3], 0.25f);
+    EXPECT_EQ(motion[body].v[3], lattice[6][n]);
   });
   std::vector<float> expected[7];
   std::copy(std::begin(lattice), std::end(lattice), std::begin(expected));
-  each([&](std::size_t n) {
+  each([&](std::size_t n, std::size_t) {
     for (int k = 0; k < 3; ++k) {
       expected[k][n] += 1;
       expected[3 + k][n] -= 1;
@@ -281,14 +302,16 @@ TEST_P(Separating, LoadsThatLastAreCarriedInAdvance) {
   for (int k = 0; k < 3; ++k)
     for (auto* component : {&v[k], &load[k], &ahead[k]}) component->resize(kFloats);
   w[3] = 0;
-  std::vector<Body> bodies(kFloats);
+  std::vector<Place> place(kFloats);
+  std::vector<Motion> motion(kFloats);
   BodyBlock block{};
   block.columns = kColumns;
   block.rows = 1;
   block.x = {x.data(), x.data(), x.data()};
   block.v = {v[0].data(), v[1].data(), v[2].data()};
   block.w = w.data();
-  block.bodies = bodies.data();
+  block.place = place.data();
+  block.motion = motion.data();
   block.load = {load[0].data(), load[1].data(), load[2].data()};
   block.ahead = {ahead[0].data(), ahead[1].data(), ahead[2].data()};
   block.since = kSince;
@@ -298,7 +321,7 @@ TEST_P(Separating, LoadsThatLastAreCarriedInAdvance) {
   const auto press = [&](float gain) {
     for (auto& component : v) std::fill(component.begin(), component.end(), 0.0f);
     kernel_table(GetParam()).gather_bodies(block);
-    for (std::size_t i = 0; i < kColumns; ++i) bodies[i].v[1] += w[i] > 0 ? gain - ahead[1][i] : 0;
+    for (std::size_t i = 0; i < kColumns; ++i) motion[i].v[1] += w[i] > 0 ? gain - ahead[1][i] : 0;
     kernel_table(GetParam()).scatter_bodies(block);
   };
   const auto given = [&](std::size_t i) { return std::vector<float>{v[1][i], ahead[1][i]}; };

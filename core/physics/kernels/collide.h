@@ -284,7 +284,7 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
         const WideInt low = close & (tangents[t] < enough);
         // Those that are low keep what they have for the descents.
         bounds[t] = select(low, tangents[t], tangents[t] - r.offset);
-        listed += store_lanes(f.room + listed, low, (lane_numbers() + i) * 2 + t);
+        listed += store_lanes(f.room + listed, bits(low), (lane_numbers() + i) * 2 + t);
       }
     }
     for (int t = 0; t < 2; ++t) store(f.bound[t] + i, select(close, bounds[t], wide(kFar)));

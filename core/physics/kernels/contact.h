@@ -32,30 +32,56 @@ struct BlockRows {
   BlockBounds* bounds;  // out
 };
 
+// Cells along an axis, at most: what lies beyond is in the last. (Their numbers stay within 64 bits.)
+inline constexpr float kMostCells = 1e6f;
+
+// The buckets of particles (cell_grid.h): a + b stride_y + c stride_z for cell (a, b, c), counted from 1
+// at `low`, modulo the table's size where it wraps.
+struct CellKeys {
+  ConstRow3 x;
+  int begin, end;  // whole groups of 16 lanes, beyond the end too
+  float low[3];    // m
+  float inverse;   // of the cells' size [1/m]
+  std::int64_t stride_y, stride_z, table;
+  bool wraps;
+  std::int32_t* key;  // out
+};
+
 // Room to bring the candidates of a cell together: arrays of `size`, candidates and the padding.
 inline constexpr int kNearPadding = 32;
 struct NearRoom {
   Row3 x;
-  float *u, *w;
-  std::int32_t* number;
+  std::int32_t* name;
+  std::int32_t* near[2];  // of two particles, the names of those near them
   int size;
+};
+
+// A sheet whose particles are named from `first` on. Two of them are neighbours, and no pair, when their
+// names differ by no less than one of the windows' low and no more than its high.
+struct NameWindow {
+  std::int32_t low, high;
+};
+struct NearSheet {
+  std::int32_t first;
+  const NameWindow* window;
+  int windows;
 };
 
 // Particles in order of their buckets (cell_grid.h), and the nine runs of three buckets about each.
 struct NearSearch {
-  ConstRow3 x;  // sorted, 16 lanes of padding before them and after
-  // Of every sorted particle, padded likewise: its place on the flat sheet, in spacings of its columns,
-  // those of different sheets far apart, and the square of the distance there below which two are no
-  // pair.
-  const float *u, *w, *apart_squared;
-  const std::int32_t* names;  // by which they are listed; null: by their number in sorted order
+  // Sorted, 16 lanes of padding before them and after; their names, by which they are listed, likewise.
+  // Null: they are listed by their numbers in sorted order, each pair by the first of the two alone,
+  // and there are no neighbours.
+  ConstRow3 x;
+  const std::int32_t* name;
+  const NearSheet* sheet;  // in order of their first names
+  int sheets;
   const std::int32_t* bucket;
   const std::int32_t* start;  // of every bucket, one more than `table`
   std::int64_t table;         // buckets
   std::int64_t offset[9];     // from a bucket to the first of each run, modulo the table
   float range_squared;        // m²
   int begin, end;             // sorted particles to search about
-  bool once;                  // pairs are listed by the first of the two alone, else by both
   std::int32_t* neighbour;    // out, particle after particle: those in range and no neighbours
   std::int32_t* owner;        // out, for each of them, the particle
   int pairs_room;             // of both
@@ -73,20 +99,25 @@ inline constexpr float kHeld = 1.05f;
 // In place of an owner's friction: pushed by the course's rule.
 inline constexpr float kCourseRule = -1;
 
-// A particle.
-struct alignas(32) Body {
-  float x[4];  // place, and the distance at which it is held from its like [m]
-  float v[4];  // velocity [m/s] and inverse mass [1/kg]
+// Where a particle is, and the distance at which it is held from its like [m].
+struct alignas(16) Place {
+  float x[4];
 };
 
-// A block of particles in the lattice, and as bodies, laid out alike.
+// Its velocity [m/s] and inverse mass [1/kg]: apart from its place, which is looked at far more often.
+struct alignas(16) Motion {
+  float v[4];
+};
+
+// A block of particles in the lattice, and as bodies: places and motions.
 struct BodyBlock {
   int columns, rows;
-  std::ptrdiff_t stride;
+  std::ptrdiff_t stride, body_stride;  // from row to row of the lattice, and of the bodies
   Row3 x, v;       // the first particle; in whole groups of lanes, beyond the columns too
   const float* w;  // inverse mass [1/kg]
   float held;      // the distance at which they are held from their like [m]
-  Body* bodies;
+  Place* place;
+  Motion* motion;
   // For scattering, laid out as x: by how much contact has to change their velocities, their load
   // [m/s²]; and what it has given of that in advance the last time, and then gives now [m/s].
   Row3 load, ahead;
@@ -102,7 +133,7 @@ struct PairRoom {
 // Pairs, one owner's after another's, and where those of them go that are close, nearer than `reach` of
 // the distances at which they are held, and those that touch, nearer than these.
 struct ClosePairs {
-  const Body* bodies;
+  const Place* place;
   int pairs;
   const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of particles
   float reach;
@@ -113,30 +144,46 @@ struct CloseFound {
   int close, touching;
 };
 
-// What a pair that touches asks of its owner, times its weight.
+// Coulomb's coefficient of every body, or kCourseRule; null: all alike.
+struct BodyFriction {
+  const float* each;
+  float alike;
+};
+
+// What pairs that touch ask of an owner, times their weights.
 struct alignas(32) Asked {
   float push[4];  // displacement [m], and the weight alone
   float gain[4];  // velocity [m/s]
 };
 
-// Pairs that touch, one owner's after another's, and where their owners go.
-struct SeparateOwners {
-  const Body* bodies;
+// Pairs that touch, one owner's after another's, and what all of an owner's ask of it.
+struct AskPairs {
+  const Place* place;
+  const Motion* motion;
+  BodyFriction friction;
   int pairs;
-  PairRoom touching;      // overwritten
-  Asked* asked;           // room for what these ask for
-  const float* friction;  // of every body, or kCourseRule; null: alike
-  float friction_alike;
-  float course_share;  // of a correction, per run
-  float inverse_dt;    // 1/s
-  // out, owners, and 16 lanes of padding
-  std::int32_t* moved_owner;
-  Body* moved;
+  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of particles
+  Asked* asked;                           // room for what each pair asks
+  // out, owner after owner
+  std::int32_t* asked_owner;
+  Asked* sum;
 };
 
-struct Separated {
-  int moved;      // owners
+struct AskFound {
+  int owners;
   float fastest;  // greatest squared relative speed of two that touch [m²/s²]
+};
+
+// Owners, and what they are asked.
+struct MoveOwners {
+  Place* place;
+  Motion* motion;
+  BodyFriction friction;
+  int owners;
+  const std::int32_t* owner;
+  const Asked* sum;
+  float course_share;  // of a correction, per run
+  float inverse_dt;    // 1/s
 };
 
 }  // namespace weft::physics

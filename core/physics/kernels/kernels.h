@@ -266,13 +266,15 @@ struct PushRow {
 
 struct LineStrip;  // kernels/line.h
 struct BlockRows;  // kernels/contact.h
+struct CellKeys;
 struct NearSearch;
 struct NearFound;
 struct ClosePairs;
 struct CloseFound;
 struct BodyBlock;
-struct Separated;
-struct SeparateOwners;
+struct AskFound;
+struct AskPairs;
+struct MoveOwners;
 struct SquaresWithin;
 struct SurfacePairs;  // kernels/surface.h
 // Constraints of one family in one row: number a joins near + a and far + a. What is longer ends.
@@ -318,10 +320,12 @@ struct KernelTable {
   RowReach (*below_faces[kShapes])(const FacesRow&);
   void (*wind)(const WindRow&);
   void (*push)(const PushRow&);
-  void (*block_bounds)(const BlockRows&);      // how a block lies and moves
+  void (*block_bounds)(const BlockRows&);  // how a block lies and moves
+  void (*cell_keys)(const CellKeys&);
   NearFound (*near_pairs)(const NearSearch&);  // who is in range of whom
   CloseFound (*close_pairs)(const ClosePairs&);
-  Separated (*separate)(const SeparateOwners&);  // where pairs that touch are pushed
+  AskFound (*ask_pairs)(const AskPairs&);
+  void (*move_owners)(const MoveOwners&);
   void (*gather_bodies)(const BodyBlock&);
   void (*scatter_bodies)(const BodyBlock&);
   int (*squares_within)(const SquaresWithin&);  // returns how many are

@@ -1,6 +1,7 @@
 // The pair search of self-collision: who of many candidates is within a range of a particle. The
 // candidates of a cell with several members are brought together first, those alone that are within
-// the range of the box about the members, so that each of these tests few and whole groups.
+// the range of the box about the members, so that each of these tests few and whole groups. Neighbours
+// on the flat sheet are told by their names, and taken out of the few that are near.
 #include "physics/kernels/contact.h"
 #include "physics/kernels/row_kernels.h"
 
@@ -8,10 +9,12 @@ namespace weft::WEFT_KERNELS {
 
 namespace {
 
+using physics::CellKeys;
 using physics::kNearPadding;
 using physics::NearFound;
 using physics::NearRoom;
 using physics::NearSearch;
+using physics::NearSheet;
 using physics::Run;
 
 constexpr int kFewMembers = 2;  // of a cell, for which its candidates stay where they are
@@ -45,17 +48,19 @@ WEFT_INLINE Runs runs_about(const NearSearch& s, std::int64_t bucket, int begin)
 }
 
 // Of the sorted particles from number i on.
+template <bool kOnce>
 WEFT_INLINE WideInt names_at(const NearSearch& s, int i) {
-  return s.names ? lanes_at(s.names + i) : lane_numbers() + i;
+  return kOnce ? lane_numbers() + i : lanes_at(s.name + i);
 }
 
-// From a box to points outside, axis by axis. Rounding keeps it no longer than from any point inside.
-WEFT_INLINE Wide outside(Wide x, float low, float high) {
-  return max(max(low - x, x - high), Wide{});
+// From a box to points outside, along an axis. Rounding keeps it no longer than from any point inside.
+WEFT_INLINE Wide outside(Wide x, Wide low, Wide high) {
+  return x - max(low, min(x, high));
 }
 
 // The runs' particles within the range of the sorted ones from `begin` to `end`, next to each other
 // in the room; the last group is filled up with some far away. Returns how many.
+template <bool kOnce>
 WEFT_INLINE int bring_together(const NearSearch& s, const Runs& runs, int begin, int end) {
   float low[3], high[3];
   const float* const x[3] = {s.x.x, s.x.y, s.x.z};
@@ -67,20 +72,20 @@ WEFT_INLINE int bring_together(const NearSearch& s, const Runs& runs, int begin,
     }
   }
   const NearRoom& room = s.room;
+  const Wide range = wide(s.range_squared);
   int count = 0;
   for (int r = 0; r < runs.count; ++r) {
     const int last = runs.run[r].last;
     for (int i = runs.run[r].first; i < last; i += kLanes) {
       const Wide3 p = load3(s.x, i);
-      const Wide3 d{outside(p.x, low[0], high[0]), outside(p.y, low[1], high[1]),
-                    outside(p.z, low[2], high[2])};
-      const WideInt kept = (dot(d, d) < s.range_squared) & lanes_below(last - i);
+      const Wide3 d{outside(p.x, wide(low[0]), wide(high[0])),
+                    outside(p.y, wide(low[1]), wide(high[1])),
+                    outside(p.z, wide(low[2]), wide(high[2]))};
+      const LaneBits kept = where_less(dot(d, d), range) & first_lanes(last - i);
       store_lanes(room.x.x + count, kept, p.x);
       store_lanes(room.x.y + count, kept, p.y);
       store_lanes(room.x.z + count, kept, p.z);
-      store_lanes(room.u + count, kept, load(s.u + i));
-      store_lanes(room.w + count, kept, load(s.w + i));
-      count += store_lanes(room.number + count, kept, names_at(s, i));
+      count += store_lanes(room.name + count, kept, names_at<kOnce>(s, i));
     }
   }
   for (int i = 0; i < 16; i += kLanes)
@@ -88,55 +93,60 @@ WEFT_INLINE int bring_together(const NearSearch& s, const Runs& runs, int begin,
   return count;
 }
 
-// A particle, and where the numbers of those near it go.
+// A particle, and where the names of those near it go.
+template <bool kOnce>
 struct Seeker {
   Wide3 p;
-  Wide u, w, apart;
-  std::int32_t m;
+  Wide range;
+  std::int32_t m, name;
+  const NearSheet* sheet;
   std::int32_t* near;
   int found = 0;
 
-  WEFT_INLINE Seeker(const NearSearch& s, int number, std::int32_t* to)
+  WEFT_INLINE Seeker(const NearSearch& s, int number, const NearSheet* sheet, std::int32_t* to)
       : p(wide3(s.x.x[number], s.x.y[number], s.x.z[number])),
-        u(wide(s.u[number])),
-        w(wide(s.w[number])),
-        apart(wide(s.apart_squared[number])),
+        range(wide(s.range_squared)),
         m(number),
+        name(kOnce ? number : s.name[number]),
+        sheet(sheet),
         near(to) {}
 
   // Of kLanes candidates, those `asked`.
-  template <bool kOnce>
-  WEFT_INLINE void test(const NearSearch& s, Wide3 x, Wide at_u, Wide at_w, WideInt number,
-                        WideInt asked) {
+  WEFT_INLINE void test(Wide3 x, WideInt other, LaneBits asked) {
     const Wide3 d = x - p;
-    const Wide a = at_u - u, b = at_w - w;
-    WideInt pair = (dot(d, d) < s.range_squared) & (a * a + b * b >= apart) & asked;
-    if constexpr (kOnce) pair &= number > m;
-    found += store_lanes(near + found, pair, number);
+    LaneBits pair = where_less(dot(d, d), range) & asked;
+    if constexpr (kOnce) {
+      pair &= bits(other > m);
+    } else {
+      const WideInt apart = other > name ? other - name : name - other;
+      for (int w = 0; w < sheet->windows; ++w)
+        pair &= ~where_within(apart, sheet->window[w].low, sheet->window[w].high);
+    }
+    found += store_lanes(near + found, pair, other);
   }
 };
 
-// The numbers of those near particle m among what was brought together; returns how many.
+// The names of those near particle m among what was brought together; returns how many.
 template <bool kOnce>
-WEFT_INLINE int near_one(const NearSearch& s, int candidates, int m, std::int32_t* near) {
-  Seeker seeker(s, m, near);
+WEFT_INLINE int near_one(const NearSearch& s, int candidates, int m, const NearSheet* sheet,
+                         std::int32_t* near) {
+  Seeker<kOnce> seeker(s, m, sheet, near);
   const NearRoom& room = s.room;
   for (int i = 0; i < candidates; i += kLanes)
-    seeker.test<kOnce>(s, load3(room.x, i), load(room.u + i), load(room.w + i),
-                       lanes_at(room.number + i), WideInt{} - 1);
+    seeker.test(load3(room.x, i), lanes_at(room.name + i), first_lanes(kLanes));
   return seeker.found;
 }
 
 // The same among the runs themselves, which are short: as many as fit share a group.
 template <bool kOnce>
-WEFT_INLINE int near_one(const NearSearch& s, const Runs& runs, int m, std::int32_t* near) {
-  Seeker seeker(s, m, near);
+WEFT_INLINE int near_one(const NearSearch& s, const Runs& runs, int m, const NearSheet* sheet,
+                         std::int32_t* near) {
+  Seeker<kOnce> seeker(s, m, sheet, near);
   Wide3 x{};
-  Wide u{}, w{};
-  WideInt number{};
+  WideInt name{};
   int held = 0;
   const auto test = [&] {
-    seeker.test<kOnce>(s, x, u, w, number, lanes_below(held));
+    seeker.test(x, name, first_lanes(held));
     held = 0;
   };
   for (int r = 0; r < runs.count; ++r) {
@@ -145,9 +155,7 @@ WEFT_INLINE int near_one(const NearSearch& s, const Runs& runs, int m, std::int3
       const WideInt kept = lanes_below(held);
       const int at = i - held;
       x = select(kept, x, load3(s.x, at));
-      u = select(kept, u, load(s.u + at));
-      w = select(kept, w, load(s.w + at));
-      number = kept ? number : names_at(s, at);
+      name = kept ? name : names_at<kOnce>(s, at);
       const int taken = last - i < kLanes - held ? last - i : kLanes - held;
       held += taken;
       i += taken;
@@ -161,6 +169,7 @@ WEFT_INLINE int near_one(const NearSearch& s, const Runs& runs, int m, std::int3
 template <bool kOnce>
 WEFT_INLINE NearFound search(const NearSearch& given) {
   const NearSearch s = given;
+  const NearSheet* sheet = s.sheet;
   int found = 0;
   for (int m = s.begin; m < s.end;) {
     const std::int32_t bucket = s.bucket[m];
@@ -170,25 +179,53 @@ WEFT_INLINE NearFound search(const NearSearch& given) {
     int end = m + 1;
     while (end < s.end && s.bucket[end] == bucket) ++end;
     const bool together = end - m > kFewMembers;
-    const int near = together ? bring_together(s, runs, m, end) : runs.candidates;
+    const int near = together ? bring_together<kOnce>(s, runs, m, end) : runs.candidates;
     for (; m < end; ++m) {
       if (s.pairs_room - found < needed) return {m, found, needed};
+      std::int32_t* const to = s.neighbour + found;
+      const std::int32_t name = kOnce ? m : s.name[m];
+      if constexpr (!kOnce) {
+        while (sheet->first > name) --sheet;
+        while (sheet + 1 < s.sheet + s.sheets && sheet[1].first <= name) ++sheet;
+      }
       int count = 0;
       if (near > 1)
-        count = together ? near_one<kOnce>(s, near, m, s.neighbour + found)
-                         : near_one<kOnce>(s, runs, m, s.neighbour + found);
-      const WideInt owner = WideInt{} + (s.names ? s.names[m] : m);
-      for (int i = 0; i < count; i += kLanes) put_lanes(s.owner + found + i, owner);
+        count = together ? near_one<kOnce>(s, near, m, sheet, to)
+                         : near_one<kOnce>(s, runs, m, sheet, to);
+      for (int i = 0; i < count; i += kLanes) put_lanes(s.owner + found + i, WideInt{} + name);
       found += count;
     }
   }
   return {s.end, found, 0};
 }
 
+// The cell along an axis; what is no number lands somewhere.
+WEFT_INLINE WideInt cell(Wide x, float low, float inverse) {
+  const Wide along = max(Wide{}, min(wide(physics::kMostCells), (x - low) * inverse));
+  return __builtin_convertvector(along, WideInt) + 1;
+}
+
 }  // namespace
 
+void cell_keys(const CellKeys& given) {
+  const CellKeys s = given;
+  for (int i = s.begin; i < s.end; i += kLanes) {
+    const WideInt a = cell(load(s.x.x + i), s.low[0], s.inverse);
+    const WideInt b = cell(load(s.x.y + i), s.low[1], s.inverse);
+    const WideInt c = cell(load(s.x.z + i), s.low[2], s.inverse);
+    if (s.wraps) {
+      for (int l = 0; l < kLanes; ++l)
+        s.key[i + l] = std::int32_t((a[l] + b[l] * s.stride_y + c[l] * s.stride_z) % s.table);
+    } else {
+      const WideInt key = a + b * std::int32_t(s.stride_y) + c * std::int32_t(s.stride_z);
+      const WideInt last = WideInt{} + std::int32_t(s.table - 1);
+      put_lanes(s.key + i, key < last ? key : last);
+    }
+  }
+}
+
 NearFound near_pairs(const NearSearch& given) {
-  return given.once ? search<true>(given) : search<false>(given);
+  return given.name ? search<false>(given) : search<true>(given);
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -11,28 +11,73 @@ struct Wide4 {
   Wide last;
 };
 
-// Record k has its four floats at address(k).
-template <class Address>
-WEFT_INLINE Wide4 records_from(const Address& address) {
+// Record k of kLanes.
+WEFT_INLINE Wide4 turned(const Four (&record)[kLanes]) {
 #if WEFT_LANES >= 4
   Wide r[4];
-  for (int k = 0; k < 4; ++k)
-    r[k] = join_quarters([&](int l) { return load_four(address(l + k)); });
+  for (int k = 0; k < 4; ++k) r[k] = join_quarters([&](int l) { return record[l + k]; });
   turn(r);
   return {{r[0], r[1], r[2]}, r[3]};
 #else
-  const float* r = address(0);
+  const Four r = record[0];
   return {wide3(r[0], r[1], r[2]), wide(r[3])};
 #endif
 }
 
+// visit(k, number[k]) for each of kLanes, two by one load: half of all loads would be of numbers.
+template <class Visit>
+WEFT_INLINE void for_each_number(const std::int32_t* number, const Visit& visit) {
+#if WEFT_LANES >= 4
+  for (int k = 0; k < kLanes; k += 2) {
+    std::uint64_t two;
+    __builtin_memcpy(&two, number + k, sizeof two);
+    visit(k, std::ptrdiff_t(std::uint32_t(two)));
+    visit(k + 1, std::ptrdiff_t(two >> 32));
+  }
+#else
+  visit(0, std::ptrdiff_t(number[0]));
+#endif
+}
+
+// Record k has its four floats at address(k).
+template <class Address>
+WEFT_INLINE Wide4 records_from(const Address& address) {
+  Four record[kLanes];
+  for (int k = 0; k < kLanes; ++k) record[k] = load_four(address(k));
+  return turned(record);
+}
+
 // At records + stride * number[k].
 WEFT_INLINE Wide4 records_at(const float* records, int stride, const std::int32_t* number) {
-  return records_from([&](int k) { return records + std::ptrdiff_t(stride) * number[k]; });
+  Four record[kLanes];
+  for_each_number(number, [&](int k, std::ptrdiff_t n) {
+    record[k] = load_four(records + std::ptrdiff_t(stride) * n);
+  });
+  return turned(record);
 }
 // At records + stride * k.
 WEFT_INLINE Wide4 records_in_row(const float* records, int stride) {
   return records_from([&](int k) { return records + std::ptrdiff_t(stride) * k; });
+}
+
+// Of the records a[k] and b[k]: a - b of the first three floats, a + b of the last.
+WEFT_INLINE Wide4 differences_at(const float* records, int stride, const std::int32_t* a,
+                                 const std::int32_t* b) {
+  Four record[kLanes];
+  for_each_number(a, [&](int k, std::ptrdiff_t n) {
+    record[k] = load_four(records + std::ptrdiff_t(stride) * n);
+  });
+  for_each_number(b, [&](int k, std::ptrdiff_t n) {
+    const Four other = load_four(records + std::ptrdiff_t(stride) * n), sign{-1, -1, -1, 1};
+#if WEFT_LANES == 16
+    record[k] = (Four)_mm_maskz_fmadd_ps(0xf, (__m128)other, (__m128)sign, (__m128)record[k]);
+#elif WEFT_LANES == 8
+    record[k] = (Four)_mm_fmadd_ps((__m128)other, (__m128)sign, (__m128)record[k]);
+#else
+    record[k] = record[k] + other * sign;
+#endif
+  });
+  return turned(record);
 }
 
 // Record k goes to records + stride * k.

@@ -21,34 +21,36 @@ namespace weft::WEFT_KERNELS {
 namespace {
 
 using physics::Asked;
-using physics::Body;
+using physics::AskFound;
+using physics::AskPairs;
 using physics::BodyBlock;
+using physics::BodyFriction;
 using physics::CloseFound;
 using physics::ClosePairs;
+using physics::MoveOwners;
 using physics::PairRoom;
-using physics::Separated;
-using physics::SeparateOwners;
 
 // Of the thickness, at once: what starts intersecting comes apart slowly.
 constexpr float kMostPush = 0.5f;
 constexpr float kTiny = 1e-12f;
-constexpr int kStride = sizeof(Body) / sizeof(float);
+constexpr int kBody = 4;  // floats of a place, and of a motion
+constexpr int kAsked = sizeof(Asked) / sizeof(float);
 
-WEFT_INLINE Wide friction_of(const SeparateOwners& s, const std::int32_t* body) {
-  if (!s.friction) return wide(s.friction_alike);
+template <bool kAlike>
+WEFT_INLINE Wide friction_of(const BodyFriction& friction, const std::int32_t* body) {
+  if constexpr (kAlike) return wide(friction.alike);
   Wide r{};
-  for (int l = 0; l < kLanes; ++l) r[l] = s.friction[body[l]];
+  for (int l = 0; l < kLanes; ++l) r[l] = friction.each[body[l]];
   return r;
 }
 
-// What kLanes pairs of the room from `at` on ask for; returns their greatest squared relative speed.
-WEFT_INLINE Wide ask(const SeparateOwners& s, int at) {
-  const std::int32_t* const owner = s.touching.owner + at;
-  const std::int32_t* const neighbour = s.touching.neighbour + at;
-  const Wide4 p = records_at(s.bodies->x, kStride, owner);
-  const Wide4 q = records_at(s.bodies->x, kStride, neighbour);
-  const Wide held = 0.5f * (p.last + q.last);
-  Wide3 d = p.xyz - q.xyz;
+// What kLanes pairs from `at` on ask for; returns their greatest squared relative speed.
+template <bool kAlike>
+WEFT_INLINE Wide ask(const AskPairs& s, int at) {
+  const std::int32_t *const owner = s.owner + at, *const neighbour = s.neighbour + at;
+  const Wide4 apart = differences_at(s.place->x, kBody, owner, neighbour);
+  const Wide held = 0.5f * apart.last;
+  Wide3 d = apart.xyz;
   const Wide square = dot(d, d);
   // In one place: apart along y, by their order.
   const WideInt together = square < kTiny * kTiny;
@@ -59,9 +61,10 @@ WEFT_INLINE Wide ask(const SeparateOwners& s, int at) {
   }
   const Wide3 n = d * (1.0f / select(together, wide(1), distance));
   const Wide depth = held - distance;
-  const Wide4 own = records_at(s.bodies->v, kStride, owner);
-  const Wide4 other = records_at(s.bodies->v, kStride, neighbour);
-  const Wide mine = friction_of(s, owner), theirs = friction_of(s, neighbour);
+  const Wide4 own = records_at(s.motion->v, kBody, owner);
+  const Wide4 other = records_at(s.motion->v, kBody, neighbour);
+  const Wide mine = friction_of<kAlike>(s.friction, owner);
+  const Wide theirs = friction_of<kAlike>(s.friction, neighbour);
   const WideInt course = mine < 0.0f;
   const Wide friction = select(theirs < 0.0f, mine, 0.5f * (mine + theirs));
   const Wide share = own.last / (own.last + other.last);
@@ -76,49 +79,39 @@ WEFT_INLINE Wide ask(const SeparateOwners& s, int at) {
     const Wide sliding = sqrt(dot(slide, slide));
     rubbed = select(sliding > kTiny, min(wide(1), friction * lost / sliding), Wide{});
   }
-  put_records(s.asked[at].push, kStride, {n * lift, weight});
-  put_records(s.asked[at].gain, kStride, {(n * lost - slide * rubbed) * (share * weight), Wide{}});
+  put_records(s.asked[at].push, kAsked, {n * lift, weight});
+  put_records(s.asked[at].gain, kAsked, {(n * lost - slide * rubbed) * (share * weight), Wide{}});
   return dot(u, u);
 }
 
-// Sums up what the owners of `count` pairs are asked, owner after owner, in place. Returns how many
-// owners, whose numbers then stand one after another in the room. Without branches: how many pairs an
-// owner has cannot be foretold.
-WEFT_INLINE int sum_up(const SeparateOwners& s, int count) {
+// Sums up what the pairs ask of their owners; returns how many owners these are. Without branches: how
+// many pairs an owner has cannot be foretold.
+WEFT_INLINE int sum_up(const AskPairs& s) {
   typedef std::int32_t FourInt __attribute__((vector_size(16)));
   Four push{}, gain{};
   std::int32_t last = -1;
   int owners = -1;
-  for (int i = 0; i < count; ++i) {
-    const std::int32_t owner = s.touching.owner[i];
+  for (int i = 0; i < s.pairs; ++i) {
+    const std::int32_t owner = s.owner[i];
     const int goes_on = -int(owner == last);
     const FourInt kept = FourInt{} + goes_on;
     push = (Four)((FourInt)push & kept) + load_four(s.asked[i].push);
     gain = (Four)((FourInt)gain & kept) + load_four(s.asked[i].gain);
     owners += 1 + goes_on;
-    s.touching.owner[owners] = last = owner;
-    *reinterpret_cast<Four*>(s.asked[owners].push) = push;
-    *reinterpret_cast<Four*>(s.asked[owners].gain) = gain;
+    s.asked_owner[owners] = last = owner;
+    store_four(s.sum[owners].push, push);
+    store_four(s.sum[owners].gain, gain);
   }
   return owners + 1;
 }
 
-// Moves kLanes owners, from number `at` on in the room, by the mean of what they are asked.
-WEFT_INLINE void move(const SeparateOwners& s, int at) {
-  const std::int32_t* const owner = s.touching.owner + at;
-  const Wide4 x = records_at(s.bodies->x, kStride, owner);
-  const Wide4 v = records_at(s.bodies->v, kStride, owner);
-  const Wide4 push = records_in_row(s.asked[at].push, kStride);
-  const Wide3 gain = records_in_row(s.asked[at].gain, kStride).xyz;
-  const Wide weight = push.last;
-  const WideInt moves = (v.last > 0.0f) & (weight > 0.0f);
-  const WideInt course = friction_of(s, owner) < 0.0f;
-  const Wide mean = 1.0f / weight;
-  const Wide3 by = push.xyz * (mean * select(course, wide(s.course_share), wide(1)));
-  const Wide3 faster = select(course, by * wide(s.inverse_dt), gain * mean);
-  put_records(s.moved[at].x, kStride, {select(moves, x.xyz + by, x.xyz), x.last});
-  put_records(s.moved[at].v, kStride, {select(moves, v.xyz + faster, v.xyz), v.last});
-  put_lanes(s.moved_owner + at, lanes_at(owner));
+template <bool kAlike>
+WEFT_INLINE AskFound ask_all(const AskPairs& given) {
+  const AskPairs s = given;
+  Wide fastest{};
+  for (int i = 0; i < s.pairs; i += kLanes)
+    fastest = max(fastest, select(lanes_below(s.pairs - i), ask<kAlike>(s, i), Wide{}));
+  return {sum_up(s), greatest(fastest)};
 }
 
 }  // namespace
@@ -127,22 +120,22 @@ CloseFound close_pairs(const ClosePairs& given) {
   const ClosePairs s = given;
   const float reach2 = s.reach * s.reach;
   CloseFound found{};
-  const auto put = [](const PairRoom& room, int at, WideInt which, WideInt owner,
+  const auto put = [](const PairRoom& room, int at, LaneBits which, WideInt owner,
                       WideInt neighbour) {
     store_lanes(room.owner + at, which, owner);
     return at + store_lanes(room.neighbour + at, which, neighbour);
   };
   for (int k = 0; k < s.pairs; k += kLanes) {
-    const Wide4 p = records_at(s.bodies->x, kStride, s.owner + k);
-    const Wide4 q = records_at(s.bodies->x, kStride, s.neighbour + k);
+    const Wide4 d = differences_at(s.place->x, kBody, s.owner + k, s.neighbour + k);
     const WideInt owner = lanes_at(s.owner + k), neighbour = lanes_at(s.neighbour + k);
-    const Wide held = 0.5f * (p.last + q.last);
-    const Wide3 d = p.xyz - q.xyz;
-    const Wide square = dot(d, d), held2 = held * held;
-    const WideInt there = lanes_below(s.pairs - k);
+    const Wide held = 0.5f * d.last, held2 = held * held;
+    const Wide square = dot(d.xyz, d.xyz);
+    const LaneBits there = first_lanes(s.pairs - k);
     if (s.close.owner)
-      found.close = put(s.close, found.close, (square < reach2 * held2) & there, owner, neighbour);
-    found.touching = put(s.touching, found.touching, (square < held2) & there, owner, neighbour);
+      found.close =
+          put(s.close, found.close, where_less(square, reach2 * held2) & there, owner, neighbour);
+    found.touching =
+        put(s.touching, found.touching, where_less(square, held2) & there, owner, neighbour);
   }
   const auto pad = [](const PairRoom& room, int end) {
     put_lanes(room.owner + end, WideInt{});
@@ -153,23 +146,37 @@ CloseFound close_pairs(const ClosePairs& given) {
   return found;
 }
 
-Separated separate(const SeparateOwners& given) {
-  const SeparateOwners s = given;
-  Wide fastest{};
-  for (int i = 0; i < s.pairs; i += kLanes)
-    fastest = max(fastest, select(lanes_below(s.pairs - i), ask(s, i), Wide{}));
-  const int owners = sum_up(s, s.pairs);
-  for (int i = 0; i < owners; i += kLanes) move(s, i);
-  return {owners, greatest(fastest)};
+AskFound ask_pairs(const AskPairs& s) {
+  return s.friction.each ? ask_all<false>(s) : ask_all<true>(s);
+}
+
+// By the mean of what each is asked.
+void move_owners(const MoveOwners& given) {
+  const MoveOwners s = given;
+  for (int n = 0; n < s.owners; ++n) {
+    const std::int32_t owner = s.owner[n];
+    const Asked& asked = s.sum[n];
+    float* const x = s.place[owner].x;
+    float* const v = s.motion[owner].v;
+    const float weight = asked.push[3];
+    if (!(v[3] > 0 && weight > 0)) continue;
+    const bool course = (s.friction.each ? s.friction.each[owner] : s.friction.alike) < 0;
+    const float mean = 1 / weight, share = mean * (course ? s.course_share : 1);
+    const Four none{1, 1, 1, 0};
+    const Four by = load_four(asked.push) * none * share;
+    const Four faster = course ? by * s.inverse_dt : load_four(asked.gain) * mean;
+    store_four(x, load_four(x) + by);
+    store_four(v, load_four(v) + faster);
+  }
 }
 
 void gather_bodies(const BodyBlock& given) {
   const BodyBlock b = given;
   for (int j = 0; j < b.rows; ++j)
     for (int i = 0; i < b.columns; i += kLanes) {
-      const std::ptrdiff_t at = j * b.stride + i;
-      put_records(b.bodies[at].x, kStride, {load3(b.x, at), wide(b.held)});
-      put_records(b.bodies[at].v, kStride, {load3(b.v, at), load(b.w + at)});
+      const std::ptrdiff_t at = j * b.stride + i, body = j * b.body_stride + i;
+      put_records(b.place[body].x, kBody, {load3(b.x, at), wide(b.held)});
+      put_records(b.motion[body].v, kBody, {load3(b.v, at), load(b.w + at)});
     }
 }
 
@@ -177,9 +184,9 @@ void scatter_bodies(const BodyBlock& given) {
   const BodyBlock b = given;
   for (int j = 0; j < b.rows; ++j)
     for (int i = 0; i < b.columns; i += kLanes) {
-      const std::ptrdiff_t at = j * b.stride + i;
-      store3(b.x, at, records_in_row(b.bodies[at].x, kStride).xyz);
-      const Wide4 now = records_in_row(b.bodies[at].v, kStride);
+      const std::ptrdiff_t at = j * b.stride + i, body = j * b.body_stride + i;
+      store3(b.x, at, records_in_row(b.place[body].x, kBody).xyz);
+      const Wide4 now = records_in_row(b.motion[body].v, kBody);
       const Wide3 gain = now.xyz - load3(b.v, at);
       const Wide3 load = (gain + load3(b.ahead, at)) * wide(b.inverse_since);
       const Wide square = dot(load, load);

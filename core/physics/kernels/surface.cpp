@@ -298,8 +298,8 @@ int squares_within(const SquaresWithin& given) {
                     max(max(a.z, b.z), Wide{})};
     const WideInt within =
         (dot(gap, gap) < s.range * s.range) & (p.last + q.last > 0.0f) & lanes_below(s.pairs - k);
-    store_lanes(s.within_owner + count, within, lanes_at(s.owner + k));
-    count += store_lanes(s.within_neighbour + count, within, lanes_at(s.neighbour + k));
+    store_lanes(s.within_owner + count, bits(within), lanes_at(s.owner + k));
+    count += store_lanes(s.within_neighbour + count, bits(within), lanes_at(s.neighbour + k));
   }
   for (int l = 0; l < kLanes; ++l) s.within_owner[count + l] = s.within_neighbour[count + l] = 0;
   return count;

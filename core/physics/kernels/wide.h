@@ -256,8 +256,10 @@ WEFT_INLINE bool any(WideInt mask) {
 #endif
 }
 
-// The lanes of a mask as bits, lane 0 lowest.
-WEFT_INLINE unsigned bits(WideInt mask) {
+// Some of the lanes, as bits, lane 0 lowest.
+typedef std::uint32_t LaneBits;
+
+WEFT_INLINE LaneBits bits(WideInt mask) {
 #if WEFT_LANES == 16
   return _mm512_movepi32_mask((__m512i)mask);
 #elif WEFT_LANES == 8
@@ -282,23 +284,42 @@ struct SetLanes {
 inline constexpr SetLanes kSetLanes;
 #endif
 
-// The lanes of a mask next to each other in memory; the lanes after those may be overwritten, whole
-// groups of them. Returns how many.
-template <class Lane, class Lanes>
-WEFT_INLINE int store_lanes(Lane* p, WideInt mask, Lanes v) {
+WEFT_INLINE LaneBits first_lanes(int count) {
+  return count < kLanes ? (1u << count) - 1 : (1u << kLanes) - 1;
+}
+// Where a is less than b. (Directly: compilers make a mask of the comparison first.)
+WEFT_INLINE LaneBits where_less(Wide a, Wide b) {
 #if WEFT_LANES == 16
-  const __mmask16 m = _mm512_movepi32_mask((__m512i)mask);
-  _mm512_storeu_si512(p, _mm512_maskz_compress_epi32(m, (__m512i)v));
-  return __builtin_popcount(m);
+  return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
+#else
+  return bits(a < b);
+#endif
+}
+
+// Where a whole number lies from low to high.
+WEFT_INLINE LaneBits where_within(WideInt v, std::int32_t low, std::int32_t high) {
+#if WEFT_LANES == 16
+  return _mm512_cmple_epu32_mask((__m512i)(v - low), _mm512_set1_epi32(high - low));
+#else
+  return bits((v >= low) & (v <= high));
+#endif
+}
+
+// Some lanes next to each other in memory; the lanes after those may be overwritten, whole groups of
+// them. Returns how many.
+template <class Lane, class V>
+WEFT_INLINE int store_lanes(Lane* p, LaneBits which, V v) {
+#if WEFT_LANES == 16
+  _mm512_storeu_si512(p, _mm512_maskz_compress_epi32(__mmask16(which), (__m512i)v));
+  return __builtin_popcount(which);
 #elif WEFT_LANES == 8
-  const unsigned m = bits(mask);
-  const __m128i bytes = _mm_cvtsi64_si128(std::int64_t(kSetLanes.numbers[m]));
+  const __m128i bytes = _mm_cvtsi64_si128(std::int64_t(kSetLanes.numbers[which]));
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(p),
                       _mm256_permutevar8x32_epi32((__m256i)v, _mm256_cvtepu8_epi32(bytes)));
-  return __builtin_popcount(m);
+  return __builtin_popcount(which);
 #else
   int count = 0;
-  for (unsigned set = bits(mask); set != 0; set &= set - 1) p[count++] = v[__builtin_ctz(set)];
+  for (LaneBits set = which; set != 0; set &= set - 1) p[count++] = v[__builtin_ctz(set)];
   return count;
 #endif
 }

@@ -17,10 +17,9 @@ std::int64_t modulo(std::int64_t a, std::int64_t m) {
   return r < 0 ? r + m : r;
 }
 
-// The cell along an axis; what is no number, or too far away, lands somewhere.
-std::int32_t cell(float along, float inverse) {
-  constexpr float kMost = 1e9f;
-  return std::int32_t(std::max(0.0f, std::min(kMost, along * inverse)));
+// Cells along an axis.
+int cells_in(float length, float inverse) {
+  return int(std::max(0.0f, std::min(kMostCells, length * inverse))) + 1;
 }
 
 std::int64_t largest_table(std::size_t particles) {
@@ -30,12 +29,11 @@ std::int64_t largest_table(std::size_t particles) {
 }  // namespace
 
 void CellGrid::reserve(std::size_t particles) {
-  room_ = particles;
-  key_.resize(particles);
+  key_.resize(particles + kPadding);
   dealt_.resize(particles);
-  number_.resize(particles);
   bucket_.resize(particles);
   start_.reserve(std::size_t(largest_table(particles)) + 1);
+  name_ = AlignedArray<std::int32_t>(particles + 2 * kPadding);
   for (AlignedArray<float>* a : {&x_, &y_, &z_}) *a = AlignedArray<float>(particles + 2 * kPadding);
 }
 
@@ -64,14 +62,14 @@ void CellGrid::choose_strides(const int cells[3]) {
   }
 }
 
-void CellGrid::build(ConstRow3 x, std::size_t particles, const Spread& box, float size,
-                     Threads& threads) {
+void CellGrid::build(ConstRow3 x, const std::int32_t* names, std::size_t particles,
+                     const Spread& box, float size, Threads& threads) {
   count_ = particles;
   inverse_ = 1 / size;
   int cells[3];
   for (int k = 0; k < 3; ++k) {
     low_[k] = box.low[k];
-    cells[k] = cell(box.high[k] - box.low[k], inverse_) + 1;
+    cells[k] = cells_in(box.high[k] - box.low[k], inverse_);
   }
   choose_strides(cells);
   for (int c = -1; c <= 1; ++c)
@@ -82,36 +80,61 @@ void CellGrid::build(ConstRow3 x, std::size_t particles, const Spread& box, floa
   while (((table_ - 1) >> shift_) >= kParts) ++shift_;
   // Counts of every part and share, then where each begins: part after part, share after share.
   const bool few = particles < kFew;
-  threads.share(kShares, few, [&](std::size_t share) { deal(x, int(share)); });
+  threads.share(kShares, few, [&](std::size_t share) { count(x, int(share)); });
   std::int32_t before = 0;
   for (int p = 0; p <= kParts; ++p)
     for (int s = 0; s < kShares; ++s) before += std::exchange(dealt_to_[p][s], before);
-  threads.share(kShares, few, [&](std::size_t share) {
-    std::int32_t at[kParts];
-    for (int p = 0; p < kParts; ++p) at[p] = dealt_to_[p][share];
-    for (std::size_t i = share * count_ / kShares; i < (share + 1) * count_ / kShares; ++i)
-      dealt_[std::size_t(at[key_[i] >> shift_]++)] = std::int32_t(i);
-  });
-  threads.share(kParts, few, [&](std::size_t part) { sort_part(x, int(part)); });
+  threads.share(kShares, few, [&](std::size_t share) { deal(int(share)); });
+  threads.share(kParts, few, [&](std::size_t part) { sort_part(x, names, int(part)); });
   start_[std::size_t(table_)] = std::int32_t(count_);
 }
 
-// The buckets of a share of the particles, and how many of them are in each part of the table.
-void CellGrid::deal(ConstRow3 x, int share) {
-  const std::size_t begin = std::size_t(share) * count_ / kShares;
-  const std::size_t end = std::size_t(share + 1) * count_ / kShares;
-  for (std::size_t p = begin; p < end; ++p) {
-    const std::int64_t a = cell(x.x[p] - low_[0], inverse_) + 1;
-    const std::int64_t b = cell(x.y[p] - low_[1], inverse_) + 1;
-    const std::int64_t c = cell(x.z[p] - low_[2], inverse_) + 1;
-    const std::int64_t key = a + b * stride_y_ + c * stride_z_;
-    key_[p] = std::int32_t(wraps_ ? modulo(key, table_) : std::min(key, table_ - 1));
-  }
-  for (int p = 0; p <= kParts; ++p) dealt_to_[p][share] = 0;
-  for (std::size_t p = begin; p < end; ++p) ++dealt_to_[key_[p] >> shift_][share];
+// Whole groups of lanes, so that no two shares write to the same.
+std::size_t CellGrid::share_begin(std::size_t share) const {
+  return share == kShares ? count_ : share * count_ / kShares / kPadding * kPadding;
 }
 
-void CellGrid::sort_part(ConstRow3 x, int part) {
+// The buckets of a share of the particles, and how many of them are in each part of the table.
+void CellGrid::count(ConstRow3 x, int share) {
+  const std::size_t begin = share_begin(std::size_t(share)),
+                    end = share_begin(std::size_t(share) + 1);
+  kernels_.cell_keys({x,
+                      int(begin),
+                      int(end),
+                      {low_[0], low_[1], low_[2]},
+                      inverse_,
+                      stride_y_,
+                      stride_z_,
+                      table_,
+                      wraps_,
+                      key_.data()});
+  // By turns: particles beside each other are often in the same part, and what was just written is slow
+  // to read.
+  constexpr std::size_t kTurns = 4;
+  std::int32_t counts[kTurns][kParts + 1] = {};
+  for (std::size_t p = begin; p < end; ++p) ++counts[p % kTurns][key_[p] >> shift_];
+  for (int p = 0; p <= kParts; ++p)
+    dealt_to_[p][share] = counts[0][p] + counts[1][p] + counts[2][p] + counts[3][p];
+}
+
+// The particles of a share to their parts. Those beside each other are often in the same: where its next
+// goes is kept at hand, since what was just written is slow to read.
+void CellGrid::deal(int share) {
+  const std::size_t end = share_begin(std::size_t(share) + 1);
+  std::int32_t at[kParts], part = 0;
+  for (int p = 0; p < kParts; ++p) at[p] = dealt_to_[p][share];
+  std::int32_t next = at[0];
+  for (std::size_t i = share_begin(std::size_t(share)); i < end; ++i) {
+    const std::int32_t other = key_[i] >> shift_;
+    if (other != part) {
+      at[part] = next;
+      next = at[part = other];
+    }
+    dealt_[std::size_t(next++)] = std::int32_t(i);
+  }
+}
+
+void CellGrid::sort_part(ConstRow3 x, const std::int32_t* names, int part) {
   const std::int64_t first = std::min(std::int64_t(part) << shift_, table_);
   const std::int64_t last = std::min(std::int64_t(part + 1) << shift_, table_);
   const std::int32_t begin = dealt_to_[part][0], end = dealt_to_[part + 1][0];
@@ -123,8 +146,8 @@ void CellGrid::sort_part(ConstRow3 x, int part) {
   for (std::int32_t i = begin; i < end; ++i) {
     const auto p = std::size_t(dealt_[std::size_t(i)]);
     const auto at = std::size_t(start[key_[p]]++);
-    number_[at] = std::int32_t(p);
     bucket_[at] = key_[p];
+    name_[kPadding + at] = names[p];
     x_[kPadding + at] = x.x[p];
     y_[kPadding + at] = x.y[p];
     z_[kPadding + at] = x.z[p];
@@ -135,7 +158,7 @@ void CellGrid::sort_part(ConstRow3 x, int part) {
 }
 
 std::size_t CellGrid::bytes() const {
-  return (4 * key_.size() + start_.capacity() + 3 * x_.size()) * 4;
+  return (3 * key_.size() + start_.capacity() + 4 * x_.size()) * 4;
 }
 
 }  // namespace weft::physics

@@ -23,16 +23,19 @@ class CellGrid {
  public:
   static constexpr std::size_t kPadding = 16;
 
+  explicit CellGrid(const KernelTable& kernels) : kernels_(kernels) {}
   // Makes room for this many particles.
   void reserve(std::size_t particles);
-  // Sorts particles into cells of `size` [m]; all lie in the box.
-  void build(ConstRow3 x, std::size_t particles, const Spread& box, float size, Threads& threads);
+  // Sorts particles, which have any names, into cells of `size` [m]; all lie in the box. (Positions of
+  // kPadding more are read.)
+  void build(ConstRow3 x, const std::int32_t* names, std::size_t particles, const Spread& box,
+             float size, Threads& threads);
 
   std::size_t particles() const { return count_; }
-  // Numbers of the particles in sorted order, their buckets and positions (kPadding lanes before them
-  // and after).
-  const std::int32_t* numbers() const { return number_.data(); }
+  // Of the particles in sorted order: their buckets, names and positions (of these two kPadding lanes
+  // before them and after, too).
   const std::int32_t* buckets() const { return bucket_.data(); }
+  const std::int32_t* names() const { return name_.data() + kPadding; }
   ConstRow3 sorted() const {
     return {x_.data() + kPadding, y_.data() + kPadding, z_.data() + kPadding};
   }
@@ -47,18 +50,22 @@ class CellGrid {
   static constexpr int kShares = 16, kParts = 64;  // of the particles, of the table
 
   void choose_strides(const int cells[3]);
-  void deal(ConstRow3 x, int share);
-  void sort_part(ConstRow3 x, int part);
+  std::size_t share_begin(std::size_t share) const;
+  void count(ConstRow3 x, int share);
+  void deal(int share);
+  void sort_part(ConstRow3 x, const std::int32_t* names, int part);
 
-  std::size_t count_ = 0, room_ = 0;
+  const KernelTable& kernels_;
+  std::size_t count_ = 0;
   std::int64_t table_ = 1, stride_y_ = 1, stride_z_ = 1;
   std::int64_t offset_[9] = {};
   bool wraps_ = false;
   int shift_ = 0;  // of a bucket to its part
   float low_[3] = {}, inverse_ = 1;
   std::int32_t dealt_to_[kParts + 1][kShares] = {};  // where a share's particles of a part begin
-  std::vector<std::int32_t> key_, dealt_, number_, bucket_, start_;
-  AlignedArray<float> x_, y_, z_;  // padded
+  std::vector<std::int32_t> key_, dealt_, bucket_, start_;
+  AlignedArray<std::int32_t> name_;  // padded
+  AlignedArray<float> x_, y_, z_;    // padded
 };
 
 }  // namespace weft::physics

@@ -13,14 +13,6 @@ constexpr float kClose = 0.25f;      // spacings that neighbours are kept apart
 constexpr float kOverstretched = 2;  // half-diagonals at rest: larger squares are torn and left out
 constexpr std::size_t kFewParticles = 4096;
 
-// Only a square itself is no pair of it.
-std::vector<RestMetric> metrics_of(const std::vector<Sheet>& sheets) {
-  std::vector<RestMetric> metrics;
-  for (const Sheet& s : sheets)
-    metrics.push_back({s.lattice->columns, s.lattice->rows, 1, 0, 1, 0.5f});
-  return metrics;
-}
-
 void widen(Spread& spread, int k, float value) {
   spread.low[k] = std::min(spread.low[k], value);
   spread.high[k] = std::max(spread.high[k], value);
@@ -49,9 +41,7 @@ std::size_t SquarePairs::bytes() const {
 }
 
 NearSquares::NearSquares(const std::vector<Sheet>& sheets, const KernelTable& kernels)
-    : sheets_(sheets),
-      kernels_(kernels),
-      search_(count_particles(sheets_), metrics_of(sheets_), true, kernels) {
+    : sheets_(sheets), kernels_(kernels), search_(count_particles(sheets_), {}, kernels) {
   float spacing = 0;
   close_ = least_ = std::numeric_limits<float>::max();
   for (const Sheet& s : sheets_) {
@@ -228,7 +218,7 @@ float NearSquares::list_whole(Spread& box, std::size_t& count) {
         to.y[count] = middle[1];
         to.z[count] = middle[2];
         for (int k = 0; k < 3; ++k) widen(box, k, middle[k]);
-        search_.sites()[count++] = {std::uint16_t(s), std::uint16_t(j), std::uint16_t(i)};
+        search_.names()[count++] = std::int32_t(n);
       }
   }
   return std::sqrt(widest_squared);
@@ -236,8 +226,7 @@ float NearSquares::list_whole(Spread& box, std::size_t& count) {
 
 // The box about one square.
 void NearSquares::fill_box(std::size_t sorted) {
-  const Site site = search_.site(sorted);
-  const std::size_t n = number(site.cloth, site.row, site.column);
+  const auto n = std::size_t(search_.name(sorted));
   sorted_[sorted] = std::int32_t(n);
   SquareBox& box = boxes_[sorted];
   for (int c = 0; c < 4; ++c) {

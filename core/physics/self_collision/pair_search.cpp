@@ -11,27 +11,74 @@ constexpr float kHair = 1.001f;            // cells are wider than the range, fo
 constexpr std::size_t kPairsReserved = 8;  // per point
 constexpr std::size_t kCandidates = 512;   // of one cell, room at first
 
+// The neighbours of a point that lie b rows further on: those from `first` to `last` columns further on.
+struct Columns {
+  int first, last;
+};
+
+Columns neighbours_in_row(const NamedSheet& s, int b) {
+  const auto near = [&](int a) {
+    return double(a) * a * s.uu + 2.0 * a * b * s.uv + double(b) * b * s.vv < s.range_squared;
+  };
+  // About the nearest; rounding may leave out a column at either end.
+  const double shear = double(s.uv) / s.uu;
+  const double height_squared = std::max(0.0, double(s.vv) - shear * s.uv);
+  const double half =
+      std::sqrt(std::max(0.0, s.range_squared - double(b) * b * height_squared) / s.uu);
+  const int most = s.columns - 1;
+  const auto clipped = [&](double a) { return int(std::clamp(a, -double(most), double(most))); };
+  Columns c{clipped(std::floor(-shear * b - half) - 1), clipped(std::ceil(-shear * b + half) + 1)};
+  while (c.first <= c.last && !near(c.first)) ++c.first;
+  while (c.first <= c.last && !near(c.last)) --c.last;
+  return c;
+}
+
+// visit(b, columns) for every row of neighbours, from the point's own on.
+template <class Visit>
+void for_each_row(const NamedSheet& s, const Visit& visit) {
+  const double shear = double(s.uv) / s.uu, height_squared = double(s.vv) - shear * s.uv;
+  for (int b = 0; b < s.rows; ++b) {
+    if (b > 0 && double(b - 1) * (b - 1) * height_squared >= s.range_squared) break;
+    const Columns columns = neighbours_in_row(s, b);
+    if (columns.first <= columns.last) visit(b, columns);
+  }
+}
+
 }  // namespace
 
-// Sheets follow each other along u, further apart than each is wide: whole numbers of columns, which
-// stay exact for a rectangular sheet.
-PairSearch::PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics, bool once,
-                       const KernelTable& kernels)
-    : kernels_(kernels), once_(once) {
-  double begin = 0;
-  for (const RestMetric& m : metrics) {
-    const double shear = double(m.uv) / m.uu;
-    const double height = std::sqrt(std::max(0.0, double(m.vv) / m.uu - shear * shear));
-    const double wide = std::ceil(m.columns + std::abs(shear) * m.rows);
-    flat_.push_back({float(begin + wide), float(shear), float(height), m.range_squared / m.uu});
-    begin += 4 * wide;
+std::size_t give_names(std::vector<NamedSheet>& sheets) {
+  std::int32_t next = 0, between = 0;
+  for (NamedSheet& s : sheets) {
+    int columns = 0, rows = 0;
+    for_each_row(s, [&](int b, Columns c) {
+      columns = std::max({columns, -c.first, c.last});
+      rows = b;
+    });
+    s.stride = std::max(s.stride, s.columns + columns);
+    const std::int32_t farthest = rows * s.stride + columns;
+    s.first = next == 0 ? 0 : next + std::max(between, farthest);
+    next = s.first + s.rows * s.stride;
+    between = farthest;
   }
+  return std::size_t(next);
+}
+
+PairSearch::PairSearch(std::size_t most_points, const std::vector<NamedSheet>& sheets,
+                       const KernelTable& kernels)
+    : kernels_(kernels), grid_(kernels) {
+  for (const NamedSheet& s : sheets) {
+    std::vector<NameWindow>& windows = windows_.emplace_back();
+    for_each_row(s, [&](int b, Columns c) {
+      windows.push_back({b == 0 ? 0 : b * s.stride + c.first, b * s.stride + c.last});
+    });
+  }
+  for (std::size_t n = 0; n < sheets.size(); ++n)
+    sheets_.push_back({sheets[n].first, windows_[n].data(), int(windows_[n].size())});
   const std::size_t n = most_points;
-  sites_.resize(n);
-  for (AlignedArray<float>* a : {&x_, &y_, &z_, &u_, &w_, &apart_squared_})
+  name_.resize(n);
+  for (AlignedArray<float>* a : {&x_, &y_, &z_})
     *a = AlignedArray<float>(n + 2 * CellGrid::kPadding);
   grid_.reserve(n);
-  sorted_sites_.resize(n);
   chunks_.resize((n + kChunk - 1) / kChunk);
   for (Chunk& c : chunks_) {
     c.owner.resize(kPairsReserved * kChunk + kCandidates);
@@ -41,36 +88,25 @@ PairSearch::PairSearch(std::size_t most_points, const std::vector<RestMetric>& m
 
 void PairSearch::sort(std::size_t count, const Spread& box, float range, Threads& threads) {
   count_ = count;
-  grid_.build({x_.data(), y_.data(), z_.data()}, count, box, range * kHair, threads);
-  threads.share(chunks(), few(), [&](std::size_t k) {
-    for (std::size_t p = begin(k); p < begin(k + 1); ++p) {
-      const Site& s = sites_[std::size_t(grid_.numbers()[p])];
-      sorted_sites_[p] = s;
-      const FlatSheet& flat = flat_[s.cloth];
-      u_[CellGrid::kPadding + p] = flat.begin + float(s.column) + flat.shear * float(s.row);
-      w_[CellGrid::kPadding + p] = flat.height * float(s.row);
-      apart_squared_[p] = flat.apart_squared;
-    }
-  });
+  grid_.build({x_.data(), y_.data(), z_.data()}, name_.data(), count, box, range * kHair, threads);
 }
 
-void PairSearch::find(float range, Threads& threads, const std::int32_t* names) {
+void PairSearch::find(float range, Threads& threads) {
   const bool alone = few() || threads.count() == 1;
   rooms_.resize(std::size_t(threads.count()));
   threads.share(chunks(), alone, [&](std::size_t k) {
-    find_chunk(k, range, rooms_[alone ? 0 : std::size_t(Threads::index())], names);
+    find_chunk(k, range, rooms_[alone ? 0 : std::size_t(Threads::index())]);
   });
 }
 
-void PairSearch::find_chunk(std::size_t k, float range, Room& room, const std::int32_t* names) {
+void PairSearch::find_chunk(std::size_t k, float range, Room& room) {
   Chunk& c = chunks_[k];
   c.found = 0;
   NearSearch s{};
   s.x = grid_.sorted();
-  s.u = u_.data() + CellGrid::kPadding;
-  s.w = w_.data() + CellGrid::kPadding;
-  s.apart_squared = apart_squared_.data();
-  s.names = names;
+  s.name = sheets_.empty() ? nullptr : grid_.names();
+  s.sheet = sheets_.data();
+  s.sheets = int(sheets_.size());
   s.bucket = grid_.buckets();
   s.start = grid_.starts();
   s.table = grid_.table();
@@ -78,23 +114,22 @@ void PairSearch::find_chunk(std::size_t k, float range, Room& room, const std::i
   s.range_squared = range * range;
   s.begin = int(begin(k));
   s.end = int(begin(k + 1));
-  s.once = once_;
   for (std::size_t needed = kCandidates; s.begin < s.end;) {
-    if (room.number.size() < needed) {
-      room.number.resize(2 * needed);
-      room.place.resize(5 * room.number.size());
+    if (room.size < needed) {
+      room.size = 2 * needed;
+      room.name.resize(3 * room.size);
+      room.place.resize(3 * room.size);
     }
     if (c.owner.size() < c.found + needed) {
       c.owner.resize(2 * (c.found + needed));
       c.neighbour.resize(c.owner.size());
     }
-    const std::size_t size = room.number.size();
     float* const place = room.place.data();
-    s.room = {{place, place + size, place + 2 * size},
-              place + 3 * size,
-              place + 4 * size,
-              room.number.data(),
-              int(size)};
+    std::int32_t* const name = room.name.data();
+    s.room = {{place, place + room.size, place + 2 * room.size},
+              name,
+              {name + room.size, name + 2 * room.size},
+              int(room.size)};
     s.owner = c.owner.data() + c.found;
     s.neighbour = c.neighbour.data() + c.found;
     s.pairs_room = int(c.owner.size() - c.found);
@@ -110,9 +145,9 @@ void PairSearch::find_chunk(std::size_t k, float range, Room& room, const std::i
 }
 
 std::size_t PairSearch::bytes() const {
-  std::size_t bytes = sites_.size() * 2 * sizeof(Site) + 6 * x_.size() * 4 + grid_.bytes();
+  std::size_t bytes = (name_.size() + 3 * x_.size()) * 4 + grid_.bytes();
   for (const Chunk& c : chunks_) bytes += 2 * c.owner.capacity() * 4;
-  for (const Room& r : rooms_) bytes += 6 * r.number.capacity() * 4;
+  for (const Room& r : rooms_) bytes += 6 * r.size * 4;
   return bytes;
 }
 

@@ -1,6 +1,6 @@
 // Who is within a range of whom: points sorted into cells (cell_grid.h) and searched in shares of the
-// sorted order, so that the result is the same for any threads. Points have a place on a sheet; those
-// that are neighbours there are no pairs.
+// sorted order, so that the result is the same for any threads. Points have names. Those of a sheet are
+// named row after row, so that the difference of two names tells whether they are neighbours there.
 #pragma once
 
 #include <algorithm>
@@ -10,35 +10,35 @@
 
 namespace weft::physics {
 
-// One particle: which of the sheets, row and column.
-struct Site {
-  std::uint16_t cloth, row, column;
-};
-
-// A flat sheet: two at (i, j) and (i + a, j + b) are neighbours there, and no pair, when
-// a² uu + 2 a b uv + b² vv < range².
-struct RestMetric {
+// A flat sheet of points, where two at (i, j) and (i + a, j + b) are neighbours, and no pair, when
+// a² uu + 2 a b uv + b² vv < range². That at (i, j) is named first + stride j + i.
+struct NamedSheet {
   int columns, rows;
   float uu, uv, vv, range_squared;  // m²
+  std::int32_t stride, first;
 };
+// Chooses the first names, and makes the strides greater where need be, so that names differ by as much
+// as those of neighbours for no others. Returns how many names there are, unused ones included.
+std::size_t give_names(std::vector<NamedSheet>& sheets);
 
 class PairSearch {
  public:
   static constexpr std::size_t kChunk = 128;  // points
 
-  // `metrics`: of every sheet; `once`: each pair is listed by the first of the two alone, else by both.
-  PairSearch(std::size_t most_points, const std::vector<RestMetric>& metrics, bool once,
+  // Among the points of sheets, each pair is listed by both of the two; with no sheet, any are pairs,
+  // listed by the first of the two alone.
+  PairSearch(std::size_t most_points, const std::vector<NamedSheet>& sheets,
              const KernelTable& kernels);
 
-  // Where to put the points, and what they are.
+  // Where to put the points, and their names.
   Row3 points() { return {x_.data(), y_.data(), z_.data()}; }
-  std::vector<Site>& sites() { return sites_; }
+  std::int32_t* names() { return name_.data(); }
 
   // Sorts the first `count` points, all in the box, for searches within `range` [m].
   void sort(std::size_t count, const Spread& box, float range, Threads& threads);
-  // Finds the pairs within a range [m]. They are listed by the sorted points' numbers, or by `names`
-  // of these, padded as those of a grid.
-  void find(float range, Threads& threads, const std::int32_t* names = nullptr);
+  // Finds the pairs within a range [m]. Points of sheets are listed by their names, others by their
+  // numbers in sorted order.
+  void find(float range, Threads& threads);
 
   // Sorted points are cut into chunks: chunk k has those from begin(k) to begin(k + 1), and the pairs
   // that they list, one point's after another's.
@@ -53,7 +53,7 @@ class PairSearch {
     const Chunk& c = chunks_[k];
     return {c.owner.data(), c.neighbour.data(), c.found};
   }
-  const Site& site(std::size_t sorted) const { return sorted_sites_[sorted]; }
+  std::int32_t name(std::size_t sorted) const { return grid_.names()[sorted]; }
   // Whether one thread is faster.
   bool few() const { return count_ < 2048; }
   std::size_t bytes() const;
@@ -64,25 +64,19 @@ class PairSearch {
     std::size_t found = 0;
   };
   struct Room {  // of one thread, for the candidates of a cell
-    std::vector<std::int32_t> number;
-    std::vector<float> place;  // five arrays as long as `number`
+    std::size_t size = 0;
+    std::vector<std::int32_t> name;  // three arrays, likewise
+    std::vector<float> place;
   };
-  void find_chunk(std::size_t k, float range, Room& room, const std::int32_t* names);
-
-  // Where a particle lies on its flat sheet: u = column + shear row, w = height row, in spacings of
-  // its columns; and below which distance squared two of them are no pair.
-  struct FlatSheet {
-    float begin, shear, height, apart_squared;
-  };
+  void find_chunk(std::size_t k, float range, Room& room);
 
   const KernelTable& kernels_;
-  const bool once_;
   std::size_t count_ = 0;
-  std::vector<FlatSheet> flat_;
-  std::vector<Site> sites_, sorted_sites_;
+  std::vector<NearSheet> sheets_;
+  std::vector<std::vector<NameWindow>> windows_;  // of every sheet
+  std::vector<std::int32_t> name_;
   AlignedArray<float> x_, y_, z_;
   CellGrid grid_;
-  AlignedArray<float> u_, w_, apart_squared_;  // as sorted
   std::vector<Chunk> chunks_;
   std::vector<Room> rooms_;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "physics/plan.h"
@@ -25,13 +26,15 @@ constexpr int kMostSubstepsTouching = 12;
 constexpr int kMostSubstepsCourse = 4;  // its push acts like a spring, stable up to here
 constexpr std::size_t kFew = 4096;      // particles that one thread does faster
 
-std::vector<RestMetric> rest_metrics(const std::vector<Sheet>& sheets) {
-  std::vector<RestMetric> metrics;
+// Their names are still to be given.
+std::vector<NamedSheet> named(const std::vector<Sheet>& sheets) {
+  std::vector<NamedSheet> named;
   for (const Sheet& s : sheets) {
     const float range = s.thickness * float(kNeighbour);
-    metrics.push_back({s.lattice->columns, s.lattice->rows, s.uu, s.uv, s.vv, range * range});
+    named.push_back({s.lattice->columns, s.lattice->rows, s.uu, s.uv, s.vv, range * range,
+                     s.lattice->stride, 0});
   }
-  return metrics;
+  return named;
 }
 
 }  // namespace
@@ -66,29 +69,26 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
       kernels_(kernels),
       particles_(count_particles(sheets_)),
       blocks_(sheets_, float(kNeighbour)),
-      search_(particles_, rest_metrics(sheets_), false, kernels) {
+      named_(named(sheets_)),
+      bodies_(give_names(named_)),
+      search_(particles_, named_, kernels) {
   for (const Sheet& s : sheets_) {
     thickness_ = std::max(thickness_, s.thickness);
     course_ |= s.course;
   }
   first_site_.resize(blocks_.all().size());
-  names_ = AlignedArray<std::int32_t>(particles_ + 2 * CellGrid::kPadding);
-  std::size_t bodies = 0;
   for (const Sheet& s : sheets_) {
-    first_body_.push_back(bodies);
     load_.emplace_back(s.lattice->rows, s.lattice->stride);
     ahead_.emplace_back(s.lattice->rows, s.lattice->stride);
-    bodies += std::size_t(s.lattice->rows) * std::size_t(s.lattice->stride);
   }
-  bodies_.resize(bodies);
+  place_.resize(bodies_);
+  motion_.resize(bodies_);
   const auto friction = [](const Sheet& s) { return s.course ? kCourseRule : s.friction; };
   friction_alike_ = friction(sheets_[0]);
   if (std::any_of(sheets_.begin(), sheets_.end(),
                   [&](const Sheet& s) { return friction(s) != friction_alike_; }))
-    for (const Sheet& s : sheets_)
-      friction_.resize(
-          friction_.size() + std::size_t(s.lattice->rows) * std::size_t(s.lattice->stride),
-          friction(s));
+    for (std::size_t n = 0; n < sheets_.size(); ++n)
+      friction_.resize(n + 1 < sheets_.size() ? body(n + 1, 0, 0) : bodies_, friction(sheets_[n]));
 }
 
 void SelfContact::forget_loads(const Block& block) {
@@ -125,9 +125,8 @@ void SelfContact::list_sites(Threads& threads) {
       std::copy_n(row.x + block.column, block.columns, to.x + at);
       std::copy_n(row.y + block.column, block.columns, to.y + at);
       std::copy_n(row.z + block.column, block.columns, to.z + at);
-      for (int i = 0; i < block.columns; ++i)
-        search_.sites()[at + std::size_t(i)] = {std::uint16_t(block.sheet), std::uint16_t(j),
-                                                std::uint16_t(block.column + i)};
+      std::iota(search_.names() + at, search_.names() + at + block.columns,
+                std::int32_t(body(std::size_t(block.sheet), j, block.column)));
     }
   });
 }
@@ -135,26 +134,22 @@ void SelfContact::list_sites(Threads& threads) {
 void SelfContact::sort(double margin, Threads& threads) {
   list_sites(threads);
   search_.sort(count_, blocks_.box(), thickness_ + float(margin), threads);
-  threads.share(search_.chunks(), search_.few(), [&](std::size_t k) {
-    for (std::size_t p = search_.begin(k); p < search_.begin(k + 1); ++p) {
-      const Site s = search_.site(p);
-      const auto stride = std::size_t(sheets_[s.cloth].lattice->stride);
-      names_[CellGrid::kPadding + p] =
-          std::int32_t(first_body_[s.cloth] + s.row * stride + s.column);
-    }
-  });
+}
+
+std::size_t SelfContact::body(std::size_t sheet, int row, int column) const {
+  const NamedSheet& s = named_[sheet];
+  return std::size_t(s.first + row * s.stride + column);
 }
 
 Site SelfContact::site(std::int32_t body) const {
   std::size_t sheet = sheets_.size() - 1;
-  while (std::size_t(body) < first_body_[sheet]) --sheet;
-  const std::size_t at = std::size_t(body) - first_body_[sheet];
-  const auto stride = std::size_t(sheets_[sheet].lattice->stride);
+  while (body < named_[sheet].first) --sheet;
+  const std::int32_t at = body - named_[sheet].first, stride = named_[sheet].stride;
   return {std::uint16_t(sheet), std::uint16_t(at / stride), std::uint16_t(at % stride)};
 }
 
 void SelfContact::find(double margin, Threads& threads) {
-  search_.find(thickness_ + float(margin), threads, names_.data() + CellGrid::kPadding);
+  search_.find(thickness_ + float(margin), threads);
   found_ = 0;
   for (std::size_t k = 0; k < search_.chunks(); ++k) found_ += search_.pairs(k).count;
   if (found_ == 0) forget_loads();
@@ -234,12 +229,12 @@ SelfContact::Overlaps SelfContact::overlaps() {
 
 std::size_t SelfContact::bytes() const {
   std::size_t bytes = search_.bytes() + blocks_.bytes();
-  bytes += bodies_.size() * sizeof(Body) + 4 * (names_.size() + friction_.size());
+  bytes += place_.size() * (sizeof(Place) + sizeof(Motion)) + 4 * friction_.size();
   for (const auto* sheets : {&load_, &ahead_})
     for (const Rows& rows : *sheets) bytes += rows.bytes();
   bytes += speeds_.capacity() * 4;
   for (const Close& c : close_)
-    bytes += 8 * c.owner.capacity() + (4 + sizeof(Body)) * c.moved.capacity();
+    bytes += 8 * c.owner.capacity() + (4 + sizeof(Asked)) * c.sum.capacity();
   for (const Room& r : rooms_) bytes += r.asked.capacity() * (sizeof(Asked) + 8);
   return bytes;
 }

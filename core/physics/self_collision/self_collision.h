@@ -22,6 +22,11 @@ namespace weft::physics {
 
 class ClothStep;
 
+// One particle: which of the sheets, row and column.
+struct Site {
+  std::uint16_t cloth, row, column;
+};
+
 class SelfContact {
  public:
   // Null when no cloth asks for it.
@@ -80,35 +85,35 @@ class SelfContact {
   void forget_loads();
   void list_sites(Threads& threads);
   bool few_pairs() const { return found_ < 8192; }  // one thread pushes them apart faster
+  std::size_t body(std::size_t sheet, int row, int column) const;
   Site site(std::int32_t body) const;
   BodyBlock bodies_of(const Block& block, double since);
   void begin_response(Threads& threads);
   int list_close(std::size_t chunk, bool anew, Room& room);
-  void move(std::size_t chunk);
 
   const Scene& scene_;
   std::vector<Sheet> sheets_;
   const KernelTable& kernels_;
   const std::size_t particles_;
   Blocks blocks_;
+  std::vector<NamedSheet> named_;  // names are the numbers of bodies
+  const std::size_t bodies_;
   PairSearch search_;                    // among the particles of active blocks
   std::vector<std::size_t> first_site_;  // of every block
   std::size_t found_ = 0;                // pairs
   std::size_t count_ = 0;                // particles of active blocks
-  // Bodies lie as the particles do in the lattices, sheet after sheet.
-  std::vector<std::size_t> first_body_;  // of every sheet
-  AlignedArray<std::int32_t> names_;     // of the sorted particles, padded: their bodies
-  std::vector<Body> bodies_;             // those of active blocks are up to date in a run
+  std::vector<Place> place_;             // those of active blocks are up to date in a run
+  std::vector<Motion> motion_;           // likewise
   std::vector<float> friction_;          // of every body, or kCourseRule; empty where all are alike
   float friction_alike_ = 0;
   std::vector<Rows> load_, ahead_;  // of every sheet: BodyBlock
-  // Pairs of a chunk that may touch in this run, and where those of their owners go that do.
+  // Pairs of a chunk that may touch in this run, and what is asked of those of their owners that do.
   struct Close {
     std::vector<std::int32_t> owner, neighbour;
     int count = 0;
-    std::vector<std::int32_t> moved_owner;
-    std::vector<Body> moved;
-    int moved_count = 0;
+    std::vector<std::int32_t> asked_owner;
+    std::vector<Asked> sum;
+    int asked_owners = 0;
   };
   std::vector<Close> close_;
   std::vector<Room> rooms_;

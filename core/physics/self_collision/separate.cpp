@@ -22,12 +22,14 @@ BodyBlock SelfContact::bodies_of(const Block& block, double since) {
   b.columns = block.columns;
   b.rows = block.rows;
   b.stride = l.stride;
+  b.body_stride = named_[sheet].stride;
   b.x = first_of(block, l.x);
   b.v = first_of(block, l.v);
   b.w = l.w(block.row) + block.column;
   b.held = sheets_[sheet].thickness * (sheets_[sheet].course ? 1 : kHeld);
-  b.bodies = bodies_.data() + first_body_[sheet] + std::size_t(block.row) * std::size_t(l.stride) +
-             std::size_t(block.column);
+  const std::size_t first = body(sheet, block.row, block.column);
+  b.place = place_.data() + first;
+  b.motion = motion_.data() + first;
   b.load = first_of(block, load_[sheet]);
   b.ahead = first_of(block, ahead_[sheet]);
   b.since = float(since);
@@ -41,7 +43,7 @@ BodyBlock SelfContact::bodies_of(const Block& block, double since) {
 int SelfContact::list_close(std::size_t chunk, bool anew, Room& room) {
   Close& close = close_[chunk];
   ClosePairs p{};
-  p.bodies = bodies_.data();
+  p.place = place_.data();
   p.reach = kClose;
   p.touching = {room.owner.data(), room.neighbour.data()};
   if (!anew) {
@@ -73,21 +75,15 @@ void SelfContact::begin_response(Threads& threads) {
   std::size_t most = 0;
   for (std::size_t k = 0; k < search_.chunks(); ++k) {
     grown(close_[k], search_.pairs(k).count);
-    if (close_[k].moved.empty()) {
-      close_[k].moved.resize(PairSearch::kChunk + kPadding);
-      close_[k].moved_owner.resize(PairSearch::kChunk + kPadding);
+    if (close_[k].sum.empty()) {
+      close_[k].sum.resize(PairSearch::kChunk);
+      close_[k].asked_owner.resize(PairSearch::kChunk);
     }
     most = std::max(most, search_.pairs(k).count);
   }
   rooms_.resize(std::size_t(threads.count()));
   for (Room& r : rooms_)
     if (grown(r, most)) r.asked.resize(r.owner.size());
-}
-
-void SelfContact::move(std::size_t chunk) {
-  const Close& c = close_[chunk];
-  for (int n = 0; n < c.moved_count; ++n)
-    bodies_[std::size_t(c.moved_owner[std::size_t(n)])] = c.moved[std::size_t(n)];
 }
 
 double SelfContact::respond(double dt, int since, Threads& threads) {
@@ -103,26 +99,25 @@ double SelfContact::respond(double dt, int since, Threads& threads) {
   each_block(kernels_.gather_bodies);
   // The course's push for as many substeps as have passed.
   const double steps = scene_.time.substeps > 0 ? scene_.time.substeps : scene_.time.frame / dt;
+  const BodyFriction friction{friction_.empty() ? nullptr : friction_.data(), friction_alike_};
   const int iterations = course_ ? 1 : kIterations;
   for (int i = 0; i < iterations; ++i) {
     each_chunk([&](std::size_t k) {
       Room& room = rooms_[alone ? 0 : std::size_t(Threads::index())];
       Close& close = close_[k];
       const int touching = list_close(k, i == 0, room);
-      const Separated done = kernels_.separate({bodies_.data(),
-                                                touching,
-                                                {room.owner.data(), room.neighbour.data()},
-                                                room.asked.data(),
-                                                friction_.empty() ? nullptr : friction_.data(),
-                                                friction_alike_,
-                                                float(since / steps),
-                                                float(1 / dt),
-                                                close.moved_owner.data(),
-                                                close.moved.data()});
-      close.moved_count = done.moved;
-      speeds_[k] = done.fastest;
+      const AskFound asked = kernels_.ask_pairs(
+          {place_.data(), motion_.data(), friction, touching, room.owner.data(),
+           room.neighbour.data(), room.asked.data(), close.asked_owner.data(), close.sum.data()});
+      close.asked_owners = asked.owners;
+      speeds_[k] = asked.fastest;
     });
-    each_chunk([&](std::size_t k) { move(k); });
+    each_chunk([&](std::size_t k) {
+      const Close& close = close_[k];
+      kernels_.move_owners({place_.data(), motion_.data(), friction, close.asked_owners,
+                            close.asked_owner.data(), close.sum.data(), float(since / steps),
+                            float(1 / dt)});
+    });
   }
   each_block(kernels_.scatter_bodies);
   return std::sqrt(*std::max_element(speeds_.begin(), speeds_.end()));
