@@ -55,6 +55,8 @@ std::size_t give_names(std::vector<NamedSheet>& sheets) {
       rows = b;
     });
     s.stride = std::max(s.stride, s.columns + columns);
+    // An odd number of the cache's lines of places: rows do not compete for the same.
+    s.stride = (s.stride + 3) / 8 * 8 + 4;
     const std::int32_t farthest = rows * s.stride + columns;
     s.first = next == 0 ? 0 : next + std::max(between, farthest);
     next = s.first + s.rows * s.stride;

@@ -26,13 +26,13 @@ constexpr int kMostSubstepsTouching = 12;
 constexpr int kMostSubstepsCourse = 4;  // its push acts like a spring, stable up to here
 constexpr std::size_t kFew = 4096;      // particles that one thread does faster
 
-// Their names are still to be given.
+// Their names are still to be given. Rows are whole groups of lanes.
 std::vector<NamedSheet> named(const std::vector<Sheet>& sheets) {
   std::vector<NamedSheet> named;
   for (const Sheet& s : sheets) {
     const float range = s.thickness * float(kNeighbour);
     named.push_back({s.lattice->columns, s.lattice->rows, s.uu, s.uv, s.vv, range * range,
-                     s.lattice->stride, 0});
+                     (s.lattice->columns + 15) / 16 * 16, 0});
   }
   return named;
 }
