@@ -76,8 +76,10 @@ void expect_all_pairs(const Scene& scene, double size, Simd simd) {
   std::set<Pair> pairs;
   std::size_t listed = 0;
   self->for_each_pair([&](const physics::Site& p, const physics::Site& q) {
-    pairs.insert({{p.cloth, p.row, p.column}, {q.cloth, q.row, q.column}});
-    ++listed;
+    const std::array<int, 3> a{p.cloth, p.row, p.column}, b{q.cloth, q.row, q.column};
+    pairs.insert({a, b});
+    pairs.insert({b, a});
+    listed += 2;
   });
   EXPECT_EQ(listed, pairs.size()) << "a pair is listed twice";
   EXPECT_EQ(pairs, all_pairs(cloths, scene, float(thickness) + 0.01f)) << size;

@@ -70,8 +70,7 @@ struct NearSheet {
 // Particles in order of their buckets (cell_grid.h), and the nine runs of three buckets about each.
 struct NearSearch {
   // Sorted, 16 lanes of padding before them and after; their names, by which they are listed, likewise.
-  // Null: they are listed by their numbers in sorted order, each pair by the first of the two alone,
-  // and there are no neighbours.
+  // Null: they are listed by their numbers in sorted order, and there are no neighbours.
   ConstRow3 x;
   const std::int32_t* name;
   const NearSheet* sheet;  // in order of their first names
@@ -82,9 +81,10 @@ struct NearSearch {
   std::int64_t offset[9];     // from a bucket to the first of each run, modulo the table
   float range_squared;        // m²
   int begin, end;             // sorted particles to search about
-  std::int32_t* neighbour;    // out, particle after particle: those in range and no neighbours
-  std::int32_t* owner;        // out, for each of them, the particle
-  int pairs_room;             // of both
+  // Out, particle after particle: those after it in sorted order that are in range and no neighbours,
+  // and for each of them the particle.
+  std::int32_t *neighbour, *owner;
+  int pairs_room;  // of both
   NearRoom room;
 };
 
@@ -150,38 +150,48 @@ struct BodyFriction {
   float alike;
 };
 
-// What pairs that touch ask of an owner, times their weights.
+// What a pair that touches asks for, times its weight: of its owner a share, and of its neighbour the
+// rest, the other way.
 struct alignas(32) Asked {
-  float push[4];  // displacement [m], and the weight alone
-  float gain[4];  // velocity [m/s]
+  float push[4];  // displacement [m], and the weight
+  float gain[4];  // velocity [m/s], and the owner's share
 };
 
-// Pairs that touch, one owner's after another's, and what all of an owner's ask of it.
+// Pairs that touch, and what they ask for. Returned is the greatest squared relative speed of two [m²/s²].
 struct AskPairs {
   const Place* place;
   const Motion* motion;
   BodyFriction friction;
   int pairs;
   const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of particles
-  Asked* asked;                           // room for what each pair asks
-  // out, owner after owner
-  std::int32_t* asked_owner;
-  Asked* sum;
+  Asked* asked;                           // out, and 16 more
 };
 
-struct AskFound {
-  int owners;
-  float fastest;  // greatest squared relative speed of two that touch [m²/s²]
+// What all its pairs ask of a body.
+struct alignas(32) AskedSum {
+  float push[4];  // m, and the weight
+  float gain[4];  // m/s
 };
 
-// Owners, and what they are asked.
-struct MoveOwners {
+// Pairs, what they ask for, and where it is summed up for the bodies from `begin` to `end`. Returned is
+// how many of these get something for the first time.
+struct SumAsked {
+  int pairs;
+  const std::int32_t *owner, *neighbour;
+  const Asked* asked;
+  std::int32_t begin, end;
+  AskedSum* sum;
+  std::int32_t* body;  // out: those that get something for the first time
+};
+
+// Bodies, and what they are asked, which is nothing any more afterwards.
+struct MoveBodies {
   Place* place;
   Motion* motion;
   BodyFriction friction;
-  int owners;
-  const std::int32_t* owner;
-  const Asked* sum;
+  AskedSum* sum;
+  int bodies;
+  const std::int32_t* body;
   float course_share;  // of a correction, per run
   float inverse_dt;    // 1/s
 };

@@ -272,9 +272,9 @@ struct NearFound;
 struct ClosePairs;
 struct CloseFound;
 struct BodyBlock;
-struct AskFound;
 struct AskPairs;
-struct MoveOwners;
+struct SumAsked;
+struct MoveBodies;
 struct SquaresWithin;
 struct SurfacePairs;  // kernels/surface.h
 // Constraints of one family in one row: number a joins near + a and far + a. What is longer ends.
@@ -324,8 +324,9 @@ struct KernelTable {
   void (*cell_keys)(const CellKeys&);
   NearFound (*near_pairs)(const NearSearch&);  // who is in range of whom
   CloseFound (*close_pairs)(const ClosePairs&);
-  AskFound (*ask_pairs)(const AskPairs&);
-  void (*move_owners)(const MoveOwners&);
+  float (*ask_pairs)(const AskPairs&);  // returns the greatest squared relative speed
+  int (*sum_asked)(const SumAsked&);    // returns how many are asked for the first time
+  void (*move_bodies)(const MoveBodies&);
   void (*gather_bodies)(const BodyBlock&);
   void (*scatter_bodies)(const BodyBlock&);
   int (*squares_within)(const SquaresWithin&);  // returns how many are

@@ -1,7 +1,6 @@
 // The pair search of self-collision: who of many candidates is within a range of a particle. The
 // candidates of a cell with several members are brought together first, those alone that are within
-// the range of the box about the members, so that each of these tests few and whole groups. Neighbours
-// on the flat sheet are told by their names, and taken out of the few that are near.
+// the range of the box about the members, so that each of these tests few and whole groups.
 #include "physics/kernels/contact.h"
 #include "physics/kernels/row_kernels.h"
 
@@ -24,16 +23,19 @@ struct Runs {
   int count = 0, candidates = 0;
 };
 
-// Of those from number `begin` on.
+// Of those from number `begin` on, the run that begins there first.
 WEFT_INLINE Runs runs_about(const NearSearch& s, std::int64_t bucket, int begin) {
   Runs r;
   const auto add = [&](std::int64_t from, std::int64_t to) {
-    const int first = s.start[from];
-    const Run run{first > begin ? first : begin, s.start[to]};
-    r.run[r.count] = run;
-    r.count += run.first < run.last;
-    r.candidates += run.first < run.last ? run.last - run.first : 0;
+    const int first = s.start[from], last = s.start[to];
+    if (first <= begin && begin < last) r.run[0].last = last;
+    if (first <= begin) return;
+    r.run[r.count] = {first, last};
+    r.count += first < last;
+    r.candidates += last - first;
   };
+  r.run[0] = {begin, begin};
+  r.count = 1;
   for (const std::int64_t offset : s.offset) {
     std::int64_t from = bucket + offset;
     if (from >= s.table) from -= s.table;
@@ -44,13 +46,14 @@ WEFT_INLINE Runs runs_about(const NearSearch& s, std::int64_t bucket, int begin)
       add(0, from + 3 - s.table);
     }
   }
+  r.candidates += r.run[0].last - begin;
   return r;
 }
 
 // Of the sorted particles from number i on.
-template <bool kOnce>
+template <bool kNamed>
 WEFT_INLINE WideInt names_at(const NearSearch& s, int i) {
-  return kOnce ? lane_numbers() + i : lanes_at(s.name + i);
+  return kNamed ? lanes_at(s.name + i) : lane_numbers() + i;
 }
 
 // From a box to points outside, along an axis. Rounding keeps it no longer than from any point inside.
@@ -58,9 +61,9 @@ WEFT_INLINE Wide outside(Wide x, Wide low, Wide high) {
   return x - max(low, min(x, high));
 }
 
-// The runs' particles within the range of the sorted ones from `begin` to `end`, next to each other
-// in the room; the last group is filled up with some far away. Returns how many.
-template <bool kOnce>
+// The runs' particles within the range of the sorted ones from `begin` to `end`, these first, next to
+// each other in the room; the last group is filled up with some far away. Returns how many.
+template <bool kNamed>
 WEFT_INLINE int bring_together(const NearSearch& s, const Runs& runs, int begin, int end) {
   float low[3], high[3];
   const float* const x[3] = {s.x.x, s.x.y, s.x.z};
@@ -85,7 +88,7 @@ WEFT_INLINE int bring_together(const NearSearch& s, const Runs& runs, int begin,
       store_lanes(room.x.x + count, kept, p.x);
       store_lanes(room.x.y + count, kept, p.y);
       store_lanes(room.x.z + count, kept, p.z);
-      count += store_lanes(room.name + count, kept, names_at<kOnce>(s, i));
+      count += store_lanes(room.name + count, kept, names_at<kNamed>(s, i));
     }
   }
   for (int i = 0; i < 16; i += kLanes)
@@ -94,11 +97,11 @@ WEFT_INLINE int bring_together(const NearSearch& s, const Runs& runs, int begin,
 }
 
 // A particle, and where the names of those near it go.
-template <bool kOnce>
+template <bool kNamed>
 struct Seeker {
   Wide3 p;
   Wide range;
-  std::int32_t m, name;
+  std::int32_t name;
   const NearSheet* sheet;
   std::int32_t* near;
   int found = 0;
@@ -106,8 +109,7 @@ struct Seeker {
   WEFT_INLINE Seeker(const NearSearch& s, int number, const NearSheet* sheet, std::int32_t* to)
       : p(wide3(s.x.x[number], s.x.y[number], s.x.z[number])),
         range(wide(s.range_squared)),
-        m(number),
-        name(kOnce ? number : s.name[number]),
+        name(kNamed ? s.name[number] : number),
         sheet(sheet),
         near(to) {}
 
@@ -115,84 +117,75 @@ struct Seeker {
   WEFT_INLINE void test(Wide3 x, WideInt other, LaneBits asked) {
     const Wide3 d = x - p;
     LaneBits pair = where_less(dot(d, d), range) & asked;
-    if constexpr (kOnce) {
-      pair &= bits(other > m);
-    } else {
+    if constexpr (kNamed) {
       const WideInt apart = other > name ? other - name : name - other;
       for (int w = 0; w < sheet->windows; ++w)
         pair &= ~where_within(apart, sheet->window[w].low, sheet->window[w].high);
     }
     found += store_lanes(near + found, pair, other);
   }
+
+  // Of what was brought together, those from number `first` to `last`.
+  WEFT_INLINE int among(const NearRoom& room, int first, int last) {
+    for (int i = first; i < last; i += kLanes)
+      test(load3(room.x, i), lanes_at(room.name + i), first_lanes(kLanes));
+    return found;
+  }
+
+  // Of the runs themselves, which are short, but the first `left_out`: as many as fit share a group.
+  WEFT_INLINE int among(const NearSearch& s, const Runs& runs, int left_out) {
+    Wide3 x{};
+    WideInt names{};
+    int held = 0;
+    for (int r = 0; r < runs.count; ++r) {
+      const int last = runs.run[r].last;
+      for (int i = runs.run[r].first + (r == 0 ? left_out : 0); i < last;) {
+        const WideInt kept = lanes_below(held);
+        const int at = i - held;
+        x = select(kept, x, load3(s.x, at));
+        names = kept ? names : names_at<kNamed>(s, at);
+        const int taken = last - i < kLanes - held ? last - i : kLanes - held;
+        held += taken;
+        i += taken;
+        if (held < kLanes) continue;
+        test(x, names, first_lanes(kLanes));
+        held = 0;
+      }
+    }
+    if (held > 0) test(x, names, first_lanes(held));
+    return found;
+  }
 };
 
-// The names of those near particle m among what was brought together; returns how many.
-template <bool kOnce>
-WEFT_INLINE int near_one(const NearSearch& s, int candidates, int m, const NearSheet* sheet,
-                         std::int32_t* near) {
-  Seeker<kOnce> seeker(s, m, sheet, near);
-  const NearRoom& room = s.room;
-  for (int i = 0; i < candidates; i += kLanes)
-    seeker.test(load3(room.x, i), lanes_at(room.name + i), first_lanes(kLanes));
-  return seeker.found;
-}
-
-// The same among the runs themselves, which are short: as many as fit share a group.
-template <bool kOnce>
-WEFT_INLINE int near_one(const NearSearch& s, const Runs& runs, int m, const NearSheet* sheet,
-                         std::int32_t* near) {
-  Seeker<kOnce> seeker(s, m, sheet, near);
-  Wide3 x{};
-  WideInt name{};
-  int held = 0;
-  const auto test = [&] {
-    seeker.test(x, name, first_lanes(held));
-    held = 0;
-  };
-  for (int r = 0; r < runs.count; ++r) {
-    const int last = runs.run[r].last;
-    for (int i = runs.run[r].first; i < last;) {
-      const WideInt kept = lanes_below(held);
-      const int at = i - held;
-      x = select(kept, x, load3(s.x, at));
-      name = kept ? name : names_at<kOnce>(s, at);
-      const int taken = last - i < kLanes - held ? last - i : kLanes - held;
-      held += taken;
-      i += taken;
-      if (held == kLanes) test();
-    }
-  }
-  if (held > 0) test();
-  return seeker.found;
-}
-
-template <bool kOnce>
+// About each particle among those that follow it in sorted order.
+template <bool kNamed>
 WEFT_INLINE NearFound search(const NearSearch& given) {
   const NearSearch s = given;
   const NearSheet* sheet = s.sheet;
   int found = 0;
   for (int m = s.begin; m < s.end;) {
     const std::int32_t bucket = s.bucket[m];
-    const Runs runs = runs_about(s, bucket, kOnce ? m : 0);
+    const int first = m;
+    const Runs runs = runs_about(s, bucket, first);
     const int needed = runs.candidates + kNearPadding;
     if (s.room.size < needed) return {m, found, needed};
     int end = m + 1;
     while (end < s.end && s.bucket[end] == bucket) ++end;
     const bool together = end - m > kFewMembers;
-    const int near = together ? bring_together<kOnce>(s, runs, m, end) : runs.candidates;
+    const int candidates = together ? bring_together<kNamed>(s, runs, m, end) : runs.candidates;
     for (; m < end; ++m) {
       if (s.pairs_room - found < needed) return {m, found, needed};
-      std::int32_t* const to = s.neighbour + found;
-      const std::int32_t name = kOnce ? m : s.name[m];
-      if constexpr (!kOnce) {
-        while (sheet->first > name) --sheet;
-        while (sheet + 1 < s.sheet + s.sheets && sheet[1].first <= name) ++sheet;
+      const int left_out = m + 1 - first;
+      if (candidates == left_out) continue;
+      if constexpr (kNamed) {
+        while (sheet->first > s.name[m]) --sheet;
+        while (sheet + 1 < s.sheet + s.sheets && sheet[1].first <= s.name[m]) ++sheet;
       }
-      int count = 0;
-      if (near > 1)
-        count = together ? near_one<kOnce>(s, near, m, sheet, to)
-                         : near_one<kOnce>(s, runs, m, sheet, to);
-      for (int i = 0; i < count; i += kLanes) put_lanes(s.owner + found + i, WideInt{} + name);
+      Seeker<kNamed> seeker(s, m, sheet, s.neighbour + found);
+      const int count =
+          together ? seeker.among(s.room, left_out, candidates) : seeker.among(s, runs, left_out);
+      for (int i = 0; i < count; i += kLanes)
+        put_lanes(s.owner + found + i, WideInt{} + seeker.name);
       found += count;
     }
   }
@@ -225,7 +218,7 @@ void cell_keys(const CellKeys& given) {
 }
 
 NearFound near_pairs(const NearSearch& given) {
-  return given.name ? search<false>(given) : search<true>(given);
+  return given.name ? search<true>(given) : search<false>(given);
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -1,6 +1,6 @@
-// Self-collision: how pairs that are too near are pushed apart (Jacobi: every owner looks at the same
+// Self-collision: how pairs that are too near are pushed apart (Jacobi: every pair looks at the same
 // state). The pairs that touch are brought together first, kLanes of them say what they ask for, and
-// each owner sums up what its own ask, in their order. Owners move when all have been asked.
+// what each body is asked is summed up in the pairs' order. Bodies move when all have been asked.
 //
 //   stiff:   Δx_a = n (t - d) w_a/(w_a + w_b); the velocity into the other is lost, and the tangential
 //            velocity loses up to μ times as much as was pressed (Coulomb; μ the mean of both);
@@ -21,14 +21,15 @@ namespace weft::WEFT_KERNELS {
 namespace {
 
 using physics::Asked;
-using physics::AskFound;
+using physics::AskedSum;
 using physics::AskPairs;
 using physics::BodyBlock;
 using physics::BodyFriction;
 using physics::CloseFound;
 using physics::ClosePairs;
-using physics::MoveOwners;
+using physics::MoveBodies;
 using physics::PairRoom;
+using physics::SumAsked;
 
 // Of the thickness, at once: what starts intersecting comes apart slowly.
 constexpr float kMostPush = 0.5f;
@@ -65,11 +66,12 @@ WEFT_INLINE Wide ask(const AskPairs& s, int at) {
   const Wide4 other = records_at(s.motion->v, kBody, neighbour);
   const Wide mine = friction_of<kAlike>(s.friction, owner);
   const Wide theirs = friction_of<kAlike>(s.friction, neighbour);
-  const WideInt course = mine < 0.0f;
-  const Wide friction = select(theirs < 0.0f, mine, 0.5f * (mine + theirs));
-  const Wide share = own.last / (own.last + other.last);
+  const WideInt course = max(mine, theirs) < 0.0f;
+  const Wide friction = select(min(mine, theirs) < 0.0f, max(mine, theirs), 0.5f * (mine + theirs));
+  // By the course's rule both move all the way.
+  const Wide share = select(course, wide(0.5f), own.last / (own.last + other.last));
   const Wide weight = select(course, wide(1), depth);
-  const Wide lift = select(course, depth, min(depth, kMostPush * held) * share) * weight;
+  const Wide lift = select(course, 2.0f * depth, min(depth, kMostPush * held)) * weight;
   const Wide3 u = own.xyz - other.xyz;
   const Wide into = dot(u, n);
   const Wide3 slide = u - n * into;
@@ -80,38 +82,17 @@ WEFT_INLINE Wide ask(const AskPairs& s, int at) {
     rubbed = select(sliding > kTiny, min(wide(1), friction * lost / sliding), Wide{});
   }
   put_records(s.asked[at].push, kAsked, {n * lift, weight});
-  put_records(s.asked[at].gain, kAsked, {(n * lost - slide * rubbed) * (share * weight), Wide{}});
+  put_records(s.asked[at].gain, kAsked, {(n * lost - slide * rubbed) * weight, share});
   return dot(u, u);
 }
 
-// Sums up what the pairs ask of their owners; returns how many owners these are. Without branches: how
-// many pairs an owner has cannot be foretold.
-WEFT_INLINE int sum_up(const AskPairs& s) {
-  typedef std::int32_t FourInt __attribute__((vector_size(16)));
-  Four push{}, gain{};
-  std::int32_t last = -1;
-  int owners = -1;
-  for (int i = 0; i < s.pairs; ++i) {
-    const std::int32_t owner = s.owner[i];
-    const int goes_on = -int(owner == last);
-    const FourInt kept = FourInt{} + goes_on;
-    push = (Four)((FourInt)push & kept) + load_four(s.asked[i].push);
-    gain = (Four)((FourInt)gain & kept) + load_four(s.asked[i].gain);
-    owners += 1 + goes_on;
-    s.asked_owner[owners] = last = owner;
-    store_four(s.sum[owners].push, push);
-    store_four(s.sum[owners].gain, gain);
-  }
-  return owners + 1;
-}
-
 template <bool kAlike>
-WEFT_INLINE AskFound ask_all(const AskPairs& given) {
+WEFT_INLINE float ask_all(const AskPairs& given) {
   const AskPairs s = given;
   Wide fastest{};
   for (int i = 0; i < s.pairs; i += kLanes)
     fastest = max(fastest, select(lanes_below(s.pairs - i), ask<kAlike>(s, i), Wide{}));
-  return {sum_up(s), greatest(fastest)};
+  return greatest(fastest);
 }
 
 }  // namespace
@@ -146,25 +127,49 @@ CloseFound close_pairs(const ClosePairs& given) {
   return found;
 }
 
-AskFound ask_pairs(const AskPairs& s) {
+float ask_pairs(const AskPairs& s) {
   return s.friction.each ? ask_all<false>(s) : ask_all<true>(s);
 }
 
+int sum_asked(const SumAsked& given) {
+  const SumAsked s = given;
+  int first = 0;
+  const auto add = [&](std::int32_t body, Four push, Four gain) {
+    if (body < s.begin || body >= s.end) return;
+    AskedSum& sum = s.sum[body];
+    s.body[first] = body;
+    std::int32_t weight;
+    __builtin_memcpy(&weight, sum.push + 3, 4);
+    first += weight == 0;
+    store_four(sum.push, load_four(sum.push) + push);
+    store_four(sum.gain, load_four(sum.gain) + gain);
+  };
+  for (int i = 0; i < s.pairs; ++i) {
+    const Four push = load_four(s.asked[i].push), gain = load_four(s.asked[i].gain);
+    const float share = s.asked[i].gain[3], rest = 1 - share;
+    add(s.owner[i], push * Four{share, share, share, 1}, gain * share);
+    add(s.neighbour[i], push * Four{-rest, -rest, -rest, 1}, gain * -rest);
+  }
+  return first;
+}
+
 // By the mean of what each is asked.
-void move_owners(const MoveOwners& given) {
-  const MoveOwners s = given;
-  for (int n = 0; n < s.owners; ++n) {
-    const std::int32_t owner = s.owner[n];
-    const Asked& asked = s.sum[n];
-    float* const x = s.place[owner].x;
-    float* const v = s.motion[owner].v;
-    const float weight = asked.push[3];
+void move_bodies(const MoveBodies& given) {
+  const MoveBodies s = given;
+  for (int n = 0; n < s.bodies; ++n) {
+    const std::int32_t body = s.body[n];
+    AskedSum& sum = s.sum[body];
+    const Four push = load_four(sum.push), gain = load_four(sum.gain);
+    store_four(sum.push, Four{});
+    store_four(sum.gain, Four{});
+    float* const x = s.place[body].x;
+    float* const v = s.motion[body].v;
+    const float weight = push[3];
     if (!(v[3] > 0 && weight > 0)) continue;
-    const bool course = (s.friction.each ? s.friction.each[owner] : s.friction.alike) < 0;
-    const float mean = 1 / weight, share = mean * (course ? s.course_share : 1);
-    const Four none{1, 1, 1, 0};
-    const Four by = load_four(asked.push) * none * share;
-    const Four faster = course ? by * s.inverse_dt : load_four(asked.gain) * mean;
+    const bool course = (s.friction.each ? s.friction.each[body] : s.friction.alike) < 0;
+    const float mean = 1 / weight;
+    const Four by = push * Four{1, 1, 1, 0} * (mean * (course ? s.course_share : 1));
+    const Four faster = course ? by * s.inverse_dt : gain * Four{1, 1, 1, 0} * mean;
     store_four(x, load_four(x) + by);
     store_four(v, load_four(v) + faster);
   }

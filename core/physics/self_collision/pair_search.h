@@ -25,8 +25,7 @@ class PairSearch {
  public:
   static constexpr std::size_t kChunk = 128;  // points
 
-  // Among the points of sheets, each pair is listed by both of the two; with no sheet, any are pairs,
-  // listed by the first of the two alone.
+  // With no sheets, there are no neighbours.
   PairSearch(std::size_t most_points, const std::vector<NamedSheet>& sheets,
              const KernelTable& kernels);
 
@@ -36,8 +35,8 @@ class PairSearch {
 
   // Sorts the first `count` points, all in the box, for searches within `range` [m].
   void sort(std::size_t count, const Spread& box, float range, Threads& threads);
-  // Finds the pairs within a range [m]. Points of sheets are listed by their names, others by their
-  // numbers in sorted order.
+  // Finds the pairs within a range [m], each listed once, by the first of the two in sorted order.
+  // Points of sheets are listed by their names, others by their numbers in that order.
   void find(float range, Threads& threads);
 
   // Sorted points are cut into chunks: chunk k has those from begin(k) to begin(k + 1), and the pairs

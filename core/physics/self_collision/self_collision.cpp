@@ -83,6 +83,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
   }
   place_.resize(bodies_);
   motion_.resize(bodies_);
+  sums_.resize(bodies_);
   const auto friction = [](const Sheet& s) { return s.course ? kCourseRule : s.friction; };
   friction_alike_ = friction(sheets_[0]);
   if (std::any_of(sheets_.begin(), sheets_.end(),
@@ -223,19 +224,18 @@ SelfContact::Overlaps SelfContact::overlaps() {
     ++found.pairs;
     found.deepest = std::max(found.deepest, depth);
   });
-  found.pairs /= 2;
   return found;
 }
 
 std::size_t SelfContact::bytes() const {
   std::size_t bytes = search_.bytes() + blocks_.bytes();
-  bytes += place_.size() * (sizeof(Place) + sizeof(Motion)) + 4 * friction_.size();
+  bytes += bodies_ * (sizeof(Place) + sizeof(Motion) + sizeof(AskedSum)) + 4 * friction_.size();
   for (const auto* sheets : {&load_, &ahead_})
     for (const Rows& rows : *sheets) bytes += rows.bytes();
-  bytes += speeds_.capacity() * 4;
   for (const Close& c : close_)
-    bytes += 8 * c.owner.capacity() + (4 + sizeof(Asked)) * c.sum.capacity();
-  for (const Room& r : rooms_) bytes += r.asked.capacity() * (sizeof(Asked) + 8);
+    bytes += 8 * (c.pairs.owner.capacity() + c.touching.owner.capacity()) +
+             sizeof(Asked) * c.asked.capacity();
+  for (const auto& bodies : parts_) bytes += 4 * bodies.capacity();
   return bytes;
 }
 

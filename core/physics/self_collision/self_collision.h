@@ -48,7 +48,7 @@ class SelfContact {
 
   // Searches now for all pairs nearer than the greatest thickness and `margin` [m].
   void search(double margin, Threads& threads);
-  // Calls visit(site, other site) for each pair that was found, with either of the two first.
+  // Calls visit(site, other site) for each pair that was found, once.
   template <class Visit>
   void for_each_pair(Visit&& visit) const {
     for (std::size_t k = 0; k < search_.chunks(); ++k) {
@@ -76,20 +76,25 @@ class SelfContact {
 
  private:
   SelfContact(const Scene& scene, std::vector<Sheet> sheets, const KernelTable& kernels);
-  struct Room {  // of one thread, for the pairs of a chunk that touch
+  struct PairList {
     std::vector<std::int32_t> owner, neighbour;
+    int count = 0;
+  };
+  // Of a chunk's pairs, those that may touch in this run, those that do, and what these ask for.
+  struct Close {
+    PairList pairs, touching;
     std::vector<Asked> asked;
+    float fastest = 0;  // greatest squared relative speed of two that touch [m²/s²]
   };
   // Of what nothing may touch.
   void forget_loads(const Block& block);
   void forget_loads();
   void list_sites(Threads& threads);
-  bool few_pairs() const { return found_ < 8192; }  // one thread pushes them apart faster
+  bool few_pairs() const { return found_ < 4096; }  // one thread pushes them apart faster
   std::size_t body(std::size_t sheet, int row, int column) const;
   Site site(std::int32_t body) const;
   BodyBlock bodies_of(const Block& block, double since);
-  void begin_response(Threads& threads);
-  int list_close(std::size_t chunk, bool anew, Room& room);
+  void list_touching(Close& close, const PairSearch::Pairs& all, bool anew);
 
   const Scene& scene_;
   std::vector<Sheet> sheets_;
@@ -107,19 +112,12 @@ class SelfContact {
   std::vector<float> friction_;          // of every body, or kCourseRule; empty where all are alike
   float friction_alike_ = 0;
   std::vector<Rows> load_, ahead_;  // of every sheet: BodyBlock
-  // Pairs of a chunk that may touch in this run, and what is asked of those of their owners that do.
-  struct Close {
-    std::vector<std::int32_t> owner, neighbour;
-    int count = 0;
-    std::vector<std::int32_t> asked_owner;
-    std::vector<Asked> sum;
-    int asked_owners = 0;
-  };
-  std::vector<Close> close_;
-  std::vector<Room> rooms_;
-  std::vector<float> speeds_;  // of a chunk's pairs that touch, squared, at most
-  float thickness_ = 0;        // greatest of the sheets [m]
-  bool course_ = false;        // whether any sheet has the course's rule
+  std::vector<AskedSum> sums_;      // of every body; nothing between two rounds
+  std::vector<Close> close_;        // of every chunk
+  // Bodies that are asked to move, of each of as many parts as there are threads.
+  std::vector<std::vector<std::int32_t>> parts_;
+  float thickness_ = 0;  // greatest of the sheets [m]
+  bool course_ = false;  // whether any sheet has the course's rule
   bool valid_ = false;
   float skin_ = 0;     // of the thickness
   int kept_runs_ = 0;  // since the list of pairs was made

@@ -38,89 +38,85 @@ BodyBlock SelfContact::bodies_of(const Block& block, double since) {
   return b;
 }
 
-// The pairs that touch go into the room; `anew`, those are chosen that others may push into each other
-// in this run. Returns how many touch.
-int SelfContact::list_close(std::size_t chunk, bool anew, Room& room) {
-  Close& close = close_[chunk];
+// Lists the pairs of a chunk that touch; `anew`, those are chosen first that others may push into each
+// other in this run.
+void SelfContact::list_touching(Close& close, const PairSearch::Pairs& all, bool anew) {
+  const auto room = [](PairList& list, std::size_t count) {
+    if (list.owner.size() < count + kPadding) {
+      list.owner.resize(2 * count + kPadding);
+      list.neighbour.resize(list.owner.size());
+    }
+    return PairRoom{list.owner.data(), list.neighbour.data()};
+  };
   ClosePairs p{};
   p.place = place_.data();
   p.reach = kClose;
-  p.touching = {room.owner.data(), room.neighbour.data()};
-  if (!anew) {
-    p.pairs = close.count;
-    p.owner = close.owner.data();
-    p.neighbour = close.neighbour.data();
-    return kernels_.close_pairs(p).touching;
+  p.touching = room(close.touching, all.count);
+  if (anew) {
+    p.pairs = int(all.count);
+    p.owner = all.owner;
+    p.neighbour = all.neighbour;
+    p.close = room(close.pairs, all.count);
+  } else {
+    p.pairs = close.pairs.count;
+    p.owner = close.pairs.owner.data();
+    p.neighbour = close.pairs.neighbour.data();
   }
-  const PairSearch::Pairs pairs = search_.pairs(chunk);
-  p.pairs = int(pairs.count);
-  p.owner = pairs.owner;
-  p.neighbour = pairs.neighbour;
-  p.close = {close.owner.data(), close.neighbour.data()};
   const CloseFound found = kernels_.close_pairs(p);
-  close.count = found.close;
-  return found.touching;
-}
-
-// Makes room.
-void SelfContact::begin_response(Threads& threads) {
-  const auto grown = [](auto& list, std::size_t count) {
-    if (list.owner.size() >= count + kPadding) return false;
-    list.owner.resize(2 * count + kPadding);
-    list.neighbour.resize(list.owner.size());
-    return true;
-  };
-  speeds_.resize(search_.chunks());
-  if (close_.size() < search_.chunks()) close_.resize(search_.chunks());
-  std::size_t most = 0;
-  for (std::size_t k = 0; k < search_.chunks(); ++k) {
-    grown(close_[k], search_.pairs(k).count);
-    if (close_[k].sum.empty()) {
-      close_[k].sum.resize(PairSearch::kChunk);
-      close_[k].asked_owner.resize(PairSearch::kChunk);
-    }
-    most = std::max(most, search_.pairs(k).count);
-  }
-  rooms_.resize(std::size_t(threads.count()));
-  for (Room& r : rooms_)
-    if (grown(r, most)) r.asked.resize(r.owner.size());
+  if (anew) close.pairs.count = found.close;
+  close.touching.count = found.touching;
 }
 
 double SelfContact::respond(double dt, int since, Threads& threads) {
   if (found_ == 0) return 0;
-  begin_response(threads);
   const bool alone = few_pairs() || threads.count() == 1;
-  const auto each_chunk = [&](auto&& work) { threads.share(search_.chunks(), alone, work); };
   const auto each_block = [&](auto kernel) {
     threads.share(blocks_.all().size(), alone, [&](std::size_t b) {
       if (blocks_.all()[b].active) kernel(bodies_of(blocks_.all()[b], since * dt));
     });
   };
   each_block(kernels_.gather_bodies);
+  if (close_.size() < search_.chunks()) close_.resize(search_.chunks());
+  parts_.resize(alone ? 1 : std::size_t(threads.count()));
+  const BodyFriction friction{friction_.empty() ? nullptr : friction_.data(), friction_alike_};
   // The course's push for as many substeps as have passed.
   const double steps = scene_.time.substeps > 0 ? scene_.time.substeps : scene_.time.frame / dt;
-  const BodyFriction friction{friction_.empty() ? nullptr : friction_.data(), friction_alike_};
   const int iterations = course_ ? 1 : kIterations;
   for (int i = 0; i < iterations; ++i) {
-    each_chunk([&](std::size_t k) {
-      Room& room = rooms_[alone ? 0 : std::size_t(Threads::index())];
+    threads.share(search_.chunks(), alone, [&](std::size_t k) {
       Close& close = close_[k];
-      const int touching = list_close(k, i == 0, room);
-      const AskFound asked = kernels_.ask_pairs(
-          {place_.data(), motion_.data(), friction, touching, room.owner.data(),
-           room.neighbour.data(), room.asked.data(), close.asked_owner.data(), close.sum.data()});
-      close.asked_owners = asked.owners;
-      speeds_[k] = asked.fastest;
+      list_touching(close, search_.pairs(k), i == 0);
+      const PairList& pairs = close.touching;
+      if (close.asked.size() < std::size_t(pairs.count) + kPadding)
+        close.asked.resize(2 * std::size_t(pairs.count) + kPadding);
+      close.fastest =
+          kernels_.ask_pairs({place_.data(), motion_.data(), friction, pairs.count,
+                              pairs.owner.data(), pairs.neighbour.data(), close.asked.data()});
     });
-    each_chunk([&](std::size_t k) {
-      const Close& close = close_[k];
-      kernels_.move_owners({place_.data(), motion_.data(), friction, close.asked_owners,
-                            close.asked_owner.data(), close.sum.data(), float(since / steps),
-                            float(1 / dt)});
+    // Each part of the bodies goes through all that is asked, in the same order.
+    std::size_t asked = 0;
+    for (std::size_t k = 0; k < search_.chunks(); ++k)
+      asked += 2 * std::size_t(close_[k].touching.count);
+    threads.share(parts_.size(), alone, [&](std::size_t part) {
+      std::vector<std::int32_t>& bodies = parts_[part];
+      if (bodies.size() < asked + 1) bodies.resize(2 * asked + 1);
+      int count = 0;
+      for (std::size_t k = 0; k < search_.chunks(); ++k) {
+        const PairList& pairs = close_[k].touching;
+        count += kernels_.sum_asked({pairs.count, pairs.owner.data(), pairs.neighbour.data(),
+                                     close_[k].asked.data(),
+                                     std::int32_t(bodies_ * part / parts_.size()),
+                                     std::int32_t(bodies_ * (part + 1) / parts_.size()),
+                                     sums_.data(), bodies.data() + count});
+      }
+      kernels_.move_bodies({place_.data(), motion_.data(), friction, sums_.data(), count,
+                            bodies.data(), float(since / steps), float(1 / dt)});
     });
   }
   each_block(kernels_.scatter_bodies);
-  return std::sqrt(*std::max_element(speeds_.begin(), speeds_.end()));
+  float fastest = 0;
+  for (std::size_t k = 0; k < search_.chunks(); ++k) fastest = std::max(fastest, close_[k].fastest);
+  return std::sqrt(fastest);
 }
 
 }  // namespace weft::physics
