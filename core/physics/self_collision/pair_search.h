@@ -23,7 +23,7 @@ std::size_t give_names(std::vector<NamedSheet>& sheets);
 
 class PairSearch {
  public:
-  static constexpr std::size_t kChunk = 128;  // points
+  static constexpr std::size_t kChunk = 256;  // points
 
   // With no sheets, there are no neighbours.
   PairSearch(std::size_t most_points, const std::vector<NamedSheet>& sheets,

@@ -232,10 +232,10 @@ std::size_t SelfContact::bytes() const {
   bytes += bodies_ * (sizeof(Place) + sizeof(Motion) + sizeof(AskedSum)) + 4 * friction_.size();
   for (const auto* sheets : {&load_, &ahead_})
     for (const Rows& rows : *sheets) bytes += rows.bytes();
-  for (const Close& c : close_)
-    bytes += 8 * (c.pairs.owner.capacity() + c.touching.owner.capacity()) +
-             sizeof(Asked) * c.asked.capacity();
-  for (const auto& bodies : parts_) bytes += 4 * bodies.capacity();
+  for (const PairList& c : close_) bytes += 8 * c.owner.capacity();
+  for (const Touching& t : touching_)
+    bytes += 8 * t.pairs.owner.capacity() + sizeof(Asked) * t.asked.capacity();
+  for (const Part& p : parts_) bytes += 4 * p.bodies.capacity();
   return bytes;
 }
 

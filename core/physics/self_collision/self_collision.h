@@ -80,11 +80,9 @@ class SelfContact {
     std::vector<std::int32_t> owner, neighbour;
     int count = 0;
   };
-  // Of a chunk's pairs, those that may touch in this run, those that do, and what these ask for.
-  struct Close {
-    PairList pairs, touching;
+  struct Touching {
+    PairList pairs;
     std::vector<Asked> asked;
-    float fastest = 0;  // greatest squared relative speed of two that touch [m²/s²]
   };
   // Of what nothing may touch.
   void forget_loads(const Block& block);
@@ -94,7 +92,14 @@ class SelfContact {
   std::size_t body(std::size_t sheet, int row, int column) const;
   Site site(std::int32_t body) const;
   BodyBlock bodies_of(const Block& block, double since);
-  void list_touching(Close& close, const PairSearch::Pairs& all, bool anew);
+  // A part of the bodies, and those of it that are asked to move.
+  struct Part {
+    std::vector<std::int32_t> bodies;
+    int count = 0;
+  };
+  void list_touching(const PairSearch::Pairs& all, bool anew, PairList& close, Touching& touching);
+  float ask(const BodyFriction& friction, Touching& touching);
+  void sum_up(std::size_t part, const Touching& touching);
 
   const Scene& scene_;
   std::vector<Sheet> sheets_;
@@ -113,11 +118,13 @@ class SelfContact {
   float friction_alike_ = 0;
   std::vector<Rows> load_, ahead_;  // of every sheet: BodyBlock
   std::vector<AskedSum> sums_;      // of every body; nothing between two rounds
-  std::vector<Close> close_;        // of every chunk
-  // Bodies that are asked to move, of each of as many parts as there are threads.
-  std::vector<std::vector<std::int32_t>> parts_;
-  float thickness_ = 0;  // greatest of the sheets [m]
-  bool course_ = false;  // whether any sheet has the course's rule
+  // Of every chunk, the pairs that may touch in this run, and those that do.
+  std::vector<PairList> close_;
+  std::vector<Touching> touching_;
+  std::vector<float> fastest_squared_;  // relative speed of two that touch, at most [m²/s²]
+  std::vector<Part> parts_;             // as many as threads
+  float thickness_ = 0;                 // greatest of the sheets [m]
+  bool course_ = false;                 // whether any sheet has the course's rule
   bool valid_ = false;
   float skin_ = 0;     // of the thickness
   int kept_runs_ = 0;  // since the list of pairs was made

@@ -38,9 +38,10 @@ BodyBlock SelfContact::bodies_of(const Block& block, double since) {
   return b;
 }
 
-// Lists the pairs of a chunk that touch; `anew`, those are chosen first that others may push into each
-// other in this run.
-void SelfContact::list_touching(Close& close, const PairSearch::Pairs& all, bool anew) {
+// Lists those of all pairs that touch; `anew`, the close ones are chosen first, those that others may
+// push into each other in this run.
+void SelfContact::list_touching(const PairSearch::Pairs& all, bool anew, PairList& close,
+                                Touching& touching) {
   const auto room = [](PairList& list, std::size_t count) {
     if (list.owner.size() < count + kPadding) {
       list.owner.resize(2 * count + kPadding);
@@ -51,20 +52,42 @@ void SelfContact::list_touching(Close& close, const PairSearch::Pairs& all, bool
   ClosePairs p{};
   p.place = place_.data();
   p.reach = kClose;
-  p.touching = room(close.touching, all.count);
+  p.touching = room(touching.pairs, all.count);
   if (anew) {
     p.pairs = int(all.count);
     p.owner = all.owner;
     p.neighbour = all.neighbour;
-    p.close = room(close.pairs, all.count);
+    p.close = room(close, all.count);
   } else {
-    p.pairs = close.pairs.count;
-    p.owner = close.pairs.owner.data();
-    p.neighbour = close.pairs.neighbour.data();
+    p.pairs = close.count;
+    p.owner = close.owner.data();
+    p.neighbour = close.neighbour.data();
   }
   const CloseFound found = kernels_.close_pairs(p);
-  if (anew) close.pairs.count = found.close;
-  close.touching.count = found.touching;
+  if (anew) close.count = found.close;
+  touching.pairs.count = found.touching;
+}
+
+// What pairs that touch ask for; returns the greatest squared relative speed of two [m²/s²].
+float SelfContact::ask(const BodyFriction& friction, Touching& touching) {
+  const PairList& pairs = touching.pairs;
+  if (touching.asked.size() < std::size_t(pairs.count) + kPadding)
+    touching.asked.resize(2 * std::size_t(pairs.count) + kPadding);
+  return kernels_.ask_pairs({place_.data(), motion_.data(), friction, pairs.count,
+                             pairs.owner.data(), pairs.neighbour.data(), touching.asked.data()});
+}
+
+// Adds what they ask of the bodies of a part.
+void SelfContact::sum_up(std::size_t part, const Touching& touching) {
+  Part& p = parts_[part];
+  const PairList& pairs = touching.pairs;
+  const std::size_t most = std::size_t(p.count) + 2 * std::size_t(pairs.count) + 1;
+  if (p.bodies.size() < most) p.bodies.resize(2 * most);
+  p.count +=
+      kernels_.sum_asked({pairs.count, pairs.owner.data(), pairs.neighbour.data(),
+                          touching.asked.data(), std::int32_t(bodies_ * part / parts_.size()),
+                          std::int32_t(bodies_ * (part + 1) / parts_.size()), sums_.data(),
+                          p.bodies.data() + p.count});
 }
 
 double SelfContact::respond(double dt, int since, Threads& threads) {
@@ -76,47 +99,36 @@ double SelfContact::respond(double dt, int since, Threads& threads) {
     });
   };
   each_block(kernels_.gather_bodies);
-  if (close_.size() < search_.chunks()) close_.resize(search_.chunks());
+  const std::size_t chunks = search_.chunks();
+  fastest_squared_.resize(chunks);
+  if (close_.size() < chunks) {
+    close_.resize(chunks);
+    touching_.resize(chunks);
+  }
   parts_.resize(alone ? 1 : std::size_t(threads.count()));
   const BodyFriction friction{friction_.empty() ? nullptr : friction_.data(), friction_alike_};
   // The course's push for as many substeps as have passed.
   const double steps = scene_.time.substeps > 0 ? scene_.time.substeps : scene_.time.frame / dt;
   const int iterations = course_ ? 1 : kIterations;
   for (int i = 0; i < iterations; ++i) {
-    threads.share(search_.chunks(), alone, [&](std::size_t k) {
-      Close& close = close_[k];
-      list_touching(close, search_.pairs(k), i == 0);
-      const PairList& pairs = close.touching;
-      if (close.asked.size() < std::size_t(pairs.count) + kPadding)
-        close.asked.resize(2 * std::size_t(pairs.count) + kPadding);
-      close.fastest =
-          kernels_.ask_pairs({place_.data(), motion_.data(), friction, pairs.count,
-                              pairs.owner.data(), pairs.neighbour.data(), close.asked.data()});
+    for (Part& part : parts_) part.count = 0;
+    const bool one = parts_.size() == 1;
+    threads.share(chunks, alone, [&](std::size_t k) {
+      Touching& touching = touching_[one ? 0 : k];
+      list_touching(search_.pairs(k), i == 0, close_[k], touching);
+      fastest_squared_[k] = ask(friction, touching);
+      if (one) sum_up(0, touching);
     });
     // Each part of the bodies goes through all that is asked, in the same order.
-    std::size_t asked = 0;
-    for (std::size_t k = 0; k < search_.chunks(); ++k)
-      asked += 2 * std::size_t(close_[k].touching.count);
-    threads.share(parts_.size(), alone, [&](std::size_t part) {
-      std::vector<std::int32_t>& bodies = parts_[part];
-      if (bodies.size() < asked + 1) bodies.resize(2 * asked + 1);
-      int count = 0;
-      for (std::size_t k = 0; k < search_.chunks(); ++k) {
-        const PairList& pairs = close_[k].touching;
-        count += kernels_.sum_asked({pairs.count, pairs.owner.data(), pairs.neighbour.data(),
-                                     close_[k].asked.data(),
-                                     std::int32_t(bodies_ * part / parts_.size()),
-                                     std::int32_t(bodies_ * (part + 1) / parts_.size()),
-                                     sums_.data(), bodies.data() + count});
-      }
-      kernels_.move_bodies({place_.data(), motion_.data(), friction, sums_.data(), count,
-                            bodies.data(), float(since / steps), float(1 / dt)});
+    threads.share(parts_.size(), alone, [&](std::size_t n) {
+      const Part& part = parts_[n];
+      for (std::size_t k = 0; k < chunks && !one; ++k) sum_up(n, touching_[k]);
+      kernels_.move_bodies({place_.data(), motion_.data(), friction, sums_.data(), part.count,
+                            part.bodies.data(), float(since / steps), float(1 / dt)});
     });
   }
   each_block(kernels_.scatter_bodies);
-  float fastest = 0;
-  for (std::size_t k = 0; k < search_.chunks(); ++k) fastest = std::max(fastest, close_[k].fastest);
-  return std::sqrt(fastest);
+  return std::sqrt(*std::max_element(fastest_squared_.begin(), fastest_squared_.end()));
 }
 
 }  // namespace weft::physics
