@@ -134,7 +134,7 @@ class Separating : public testing::TestWithParam<Simd> {
     near.neighbour.resize(near.owner.size());
     return {touching, near};
   }
-  static std::vector<Body> separated(const Crowd& crowd, float& fastest, bool alike, Simd simd) {
+  static std::vector<Body> separated(const Crowd& crowd, AskFound& done, bool alike, Simd simd) {
     std::vector<Place> place = crowd.places();
     std::vector<Motion> motion = crowd.motions();
     const BodyFriction friction{alike ? nullptr : crowd.friction.data(), crowd.friction[0]};
@@ -142,8 +142,8 @@ class Separating : public testing::TestWithParam<Simd> {
     const int count = int(touching.owner.size()) - kPadding;
     std::vector<Asked> asked(touching.owner.size());
     const KernelTable& kernels = kernel_table(simd);
-    fastest = kernels.ask_pairs({place.data(), motion.data(), friction, count,
-                                 touching.owner.data(), touching.neighbour.data(), asked.data()});
+    done = kernels.ask_pairs({place.data(), motion.data(), friction, count, touching.owner.data(),
+                              touching.neighbour.data(), asked.data()});
     // In two parts, each of its own bodies.
     const auto bodies = std::int32_t(place.size());
     std::vector<AskedSum> sum(place.size());
@@ -196,9 +196,9 @@ TEST_P(Separating, MovesBodiesAsTheRulesSay) {
     for (const int count : {2, 9, 40, 67}) {
       const bool course = rule == 1, alike = rule == 2;
       const Crowd crowd(count, course, alike);
-      float fastest = 0;
-      const std::vector<Body> out = separated(crowd, fastest, alike, GetParam());
-      double greatest = 0;
+      AskFound done{};
+      const std::vector<Body> out = separated(crowd, done, alike, GetParam());
+      double fastest = 0, deepest = 0;
       int moved = 0;
       for (int a = 0; a < count; ++a) {
         const Body& body = out[std::size_t(a)];
@@ -210,13 +210,20 @@ TEST_P(Separating, MovesBodiesAsTheRulesSay) {
           EXPECT_NEAR(body.v[k], expected.v[k], 1e-4) << count << " bodies, body " << a;
         }
         for (int b = 0; b < count; ++b) {
-          double square = 0;
-          for (int k = 0; k < 3; ++k)
-            square += std::pow(double(before.v[k]) - crowd.bodies[std::size_t(b)].v[k], 2);
-          if (b != a && crowd.near(a, b, 1)) greatest = std::max(greatest, square);
+          if (b == a || !crowd.near(a, b, 1)) continue;
+          const Body& other = crowd.bodies[std::size_t(b)];
+          double square = 0, apart = 0;
+          for (int k = 0; k < 3; ++k) {
+            square += std::pow(double(before.v[k]) - other.v[k], 2);
+            apart += std::pow(double(before.x[k]) - other.x[k], 2);
+          }
+          fastest = std::max(fastest, square);
+          deepest =
+              std::max(deepest, 1 - std::sqrt(apart) / (0.5 * (double(before.x[3]) + other.x[3])));
         }
       }
-      EXPECT_NEAR(fastest, greatest, 1e-5);
+      EXPECT_NEAR(done.fastest_squared, fastest, 1e-5);
+      EXPECT_NEAR(done.deepest, deepest, 1e-6);
       EXPECT_TRUE(count <= 9 || moved > count / 4) << moved;
     }
 }
@@ -224,10 +231,11 @@ TEST_P(Separating, MovesBodiesAsTheRulesSay) {
 TEST_P(Separating, HasTheBitsOfTheScalarKernel) {
   for (const bool course : {false, true}) {
     const Crowd crowd(67, course);
-    float fastest = 0, fastest_scalar = 0;
-    const std::vector<Body> out = separated(crowd, fastest, course, GetParam());
-    const std::vector<Body> expected = separated(crowd, fastest_scalar, course, Simd::scalar);
-    EXPECT_EQ(fastest, fastest_scalar);
+    AskFound done{}, done_scalar{};
+    const std::vector<Body> out = separated(crowd, done, course, GetParam());
+    const std::vector<Body> expected = separated(crowd, done_scalar, course, Simd::scalar);
+    EXPECT_EQ(done.fastest_squared, done_scalar.fastest_squared);
+    EXPECT_EQ(done.deepest, done_scalar.deepest);
     for (std::size_t a = 0; a < out.size(); ++a)
       for (int k = 0; k < 4; ++k) {
         EXPECT_EQ(out[a].x[k], expected[a].x[k]);

@@ -29,6 +29,9 @@ Simd resolve(Simd simd) {
 // particle has heavy neighbours they add up to more than the whole. And a single sweep with compliance
 // is an explicit spring as stiff as the sweep allows, which large motions feed: two sweeps damp. Puts
 // what is stable into the scene and returns what to tell, "" where nothing changed.
+// Of the springs' stability limit, between two runs of self-collision. Their shortest period is π of it:
+// with more than that in between, they push what lies on each other ever livelier.
+constexpr double kSwing = 2.5;
 constexpr double kAlikeMasses = 4;  // greatest over least
 std::string steady_jacobi(Scene& scene) {
   if (scene.solver.sweep != Sweep::jacobi) return "";
@@ -225,7 +228,9 @@ void Simulation::State::run_frame() {
     // A frame ends with surfaces that have not crossed.
     if (since_collision_ < until_collision_ && !(surface && s == substeps)) break;
     const auto start = std::chrono::steady_clock::now();
-    until_collision_ = self_collision->run(dt, since_collision_, threads);
+    const double swing =
+        is_explicit(method) ? kSwing * limit_ : std::numeric_limits<double>::infinity();
+    until_collision_ = self_collision->run(dt, since_collision_, swing, threads);
     if (surface)
       until_collision_ = std::min(until_collision_, surface->run(dt, since_collision_, threads));
     since_collision_ = 0;

@@ -1,5 +1,6 @@
 // Bounds of a block of particles (contact.h): where they are, how fast, how far they have moved, and
-// how their edges lie. Least and greatest values are exact, so that no order matters.
+// how their edges lie; and which boxes are near each other. Least and greatest values are exact, so that
+// no order matters.
 #include <limits>
 
 #include "physics/kernels/contact.h"
@@ -55,6 +56,23 @@ void block_bounds(const physics::BlockRows& b) {
   b.bounds->across = across.spread();
   b.bounds->change_along = greatest(change_along);
   b.bounds->change_across = greatest(change_across);
+}
+
+int near_boxes(const physics::NearBoxes& given) {
+  const physics::NearBoxes s = given;
+  int count = 0;
+  for (int i = s.begin; i < s.end; i += kLanes) {
+    Wide square{};
+    for (int k = 0; k < 3; ++k) {
+      const Wide gap =
+          max(max(load(s.low[k] + i) - s.box.high[k], s.box.low[k] - load(s.high[k] + i)), Wide{});
+      square = square + gap * gap;
+    }
+    const LaneBits near = where_less(square, wide(s.distance_squared)) & first_lanes(s.end - i);
+    store_lanes(s.square + count, near, square);
+    count += store_lanes(s.near + count, near, lane_numbers() + i);
+  }
+  return count;
 }
 
 }  // namespace weft::WEFT_KERNELS

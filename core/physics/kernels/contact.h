@@ -32,6 +32,18 @@ struct BlockRows {
   BlockBounds* bounds;  // out
 };
 
+// A box, and others: arrays with 16 lanes of padding.
+struct NearBoxes {
+  const float *low[3], *high[3];  // m
+  int begin, end;                 // those looked at
+  Spread box;
+  float distance_squared;  // m²
+  // Out, and 16 lanes of padding: the numbers of those that are nearer than that, and their distances
+  // squared, 0 where boxes overlap.
+  std::int32_t* near;
+  float* square;
+};
+
 // Cells along an axis, at most: what lies beyond is in the last. (Their numbers stay within 64 bits.)
 inline constexpr float kMostCells = 1e6f;
 
@@ -157,7 +169,7 @@ struct alignas(32) Asked {
   float gain[4];  // velocity [m/s], and the owner's share
 };
 
-// Pairs that touch, and what they ask for. Returned is the greatest squared relative speed of two [m²/s²].
+// Pairs that touch, and what they ask for.
 struct AskPairs {
   const Place* place;
   const Motion* motion;
@@ -165,6 +177,11 @@ struct AskPairs {
   int pairs;
   const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of particles
   Asked* asked;                           // out, and 16 more
+};
+
+struct AskFound {
+  float fastest_squared;  // relative speed of two, at most [m²/s²]
+  float deepest;          // of the distance at which they are held
 };
 
 // What all its pairs ask of a body.

@@ -266,6 +266,7 @@ struct PushRow {
 
 struct LineStrip;  // kernels/line.h
 struct BlockRows;  // kernels/contact.h
+struct NearBoxes;
 struct CellKeys;
 struct NearSearch;
 struct NearFound;
@@ -273,6 +274,7 @@ struct ClosePairs;
 struct CloseFound;
 struct BodyBlock;
 struct AskPairs;
+struct AskFound;
 struct SumAsked;
 struct MoveBodies;
 struct SquaresWithin;
@@ -321,11 +323,12 @@ struct KernelTable {
   void (*wind)(const WindRow&);
   void (*push)(const PushRow&);
   void (*block_bounds)(const BlockRows&);  // how a block lies and moves
+  int (*near_boxes)(const NearBoxes&);     // returns how many are near
   void (*cell_keys)(const CellKeys&);
   NearFound (*near_pairs)(const NearSearch&);  // who is in range of whom
   CloseFound (*close_pairs)(const ClosePairs&);
-  float (*ask_pairs)(const AskPairs&);  // returns the greatest squared relative speed
-  int (*sum_asked)(const SumAsked&);    // returns how many are asked for the first time
+  AskFound (*ask_pairs)(const AskPairs&);
+  int (*sum_asked)(const SumAsked&);  // returns how many are asked for the first time
   void (*move_bodies)(const MoveBodies&);
   void (*gather_bodies)(const BodyBlock&);
   void (*scatter_bodies)(const BodyBlock&);

@@ -22,6 +22,7 @@ namespace {
 
 using physics::Asked;
 using physics::AskedSum;
+using physics::AskFound;
 using physics::AskPairs;
 using physics::BodyBlock;
 using physics::BodyFriction;
@@ -45,9 +46,14 @@ WEFT_INLINE Wide friction_of(const BodyFriction& friction, const std::int32_t* b
   return r;
 }
 
-// What kLanes pairs from `at` on ask for; returns their greatest squared relative speed.
+// Of kLanes pairs.
+struct AskedLanes {
+  Wide speed_squared, depth;
+};
+
+// What kLanes pairs from `at` on ask for.
 template <bool kAlike>
-WEFT_INLINE Wide ask(const AskPairs& s, int at) {
+WEFT_INLINE AskedLanes ask(const AskPairs& s, int at) {
   const std::int32_t *const owner = s.owner + at, *const neighbour = s.neighbour + at;
   const Wide4 apart = differences_at(s.place->x, kBody, owner, neighbour);
   const Wide held = 0.5f * apart.last;
@@ -83,16 +89,20 @@ WEFT_INLINE Wide ask(const AskPairs& s, int at) {
   }
   put_records(s.asked[at].push, kAsked, {n * lift, weight});
   put_records(s.asked[at].gain, kAsked, {(n * lost - slide * rubbed) * weight, share});
-  return dot(u, u);
+  return {dot(u, u), depth / held};
 }
 
 template <bool kAlike>
-WEFT_INLINE float ask_all(const AskPairs& given) {
+WEFT_INLINE AskFound ask_all(const AskPairs& given) {
   const AskPairs s = given;
-  Wide fastest{};
-  for (int i = 0; i < s.pairs; i += kLanes)
-    fastest = max(fastest, select(lanes_below(s.pairs - i), ask<kAlike>(s, i), Wide{}));
-  return greatest(fastest);
+  Wide fastest{}, deepest{};
+  for (int i = 0; i < s.pairs; i += kLanes) {
+    const AskedLanes asked = ask<kAlike>(s, i);
+    const WideInt there = lanes_below(s.pairs - i);
+    fastest = max(fastest, select(there, asked.speed_squared, Wide{}));
+    deepest = max(deepest, select(there, asked.depth, Wide{}));
+  }
+  return {greatest(fastest), greatest(deepest)};
 }
 
 }  // namespace
@@ -127,7 +137,7 @@ CloseFound close_pairs(const ClosePairs& given) {
   return found;
 }
 
-float ask_pairs(const AskPairs& s) {
+AskFound ask_pairs(const AskPairs& s) {
   return s.friction.each ? ask_all<false>(s) : ask_all<true>(s);
 }
 

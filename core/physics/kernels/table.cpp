@@ -35,6 +35,7 @@ const physics::KernelTable& table() {
       wind,
       push,
       block_bounds,
+      near_boxes,
       cell_keys,
       near_pairs,
       close_pairs,

@@ -9,6 +9,7 @@ namespace weft::physics {
 namespace {
 
 constexpr float kFlatter = 0.04f;  // of ρ: what is let go must be so much flatter than it must stay
+constexpr std::size_t kPadding = 16;    // that kernels may read and write
 constexpr std::size_t kFewBlocks = 24;  // that one thread measures faster
 
 // Small sheets in small blocks, so that they have some; large ones in large, so that there are few.
@@ -58,14 +59,16 @@ std::size_t count_particles(const std::vector<Sheet>& sheets) {
   return n;
 }
 
-Blocks::Blocks(const std::vector<Sheet>& sheets, float neighbour)
-    : sheets_(sheets), neighbour_(neighbour) {
+Blocks::Blocks(const std::vector<Sheet>& sheets, float neighbour, const KernelTable& kernels)
+    : sheets_(sheets), neighbour_(neighbour), kernels_(kernels) {
   cut(sheets);
   bounds_.resize(blocks_.size());
   flat_.resize(blocks_.size());
+  near_.resize(blocks_.size() + kPadding);
+  near_squared_.resize(blocks_.size() + kPadding);
   for (int k = 0; k < 3; ++k) {
-    low_[k] = AlignedArray<float>(blocks_.size());
-    high_[k] = AlignedArray<float>(blocks_.size());
+    low_[k] = AlignedArray<float>(blocks_.size() + kPadding);
+    high_[k] = AlignedArray<float>(blocks_.size() + kPadding);
   }
 }
 
@@ -83,13 +86,13 @@ void Blocks::cut(const std::vector<Sheet>& sheets) {
   }
 }
 
-void Blocks::measure(const KernelTable& kernels, Threads& threads) {
+void Blocks::measure(Threads& threads) {
   const bool few = blocks_.size() < kFewBlocks;
-  threads.share(blocks_.size(), few, [&](std::size_t b) { measure_block(b, kernels); });
+  threads.share(blocks_.size(), few, [&](std::size_t b) { measure_block(b); });
   for (std::size_t b = 0; b < blocks_.size(); ++b) flat_[b] = flat(b);
 }
 
-void Blocks::measure_block(std::size_t b, const KernelTable& kernels) {
+void Blocks::measure_block(std::size_t b) {
   const Block& block = blocks_[b];
   Lattice& l = *sheets_[std::size_t(block.sheet)].lattice;
   BlockRows rows{};
@@ -103,7 +106,7 @@ void Blocks::measure_block(std::size_t b, const KernelTable& kernels) {
   rows.then = block.active ? ConstRow3(first_of(block, then_[std::size_t(block.sheet)]))
                            : ConstRow3(nullptr, nullptr, nullptr);
   rows.bounds = &bounds_[b];
-  kernels.block_bounds(rows);
+  kernels_.block_bounds(rows);
   for (int k = 0; k < 3; ++k) {
     low_[k][b] = bounds_[b].x.low[k];
     high_[k][b] = bounds_[b].x.high[k];
@@ -154,58 +157,58 @@ int Blocks::corner(std::size_t a, std::size_t b) const {
 
 // Calls visit(a, b, gap²) for every pair a <= b of blocks whose boxes are nearer than a distance.
 template <class Visit>
-void Blocks::for_each_near(float distance, Visit&& visit) const {
-  const std::size_t n = blocks_.size();
-  constexpr std::size_t kTogether = 64;
-  float square[kTogether];
-  for (std::size_t a = 0; a < n; ++a)
-    for (std::size_t from = a; from < n; from += kTogether) {
-      const std::size_t count = std::min(kTogether, n - from);
-      float nearest = std::numeric_limits<float>::max();
-      for (std::size_t i = 0; i < count; ++i) {
-        float sum = 0;
-        for (int k = 0; k < 3; ++k) {
-          const float* const low = low_[k].data() + from;
-          const float* const high = high_[k].data() + from;
-          const float gap = std::max(0.0f, std::max(low[i] - high_[k][a], low_[k][a] - high[i]));
-          sum += gap * gap;
-        }
-        square[i] = sum;
-        nearest = std::min(nearest, sum);
-      }
-      if (nearest >= distance * distance) continue;
-      for (std::size_t i = 0; i < count; ++i)
-        if (square[i] < distance * distance) visit(a, from + i, square[i]);
-    }
+void Blocks::for_each_near(float distance, Visit&& visit) {
+  NearBoxes boxes{};
+  for (int k = 0; k < 3; ++k) {
+    boxes.low[k] = low_[k].data();
+    boxes.high[k] = high_[k].data();
+  }
+  boxes.end = int(blocks_.size());
+  boxes.distance_squared = distance * distance;
+  boxes.near = near_.data();
+  boxes.square = near_squared_.data();
+  for (std::size_t a = 0; a < blocks_.size(); ++a) {
+    boxes.begin = int(a);
+    boxes.box = bounds_[a].x;
+    const int count = kernels_.near_boxes(boxes);
+    for (int n = 0; n < count; ++n) visit(a, std::size_t(near_[n]), near_squared_[n]);
+  }
 }
 
-Blocks::Outlook Blocks::look(float reach, float skin, float motion, double longest) const {
-  Spread all = nothing();
-  for (const BlockBounds& b : bounds_) all = both(all, b.v);
+Blocks::Outlook Blocks::look(float reach, float skin, float motion, double longest) {
+  Spread velocities = nothing(), moves = nothing();
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    velocities = both(velocities, bounds_[b].v);
+    if (blocks_[b].active) moves = both(moves, bounds_[b].moved);
+  }
+  const float speed = diagonal(velocities);
+  // No two that are listed have moved too far, or will.
+  const bool settled = speed * longest <= motion && square_diagonal(moves) <= skin * skin;
   Outlook out{true, longest, false};
-  // Until blocks have moved so far against each other.
-  const auto until = [&](std::size_t a, std::size_t b, double way) {
-    const double square = square_diagonal(both(bounds_[a].v, bounds_[b].v));
-    if (way * way < square * out.seconds * out.seconds) out.seconds = way / std::sqrt(square);
+  const auto sooner = [&](double seconds) { out.seconds = std::min(out.seconds, seconds); };
+  const auto visit = [&](std::size_t a, std::size_t b, float square) {
+    if (settled && out.touching && blocks_[a].active && blocks_[b].active) return;
+    const bool apart = square > reach * reach;
+    const float way = motion + (apart ? std::sqrt(square) - reach : 0);
+    // Until they have moved so far against each other.
+    const double moved = way / std::sqrt(square_diagonal(both(bounds_[a].v, bounds_[b].v)));
+    const int c = corner(a, b);
+    const float above = c < 0 ? 0 : flat_[std::size_t(c)].ratio - flat_[std::size_t(c)].needed;
+    if (apart && above <= 0) return sooner(moved);
+    const bool listed = blocks_[a].active && blocks_[b].active &&
+                        square_diagonal(both(bounds_[a].moved, bounds_[b].moved)) <= skin * skin;
+    if (above > 0) {
+      // What is nearly not flat is listed, so that there is no need to come again before it is not.
+      const double folded = above / flat_[std::size_t(c)].rate;
+      const bool lists = above <= kFlatter && folded < std::min(moved, out.seconds);
+      if (lists && !listed && !apart) out.covered = false;
+      return sooner(apart || listed || lists ? std::max(folded, moved) : folded);
+    }
+    out.touching = true;
+    if (!listed) out.covered = false;
+    sooner(moved);
   };
-  for_each_near(
-      reach + diagonal(all) * float(longest), [&](std::size_t a, std::size_t b, float square) {
-        if (const int c = corner(a, b); c >= 0) {
-          const Flat& f = flat_[std::size_t(c)];
-          const float above = f.ratio - f.needed;
-          if (above > 0) {
-            if (double(above) < f.rate * out.seconds) out.seconds = double(above) / f.rate;
-            return;
-          }
-        } else if (square > reach * reach) {
-          return until(a, b, std::sqrt(square) - reach + motion);
-        }
-        out.touching = true;
-        until(a, b, motion);
-        if (!out.covered) return;
-        out.covered = blocks_[a].active && blocks_[b].active &&
-                      square_diagonal(both(bounds_[a].moved, bounds_[b].moved)) <= skin * skin;
-      });
+  for_each_near(reach + speed * float(longest), visit);
   return out;
 }
 
@@ -247,7 +250,7 @@ Spread Blocks::box() const {
 }
 
 std::size_t Blocks::bytes() const {
-  std::size_t bytes = blocks_.size() * (sizeof(Block) + sizeof(BlockBounds) + sizeof(Flat) + 24);
+  std::size_t bytes = blocks_.size() * (sizeof(Block) + sizeof(BlockBounds) + sizeof(Flat) + 32);
   for (const Rows& r : then_) bytes += r.bytes();
   return bytes;
 }

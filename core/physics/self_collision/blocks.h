@@ -53,14 +53,14 @@ inline Row3 first_of(const Block& block, Rows& rows) {
 class Blocks {
  public:
   // `neighbour`: pairs closer than so many thicknesses at rest are none.
-  Blocks(const std::vector<Sheet>& sheets, float neighbour);
+  Blocks(const std::vector<Sheet>& sheets, float neighbour, const KernelTable& kernels);
 
   const std::vector<Block>& all() const { return blocks_; }
   // Where the particles of a sheet were when last remembered.
   const Rows& then(std::size_t sheet) const { return then_[sheet]; }
 
   // Bounds of every block, as its particles are now.
-  void measure(const KernelTable& kernels, Threads& threads);
+  void measure(Threads& threads);
 
   struct Outlook {
     bool covered;    // all pairs of blocks that may touch are active and have not moved apart
@@ -69,7 +69,7 @@ class Blocks {
   };
   // `reach`: within which blocks may touch; `skin`: how far active ones may move against each other;
   // `motion`: the same between two looks [m]; `longest`: until the next look [s].
-  Outlook look(float reach, float skin, float motion, double longest) const;
+  Outlook look(float reach, float skin, float motion, double longest);
 
   // Makes active what may touch within `reach`, or all, and remembers where it is.
   void choose(float reach);
@@ -85,16 +85,17 @@ class Blocks {
     float rate = 0;    // at most so much less in a second [1/s]
   };
   void cut(const std::vector<Sheet>& sheets);
-  void measure_block(std::size_t b, const KernelTable& kernels);
+  void measure_block(std::size_t b);
   Flat flat(std::size_t b) const;
   // The first of a square of four blocks that holds both, a <= b; -1 when none does.
   int corner(std::size_t a, std::size_t b) const;
   template <class Visit>
-  void for_each_near(float distance, Visit&& visit) const;
+  void for_each_near(float distance, Visit&& visit);
   void remember();
 
   const std::vector<Sheet>& sheets_;
   const float neighbour_;
+  const KernelTable& kernels_;
   std::vector<Block> blocks_;
   struct Extent {
     int first, across, down;
@@ -103,6 +104,8 @@ class Blocks {
   std::vector<BlockBounds> bounds_;
   std::vector<Flat> flat_;
   AlignedArray<float> low_[3], high_[3];  // of bounds_.x
+  std::vector<std::int32_t> near_;        // of one block, which others,
+  std::vector<float> near_squared_;       // and how far their boxes are
   std::vector<Rows> then_;
   std::size_t active_ = 0;
 };

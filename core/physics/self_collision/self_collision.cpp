@@ -68,7 +68,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
       sheets_(std::move(sheets)),
       kernels_(kernels),
       particles_(count_particles(sheets_)),
-      blocks_(sheets_, float(kNeighbour)),
+      blocks_(sheets_, float(kNeighbour), kernels),
       named_(named(sheets_)),
       bodies_(give_names(named_)),
       search_(particles_, named_, kernels) {
@@ -157,7 +157,7 @@ void SelfContact::find(double margin, Threads& threads) {
 }
 
 void SelfContact::search(double margin, Threads& threads) {
-  blocks_.measure(kernels_, threads);
+  blocks_.measure(threads);
   blocks_.choose_all();
   sort(margin, threads);
   find(margin, threads);
@@ -166,18 +166,30 @@ void SelfContact::search(double margin, Threads& threads) {
 
 void SelfContact::restart() {
   valid_ = false;
+  may_touch_ = false;
   skin_ = 0;
   kept_runs_ = 0;
   forget_loads();
 }
 
-int SelfContact::run(double dt, int since, Threads& threads) {
+// Substeps until it has to come again, at most: where sheets touch, by gravity's pull on one of two, too.
+double SelfContact::most_substeps(double dt, double swing) const {
+  if (!may_touch_) return kMostSubsteps;
+  if (course_) return kMostSubstepsCourse;
+  const Vec3& g = scene_.gravity;
+  const double pull = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+  const double fall = std::sqrt(kFall * thickness_ / std::max(pull, 1e-12));
+  return std::min<double>(std::min(fall, swing) / dt, kMostSubstepsTouching);
+}
+
+int SelfContact::run(double dt, int since, double swing, Threads& threads) {
   const float motion = float(kMotionApart) * thickness_;
   ++runs_;
   ++kept_runs_;
-  blocks_.measure(kernels_, threads);
+  blocks_.measure(threads);
   const Blocks::Outlook now =
-      blocks_.look(thickness_, skin_ * thickness_, motion, kMostSubsteps * dt);
+      blocks_.look(thickness_, skin_ * thickness_, motion, most_substeps(dt, swing) * dt);
+  may_touch_ = now.touching;
   if (!valid_ || !now.covered) {
     if (kept_runs_ <= kFewRuns) skin_ *= 1.2f;
     if (kept_runs_ > kManyRuns) skin_ *= 0.8f;
@@ -192,15 +204,9 @@ int SelfContact::run(double dt, int since, Threads& threads) {
   }
   passed_over_ += std::int64_t(particles_ - count_);
   const double speed = respond(dt, since, threads);
-  // By gravity's pull on one of two that touch, too.
-  const Vec3& g = scene_.gravity;
-  const double pull = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-  const double fall = std::sqrt(kFall * thickness_ / std::max(pull, 1e-12)) / dt;
-  double most = kMostSubsteps;
-  if (now.touching)
-    most = course_ ? kMostSubstepsCourse : std::min<double>(fall, kMostSubstepsTouching);
   const double touching = kMotion * thickness_ / std::max(speed, 1e-12);
-  return int(std::clamp(std::min(now.seconds, touching) / dt, 1.0, std::max(1.0, most)));
+  const double most = std::max(1.0, most_substeps(dt, swing));
+  return int(std::clamp(std::min(now.seconds, touching) / dt, 1.0, most));
 }
 
 double SelfContact::passed_over() const {

@@ -6,8 +6,8 @@
 // (cell_grid.h). The list stays complete until blocks that may touch have moved by more than the skin
 // against each other (Verlet 1967), and is made anew then. Blocks are looked at, and pairs pushed
 // apart, as often as the motion asks for: never more than a share of the thickness in between. A pair
-// corrects both its ends from the same state (Jacobi), each particle gathering what its own pairs
-// say, so that no order matters. What contact takes from a particle's velocity time after time it gives
+// is listed once and corrects both its ends, all pairs from the same state (Jacobi); what a particle is
+// asked is summed up in the order of the list, whatever the threads. What contact takes from a particle's velocity time after time it gives
 // in part beforehand, so that layers that lie on each other do not sink in between two times.
 #pragma once
 
@@ -36,8 +36,9 @@ class SelfContact {
   ~SelfContact();
 
   // Pushes apart what is too near at the end of a substep of dt; `since` substeps after the last
-  // time. Returns after how many substeps to come again.
-  int run(double dt, int since, Threads& threads);
+  // time. Returns after how many substeps to come again, where sheets touch before what presses them
+  // swings: `swing` [s].
+  int run(double dt, int since, double swing, Threads& threads);
 
   // Pairs nearer than the thickness now, and by how much at most [m].
   struct Overlaps {
@@ -91,6 +92,7 @@ class SelfContact {
   bool few_pairs() const { return found_ < 4096; }  // one thread pushes them apart faster
   std::size_t body(std::size_t sheet, int row, int column) const;
   Site site(std::int32_t body) const;
+  double most_substeps(double dt, double swing) const;
   BodyBlock bodies_of(const Block& block, double since);
   // A part of the bodies, and those of it that are asked to move.
   struct Part {
@@ -98,7 +100,7 @@ class SelfContact {
     int count = 0;
   };
   void list_touching(const PairSearch::Pairs& all, bool anew, PairList& close, Touching& touching);
-  float ask(const BodyFriction& friction, Touching& touching);
+  AskFound ask(const BodyFriction& friction, Touching& touching);
   void sum_up(std::size_t part, const Touching& touching);
 
   const Scene& scene_;
@@ -121,13 +123,14 @@ class SelfContact {
   // Of every chunk, the pairs that may touch in this run, and those that do.
   std::vector<PairList> close_;
   std::vector<Touching> touching_;
-  std::vector<float> fastest_squared_;  // relative speed of two that touch, at most [m²/s²]
-  std::vector<Part> parts_;             // as many as threads
-  float thickness_ = 0;                 // greatest of the sheets [m]
-  bool course_ = false;                 // whether any sheet has the course's rule
+  std::vector<AskFound> found_asked_;
+  std::vector<Part> parts_;  // as many as threads
+  float thickness_ = 0;      // greatest of the sheets [m]
+  bool course_ = false;      // whether any sheet has the course's rule
   bool valid_ = false;
-  float skin_ = 0;     // of the thickness
-  int kept_runs_ = 0;  // since the list of pairs was made
+  bool may_touch_ = false;  // whether any sheets do, as seen the last time
+  float skin_ = 0;          // of the thickness
+  int kept_runs_ = 0;       // since the list of pairs was made
   std::int64_t runs_ = 0, searches_ = 0, passed_over_ = 0;
 };
 

@@ -8,7 +8,12 @@
 namespace weft::physics {
 namespace {
 
-constexpr int kIterations = 3;        // of pushing apart, in one run
+// Of pushing apart in one run, as long as pairs of a chunk touch. Where the last run was so few substeps
+// ago, what is left is pushed apart soon: then as long as they are deeper in each other than so much of
+// the distance at which they are held.
+constexpr int kIterations = 3;
+constexpr int kSoon = 2;
+constexpr float kShallow = 0.02f;
 constexpr float kClose = 1.1f;        // distances at which two are held: may touch in this run
 constexpr float kAdvance = 0.5f;      // BodyBlock
 constexpr std::size_t kPadding = 32;  // that kernels may write
@@ -68,8 +73,8 @@ void SelfContact::list_touching(const PairSearch::Pairs& all, bool anew, PairLis
   touching.pairs.count = found.touching;
 }
 
-// What pairs that touch ask for; returns the greatest squared relative speed of two [m²/s²].
-float SelfContact::ask(const BodyFriction& friction, Touching& touching) {
+// What pairs that touch ask for.
+AskFound SelfContact::ask(const BodyFriction& friction, Touching& touching) {
   const PairList& pairs = touching.pairs;
   if (touching.asked.size() < std::size_t(pairs.count) + kPadding)
     touching.asked.resize(2 * std::size_t(pairs.count) + kPadding);
@@ -100,7 +105,7 @@ double SelfContact::respond(double dt, int since, Threads& threads) {
   };
   each_block(kernels_.gather_bodies);
   const std::size_t chunks = search_.chunks();
-  fastest_squared_.resize(chunks);
+  found_asked_.resize(chunks);
   if (close_.size() < chunks) {
     close_.resize(chunks);
     touching_.resize(chunks);
@@ -110,13 +115,18 @@ double SelfContact::respond(double dt, int since, Threads& threads) {
   // The course's push for as many substeps as have passed.
   const double steps = scene_.time.substeps > 0 ? scene_.time.substeps : scene_.time.frame / dt;
   const int iterations = course_ ? 1 : kIterations;
+  const float shallow = since <= kSoon ? kShallow : 0;
   for (int i = 0; i < iterations; ++i) {
     for (Part& part : parts_) part.count = 0;
     const bool one = parts_.size() == 1;
     threads.share(chunks, alone, [&](std::size_t k) {
       Touching& touching = touching_[one ? 0 : k];
+      if (i > 0 && found_asked_[k].deepest <= shallow) {
+        if (!one) touching.pairs.count = 0;
+        return;
+      }
       list_touching(search_.pairs(k), i == 0, close_[k], touching);
-      fastest_squared_[k] = ask(friction, touching);
+      found_asked_[k] = ask(friction, touching);
       if (one) sum_up(0, touching);
     });
     // Each part of the bodies goes through all that is asked, in the same order.
@@ -128,7 +138,10 @@ double SelfContact::respond(double dt, int since, Threads& threads) {
     });
   }
   each_block(kernels_.scatter_bodies);
-  return std::sqrt(*std::max_element(fastest_squared_.begin(), fastest_squared_.end()));
+  float fastest_squared = 0;
+  for (const AskFound& found : found_asked_)
+    fastest_squared = std::max(fastest_squared, found.fastest_squared);
+  return std::sqrt(fastest_squared);
 }
 
 }  // namespace weft::physics
