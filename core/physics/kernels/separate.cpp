@@ -35,6 +35,9 @@ using physics::SumAsked;
 // Of the thickness, at once: what starts intersecting comes apart slowly.
 constexpr float kMostPush = 0.5f;
 constexpr float kTiny = 1e-12f;
+// Of what is asked, all of it.
+typedef float Eight __attribute__((vector_size(32), may_alias));
+
 constexpr int kBody = 4;  // floats of a place, and of a motion
 constexpr int kAsked = sizeof(Asked) / sizeof(float);
 
@@ -144,21 +147,24 @@ AskFound ask_pairs(const AskPairs& s) {
 int sum_asked(const SumAsked& given) {
   const SumAsked s = given;
   int first = 0;
-  const auto add = [&](std::int32_t body, Four push, Four gain) {
+  // The weight counts whole, the rest in part.
+  const auto add = [&](std::int32_t body, const Eight& asked, float part) {
     if (body < s.begin || body >= s.end) return;
     AskedSum& sum = s.sum[body];
     s.body[first] = body;
     std::int32_t weight;
     __builtin_memcpy(&weight, sum.push + 3, 4);
     first += weight == 0;
-    store_four(sum.push, load_four(sum.push) + push);
-    store_four(sum.gain, load_four(sum.gain) + gain);
+    const Eight whole{0, 0, 0, 1};
+    const Eight parts{part, part, part, part, part, part, part, part};
+    *reinterpret_cast<Eight*>(sum.push) +=
+        asked * __builtin_shufflevector(parts, whole, 0, 1, 2, 11, 4, 5, 6, 7);
   };
   for (int i = 0; i < s.pairs; ++i) {
-    const Four push = load_four(s.asked[i].push), gain = load_four(s.asked[i].gain);
-    const float share = s.asked[i].gain[3], rest = 1 - share;
-    add(s.owner[i], push * Four{share, share, share, 1}, gain * share);
-    add(s.neighbour[i], push * Four{-rest, -rest, -rest, 1}, gain * -rest);
+    const Eight& asked = *reinterpret_cast<const Eight*>(s.asked[i].push);
+    const float share = s.asked[i].gain[3];
+    add(s.owner[i], asked, share);
+    add(s.neighbour[i], asked, share - 1);
   }
   return first;
 }
@@ -170,8 +176,7 @@ void move_bodies(const MoveBodies& given) {
     const std::int32_t body = s.body[n];
     AskedSum& sum = s.sum[body];
     const Four push = load_four(sum.push), gain = load_four(sum.gain);
-    store_four(sum.push, Four{});
-    store_four(sum.gain, Four{});
+    *reinterpret_cast<Eight*>(sum.push) = Eight{};
     float* const x = s.place[body].x;
     float* const v = s.motion[body].v;
     const float weight = push[3];
