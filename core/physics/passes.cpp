@@ -14,6 +14,7 @@ constexpr double kConstraintNs = 0.5, kParticleNs = 0.5;
 
 // Particles times substeps, and particles, from which several threads are faster than one.
 constexpr double kSharedRun = 150000;
+constexpr double kSharedStandingBy = 30000;
 constexpr int kSharedSubstep = 15000;
 
 double row_nanoseconds(const std::vector<RowStage*>& stages, int rows) {
@@ -48,8 +49,9 @@ Passes::Passes(const Stages& stages, int rows, std::size_t row_bytes) : stages_(
 }
 
 // Threads meet at the end of the frame, or in every substep.
-bool Passes::worth_sharing(int particles, int substeps) const {
-  return rows_only() ? double(particles) * substeps >= kSharedRun : particles >= kSharedSubstep;
+bool Passes::worth_sharing(int particles, int substeps, bool standing_by) const {
+  if (!rows_only()) return particles >= kSharedSubstep;
+  return double(particles) * substeps >= (standing_by ? kSharedStandingBy : kSharedRun);
 }
 
 void Passes::run(const Substeps& given, Threads& threads, std::span<const RowSpan> awake) {

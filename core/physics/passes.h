@@ -24,8 +24,9 @@ class Passes {
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds);
   bool profiled() const { return !profile_.empty(); }
 
-  // Whether so many substeps of so many particles are work enough for several threads.
-  bool worth_sharing(int particles, int substeps) const;
+  // Whether so many substeps of so many particles are work enough for several threads, that stand by
+  // or have to be woken.
+  bool worth_sharing(int particles, int substeps, bool standing_by) const;
 
   // Whether one wavefront runs everything.
   bool rows_only() const { return whole_stages_ == 0; }

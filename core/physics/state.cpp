@@ -32,7 +32,8 @@ Simd resolve(Simd simd) {
 // Of the springs' stability limit, between two runs of self-collision. Their shortest period is π of it:
 // with more than that in between, they push what lies on each other ever livelier.
 constexpr double kSwing = 2.5;
-constexpr double kAlikeMasses = 4;  // greatest over least
+constexpr std::int64_t kManyParticles = 8192;  // for whose contact threads stand by all frame
+constexpr double kAlikeMasses = 4;             // greatest over least
 std::string steady_jacobi(Scene& scene) {
   if (scene.solver.sweep != Sweep::jacobi) return "";
   const double dt = scene.time.substeps == kAutoSubsteps ? projection_substep(scene)
@@ -220,6 +221,11 @@ void Simulation::State::run_frame() {
   if (rest && rest->all_asleep()) return;
   if (!self_collision) return run_substeps(0, substeps);
   if (surface) begin_surfaces();
+  if (self_collision->particles() < kManyParticles) return run_with_contact();
+  threads.together([&] { run_with_contact(); });
+}
+
+void Simulation::State::run_with_contact() {
   for (int s = 0; s < substeps;) {
     const int count = std::min(until_collision_ - since_collision_, substeps - s);
     run_substeps(s, count);
@@ -261,7 +267,9 @@ void Simulation::State::run_substeps(int first, int count) {
     if (asleep(c)) continue;
     const Lattice& l = cloths[c]->lattice();
     Passes& passes = cloths[c]->passes();
-    Threads& team = passes.worth_sharing(l.columns * l.rows, count) ? threads : one_thread;
+    Threads& team = passes.worth_sharing(l.columns * l.rows, count, threads.standing_by())
+                        ? threads
+                        : one_thread;
     passes.run(run, team, rest ? rest->rows(c) : std::span<const RowSpan>());
   }
 }

@@ -143,6 +143,7 @@ struct Simulation::State {
   void touch(int cloth = -1);
   bool asleep(std::size_t cloth) const { return rest && rest->rows(cloth).empty(); }
   void run_frame();
+  void run_with_contact();
   void begin_surfaces();
   physics::ClothStep& step_with(int cloth, int i, int j);
   void plan_changed();

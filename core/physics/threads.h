@@ -34,14 +34,17 @@ class Threads {
 
   // Calls work() with the other threads standing by until it returns: share() within it reaches them
   // in about a microsecond, where oneTBB may have to wake them. It must not wait for tasks of oneTBB.
+  // Within it, together() does nothing more.
   template <class Work>
   void together(Work&& work) {
-    if (count_ == 1) return work();
+    if (count_ == 1 || together_) return work();
     arena_.execute([&] {
       const Together together(*this);
       work();
     });
   }
+
+  bool standing_by() const { return together_; }
 
   // work(0) … work(tasks - 1), in any order; `alone`: on this thread, because they are short. Shares
   // do not share out again, and do not throw.
