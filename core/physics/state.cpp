@@ -18,6 +18,11 @@ using namespace physics;
 
 namespace {
 
+// Of the springs' stability limit, between two runs of self-collision. Their shortest period is π of it:
+// with more than that in between, they push what lies on each other ever livelier.
+constexpr double kSwing = 2.5;
+constexpr std::int64_t kManyParticles = 8192;  // for whose contact threads stand by all frame
+
 Simd resolve(Simd simd) {
   if (simd != Simd::best) return simd;
   for (Simd s : {Simd::avx512, Simd::avx2})
@@ -29,11 +34,7 @@ Simd resolve(Simd simd) {
 // particle has heavy neighbours they add up to more than the whole. And a single sweep with compliance
 // is an explicit spring as stiff as the sweep allows, which large motions feed: two sweeps damp. Puts
 // what is stable into the scene and returns what to tell, "" where nothing changed.
-// Of the springs' stability limit, between two runs of self-collision. Their shortest period is π of it:
-// with more than that in between, they push what lies on each other ever livelier.
-constexpr double kSwing = 2.5;
-constexpr std::int64_t kManyParticles = 8192;  // for whose contact threads stand by all frame
-constexpr double kAlikeMasses = 4;             // greatest over least
+constexpr double kAlikeMasses = 4;  // greatest over least
 std::string steady_jacobi(Scene& scene) {
   if (scene.solver.sweep != Sweep::jacobi) return "";
   const double dt = scene.time.substeps == kAutoSubsteps ? projection_substep(scene)

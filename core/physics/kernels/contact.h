@@ -64,7 +64,6 @@ inline constexpr int kNearPadding = 32;
 struct NearRoom {
   Row3 x;
   std::int32_t* name;
-  std::int32_t* near[2];  // of two particles, the names of those near them
   int size;
 };
 
@@ -198,7 +197,8 @@ struct SumAsked {
   const Asked* asked;
   std::int32_t begin, end;
   AskedSum* sum;
-  std::int32_t* body;  // out: those that get something for the first time
+  std::int32_t*
+      body;  // out: those that get something for the first time; room for one more than ends
 };
 
 // Bodies, and what they are asked, which is nothing any more afterwards.

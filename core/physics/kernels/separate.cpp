@@ -12,6 +12,7 @@
 //            had to give now: a blow is no load, and what is let go gets nothing.
 //   course:  Δx_a = n (t - d), averaged over the pairs and divided by the substeps, velocity included
 //            (seeds 001 and 004: the position before stays)
+// A pair of two sheets of which one has the course's rule is stiff.
 #include "physics/kernels/contact.h"
 #include "physics/kernels/records.h"
 #include "physics/kernels/row_kernels.h"
@@ -49,7 +50,7 @@ WEFT_INLINE Wide friction_of(const BodyFriction& friction, const std::int32_t* b
   return r;
 }
 
-// Of kLanes pairs.
+// Of kLanes pairs: relative speed squared, and depth, of the distance at which they are held.
 struct AskedLanes {
   Wide speed_squared, depth;
 };

@@ -63,7 +63,8 @@ class Blocks {
   void measure(Threads& threads);
 
   struct Outlook {
-    bool covered;    // all pairs of blocks that may touch are active and have not moved apart
+    bool
+        covered;  // all pairs of blocks that may touch, or soon will, are active and have moved little
     double seconds;  // until the next look
     bool touching;   // some may touch
   };

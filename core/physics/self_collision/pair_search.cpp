@@ -8,7 +8,7 @@ namespace weft::physics {
 namespace {
 
 constexpr float kHair = 1.001f;            // cells are wider than the range, for rounding
-constexpr std::size_t kPairsReserved = 8;  // per point
+constexpr std::size_t kPairsReserved = 4;  // per point
 constexpr std::size_t kCandidates = 512;   // of one cell, room at first
 
 // The neighbours of a point that lie b rows further on: those from `first` to `last` columns further on.
@@ -117,21 +117,17 @@ void PairSearch::find_chunk(std::size_t k, float range, Room& room) {
   s.begin = int(begin(k));
   s.end = int(begin(k + 1));
   for (std::size_t needed = kCandidates; s.begin < s.end;) {
-    if (room.size < needed) {
-      room.size = 2 * needed;
-      room.name.resize(3 * room.size);
-      room.place.resize(3 * room.size);
+    if (room.name.size() < needed) {
+      room.name.resize(2 * needed);
+      room.place.resize(3 * room.name.size());
     }
     if (c.owner.size() < c.found + needed) {
       c.owner.resize(2 * (c.found + needed));
       c.neighbour.resize(c.owner.size());
     }
+    const std::size_t size = room.name.size();
     float* const place = room.place.data();
-    std::int32_t* const name = room.name.data();
-    s.room = {{place, place + room.size, place + 2 * room.size},
-              name,
-              {name + room.size, name + 2 * room.size},
-              int(room.size)};
+    s.room = {{place, place + size, place + 2 * size}, room.name.data(), int(size)};
     s.owner = c.owner.data() + c.found;
     s.neighbour = c.neighbour.data() + c.found;
     s.pairs_room = int(c.owner.size() - c.found);
@@ -149,7 +145,7 @@ void PairSearch::find_chunk(std::size_t k, float range, Room& room) {
 std::size_t PairSearch::bytes() const {
   std::size_t bytes = (name_.size() + 3 * x_.size()) * 4 + grid_.bytes();
   for (const Chunk& c : chunks_) bytes += 2 * c.owner.capacity() * 4;
-  for (const Room& r : rooms_) bytes += 6 * r.size * 4;
+  for (const Room& r : rooms_) bytes += 4 * r.name.capacity() * 4;
   return bytes;
 }
 

@@ -63,9 +63,8 @@ class PairSearch {
     std::size_t found = 0;
   };
   struct Room {  // of one thread, for the candidates of a cell
-    std::size_t size = 0;
-    std::vector<std::int32_t> name;  // three arrays, likewise
-    std::vector<float> place;
+    std::vector<std::int32_t> name;
+    std::vector<float> place;  // three arrays as long as `name`
   };
   void find_chunk(std::size_t k, float range, Room& room);
 
