@@ -41,13 +41,14 @@ Threads::Threads(int count)
 
 // A share is worked on only between its taking and its counting as done, and the round ends when all
 // are done: what the round is about never changes under whoever works on it. Every thread begins with
-// a pile of its own, so that the same rows come to the same caches in every round.
+// a pile of its own, so that the same rows come to the same caches in every round: the caller's, which
+// the others might take from, is there last.
 void Threads::share_out(int shares, const void* work, Call call) {
   work_ = work;
   call_ = call;
   done_.store(0, std::memory_order_relaxed);
   ++round_;
-  for (int t = 0; t < count_; ++t)
+  for (int t = count_ - 1; t >= 0; --t)
     piles_[t].left.store(pile_of(round_, std::uint64_t(shares * t / count_),
                                  std::uint64_t(shares * (t + 1) / count_)),
                          std::memory_order_release);

@@ -35,6 +35,13 @@ using physics::LineStrip;
 constexpr float kTinyPivot = 1e-30f;
 constexpr int kForesight = 8;  // rows
 
+int least(int a, int b) {
+  return a < b ? a : b;
+}
+int greatest(int a, int b) {
+  return a > b ? a : b;
+}
+
 // Writes only the lanes of the mask: what lies in the others may belong to another thread.
 WEFT_INLINE void store_where(float* p, WideInt mask, Wide v) {
 #if WEFT_LANES == 16
@@ -122,7 +129,7 @@ class Block {
   template <bool kWhole>
   WEFT_INLINE void eliminate(int m) {
     if constexpr (kWhole) {
-      foresee(p.x, m + kForesight);
+      foresee(p.x, least(m + kForesight, p.particles - 1));
       eliminate(m, at(m), at(m + 1), [](WideInt pivots) { return pivots; });
     } else {
       const Split here = split(m);
@@ -137,7 +144,7 @@ class Block {
   template <bool kWhole>
   WEFT_INLINE void substitute(int m) {
     if constexpr (kWhole) {
-      if constexpr (kVelocity) foresee(p.v, m - kForesight);
+      if constexpr (kVelocity) foresee(p.v, greatest(m - kForesight, 0));
       substitute(m, at(m), at(m + 1));
     } else {
       const Split there = split(m + 1);
@@ -165,7 +172,7 @@ class Block {
     return p.scratch + static_cast<std::ptrdiff_t>(m) * kStripScratch + offset_;
   }
   // Asks for a row that will be written: rows are too far apart for the processor to foresee them, and
-  // another core may hold them. Any address will do, past the last row, too.
+  // another core may hold them. None but its own: another core may need what lies beyond.
   WEFT_INLINE void foresee(Row3 r, int m) const {
 #if WEFT_LANES > 1
     for (const float* row : {r.x, r.y, r.z}) asm volatile("prefetchw %0" : : "m"(row[at(m).at]));
@@ -247,13 +254,6 @@ class Block {
   Wide mu_{}, factor_{};
   Wide3 pull_{};
 };
-
-int least(int a, int b) {
-  return a < b ? a : b;
-}
-int greatest(int a, int b) {
-  return a > b ? a : b;
-}
 
 // One or two blocks of lines side by side. The second half of a strip's lines draws roots by dividing.
 template <bool kLambda, bool kVelocity, int kBlocks, bool kSecondHalf>
