@@ -62,6 +62,23 @@ void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int t
              {double(substeps), double(r.particles), double(c.structural + c.shear + c.bend)});
 }
 
+// Four sheets, each small enough for one thread.
+void step_four(benchmark::State& state, const Way& way, int n, int threads) {
+  const int substeps = substeps_of(n, way.method);
+  weft::Scene scene = stepping_scene(n, substeps);
+  scene.solver.method = way.method;
+  scene.solver.sweep = way.sweep;
+  if (way.sweep == weft::Sweep::line) scene.time.frame = substeps / 480.0;
+  scene.cloths.resize(4, scene.cloths[0]);
+  weft::Options options;
+  options.threads = threads;
+  weft::Simulation simulation(scene, options);
+  simulation.advance_frame();
+  fastest_ns(state, [&] { simulation.advance_frame(); });
+  if (!simulation.status().ok) state.SkipWithError(simulation.status().text.c_str());
+  state.counters["substeps"] = substeps;
+}
+
 void add(const Way& way, int n, weft::Simd simd, int threads) {
   const std::string name = "step/" + std::string(way.name) + "/" + std::to_string(n) + "/" +
                            weft::simd_name(simd) + "/threads:" + std::to_string(threads);
@@ -104,6 +121,13 @@ void register_steps(bool quick) {
   for (const Way& way : kWays)
     for (int n : sizes)
       for (int threads : {1, 2}) add(way, n, widest(), threads);
+  for (const Way& way : kWays)
+    for (int n : {40, 100})
+      for (int threads : {1, 2}) {
+        const std::string name = "four/" + std::string(way.name) + "/" + std::to_string(n) +
+                                 "/threads:" + std::to_string(threads);
+        add_benchmark(name, [=](benchmark::State& s) { step_four(s, way, n, threads); });
+      }
   for (const Way& way : kWays)
     for (weft::Simd simd : {weft::Simd::scalar, weft::Simd::sse2, weft::Simd::avx2})
       if (weft::simd_available(simd) && simd != widest())

@@ -47,6 +47,19 @@ void print_speed_up(const std::vector<Figure>& all) {
     }
 }
 
+// Of four sheets side by side.
+void print_side_by_side(const std::vector<Figure>& all) {
+  std::printf("\nTwo threads over one, four sheets\n");
+  for (const Figure& one : all) {
+    const std::string last = "/threads:1";
+    if (one.name.rfind("four/", 0) != 0 || !one.name.ends_with(last) || !one.error.empty())
+      continue;
+    const std::string name = one.name.substr(0, one.name.size() - last.size());
+    if (const Figure* two = named(all, name + "/threads:2"))
+      std::printf("  %-36s %5.2f\n", name.c_str() + 5, one.counter("ms") / two->counter("ms"));
+  }
+}
+
 void print_features(const std::vector<Figure>& all) {
   std::printf("\nCost of features, in percent of the plain step\n");
   for (const Figure& f : all) {
@@ -76,6 +89,7 @@ void print_summary(const std::vector<Figure>& all) {
   print_required(all, "compliant_jacobi", "ns/constraint", 0.4);
   print_required(all, "positional_jacobi", "ns/constraint", 0.4);
   print_speed_up(all);
+  print_side_by_side(all);
   print_features(all);
 }
 

@@ -134,6 +134,26 @@ INSTANTIATE_TEST_SUITE_P(
                     Variant{"positional_line", Method::positional, Sweep::line, 1, 2}),
     [](const auto& test) { return test.param.name; });
 
+// Small enough for a thread each, and together worth several, beside one that is worth them all.
+TEST(Sheets, HaveOneResultSideBySide) {
+  for (const Sweep sweep : {Sweep::gauss_seidel, Sweep::line}) {
+    Scene scene = large_sheet(sweep == Sweep::line ? Method::compliant : Method::spring);
+    scene.solver.sweep = sweep;
+    scene.time.substeps = 40;
+    const Cloth large = scene.cloths[0];
+    scene.cloths.clear();
+    for (int n = 0; n < 5; ++n) {
+      Cloth small = large;
+      small.grid = {30 + 5 * n, 40, {0, 0.2 * n, 0}, {1, 0, 0}, {0, 0, 1.2}, 0.002};
+      small.pins = {{0, 0, {}}};
+      small.tear_strain = n == 2 ? 0.02 : 0;
+      scene.cloths.push_back(small);
+      if (n == 3) scene.cloths.push_back(large);
+    }
+    expect_one_result(scene);
+  }
+}
+
 TEST_P(LargeSheet, GoesOnFromItsOwnState) {
   if (GetParam().method == Method::spring_friction)
     GTEST_SKIP() << "forces of the damping depend on velocities half a substep apart";

@@ -46,6 +46,17 @@ TEST(Threads, TwoGiveWhatOneGivesByWholeLines) {
   EXPECT_EQ(hash_after(scene, 2), hash_after(scene, 1));
 }
 
+TEST(Threads, TwoGiveWhatOneGivesOfSheetsSideBySide) {
+  Scene scene = falling_sheet(Method::spring);
+  scene.time.substeps = 60;
+  for (Cloth& c : scene.cloths = std::vector<Cloth>(4, scene.cloths[0])) {
+    c.grid.nx = c.grid.ny = 40;
+    c.pins = {{0, 0, {}}};
+    c.tear_strain = 0.05;
+  }
+  EXPECT_EQ(hash_after(scene, 2), hash_after(scene, 1));
+}
+
 // Every share of every round is worked on once, by a thread of its own number, after all of the round
 // before.
 TEST(Threads, ShareOutRoundAfterRound) {

@@ -51,6 +51,9 @@ Passes::Passes(const Stages& stages, int rows, std::size_t row_bytes) : stages_(
 // Threads meet at the end of the frame, or in every substep.
 bool Passes::worth_sharing(int particles, int substeps, bool standing_by) const {
   if (!rows_only()) return particles >= kSharedSubstep;
+  return worth_running_apart(particles, substeps, standing_by);
+}
+bool Passes::worth_running_apart(std::int64_t particles, int substeps, bool standing_by) {
   return double(particles) * substeps >= (standing_by ? kSharedStandingBy : kSharedRun);
 }
 

@@ -25,8 +25,9 @@ class Passes {
   bool profiled() const { return !profile_.empty(); }
 
   // Whether so many substeps of so many particles are work enough for several threads, that stand by
-  // or have to be woken.
+  // or have to be woken: of this cloth, or of several side by side, a thread each.
   bool worth_sharing(int particles, int substeps, bool standing_by) const;
+  static bool worth_running_apart(std::int64_t particles, int substeps, bool standing_by);
 
   // Whether one wavefront runs everything.
   bool rows_only() const { return whole_stages_ == 0; }

@@ -21,6 +21,8 @@ namespace {
 // Of the springs' stability limit, between two runs of self-collision. Their shortest period is π of it:
 // with more than that in between, they push what lies on each other ever livelier.
 constexpr double kSwing = 2.5;
+// Share of the time that threads with a cloth each must be busy for: about what several make of one.
+constexpr double kBusy = 0.9;
 constexpr std::int64_t kManyParticles = 8192;  // for whose contact threads stand by all frame
 
 Simd resolve(Simd simd) {
@@ -91,6 +93,8 @@ void Simulation::State::build_cloths() {
   carried_.clear();
   backups_.clear();
   stage_ns.clear();
+  apart_.reserve(scene.cloths.size());
+  busy_.reserve(std::size_t(threads.count()));
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     cloths.push_back(
         std::make_unique<ClothStep>(scene, int(c), method, options.seed, kernel_table(simd)));
@@ -193,9 +197,11 @@ void Simulation::State::advance_frame() {
   if (was_driven_ && !driven()) open_guard();
   was_driven_ = driven();
   save();
-  run_frame();
-  while (too_coarse()) run_frame();
-  if (!finite()) {
+  do {
+    run_frame();
+    look();
+  } while (too_coarse());
+  if (!finite_) {
     find_fault();
     restore();
     return;
@@ -224,6 +230,15 @@ void Simulation::State::run_frame() {
   if (surface) begin_surfaces();
   if (self_collision->particles() < kManyParticles) return run_with_contact();
   threads.together([&] { run_with_contact(); });
+}
+
+// What the frame has come to.
+void Simulation::State::look() {
+  finite_ = true;
+  for (std::size_t c = 0; c < cloths.size(); ++c)
+    finite_ =
+        finite_ && (asleep(c) || cloths[c]->lattice().x.greatest(kernel_table(simd)) < kFarAway);
+  if (finite_ && !(rest && rest->all_asleep())) guard_.look(scene, cloths, driven());
 }
 
 void Simulation::State::run_with_contact() {
@@ -262,17 +277,55 @@ Substeps Simulation::State::substeps_from(int first, int count) const {
   return {double(frame) * scene.time.frame + first * dt, dt, count, kicked ? lag + dt / 2 : dt};
 }
 
+// A thread each where that keeps all of them busy; else cloths that are worth all threads take them one
+// after the other, and small ones run side by side.
 void Simulation::State::run_substeps(int first, int count) {
-  const Substeps run = substeps_from(first, count);
-  for (std::size_t c = 0; c < cloths.size(); ++c) {
-    if (asleep(c)) continue;
-    const Lattice& l = cloths[c]->lattice();
-    Passes& passes = cloths[c]->passes();
-    Threads& team = passes.worth_sharing(l.columns * l.rows, count, threads.standing_by())
-                        ? threads
-                        : one_thread;
-    passes.run(run, team, rest ? rest->rows(c) : std::span<const RowSpan>());
+  const Substeps now = substeps_from(first, count);
+  const auto run = [&](std::size_t c, Threads& team) {
+    cloths[c]->passes().run(now, team, rest ? rest->rows(c) : std::span<const RowSpan>());
+  };
+  const bool standing_by = threads.standing_by();
+  const auto worth_running_apart = [&] {
+    std::int64_t all = 0;
+    for (const std::size_t c : apart_) all += particles(c);
+    return apart_.size() > 1 && Passes::worth_running_apart(all, count, standing_by);
+  };
+  apart_.clear();
+  for (std::size_t c = 0; c < cloths.size(); ++c)
+    if (!asleep(c)) apart_.push_back(c);
+  bool apart = worth_running_apart() && keep_busy(apart_);
+  if (!apart) {
+    std::size_t small = 0;
+    for (const std::size_t c : apart_)
+      if (cloths[c]->passes().worth_sharing(particles(c), count, standing_by))
+        run(c, threads);
+      else
+        apart_[small++] = c;
+    apart_.resize(small);
+    apart = worth_running_apart();
   }
+  const auto run_apart = [&] {
+    threads.share(apart_.size(), !apart, [&](std::size_t n) { run(apart_[n], one_thread); });
+  };
+  apart ? threads.together(run_apart) : run_apart();
+}
+
+int Simulation::State::particles(std::size_t cloth) const {
+  const Lattice& l = cloths[cloth]->lattice();
+  return l.columns * l.rows;
+}
+
+// Whether cloths of such sizes, each going to the thread that is free first, keep threads busy for nearly
+// all of the time.
+bool Simulation::State::keep_busy(const std::vector<std::size_t>& each) {
+  busy_.assign(std::size_t(threads.count()), 0);
+  std::int64_t all = 0;
+  for (const std::size_t c : each) {
+    *std::min_element(busy_.begin(), busy_.end()) += particles(c);
+    all += particles(c);
+  }
+  const std::int64_t longest = *std::max_element(busy_.begin(), busy_.end());
+  return kBusy * double(longest) * threads.count() <= double(all);
 }
 
 void Simulation::State::set(std::span<const double> positions, const Vec3& from,
@@ -351,13 +404,6 @@ std::size_t Simulation::State::backup_bytes() const {
   std::size_t bytes = 0;
   for (const Backup& b : backups_) bytes += b.x.bytes() + b.v.bytes();
   return bytes;
-}
-
-bool Simulation::State::finite() const {
-  for (std::size_t c = 0; c < cloths.size(); ++c)
-    if (!asleep(c) && !(cloths[c]->lattice().x.greatest(kernel_table(simd)) < kFarAway))
-      return false;
-  return true;
 }
 
 // Runs the frame again, stage by stage, to the first that leaves a particle non-finite.

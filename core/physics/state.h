@@ -59,7 +59,7 @@ struct Simulation::State {
   Options options;
   Simd simd;
   physics::Threads threads;
-  physics::Threads one_thread;  // for cloths too small to share out
+  physics::Threads one_thread;  // for a cloth that one thread runs, whichever
   Method method;                // the scene's, or the stable one put in its place
   std::vector<std::unique_ptr<physics::ClothStep>> cloths;
   std::unique_ptr<physics::SelfContact> self_collision;  // over all cloths; null when all are off
@@ -90,6 +90,9 @@ struct Simulation::State {
     physics::Rows x, v;
   };
   std::vector<Backup> backups_;
+  std::vector<std::size_t> apart_;  // cloths that take a thread each
+  std::vector<std::int64_t> busy_;  // of each thread, with so many particles
+  bool finite_ = true;              // at the end of the frame
   int saved_substeps_ = 1;
   double saved_lag_ = 0;
   physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
@@ -143,15 +146,17 @@ struct Simulation::State {
   void touch(int cloth = -1);
   bool asleep(std::size_t cloth) const { return rest && rest->rows(cloth).empty(); }
   void run_frame();
+  void look();
   void run_with_contact();
   void begin_surfaces();
   physics::ClothStep& step_with(int cloth, int i, int j);
   void plan_changed();
   physics::Substeps substeps_from(int first, int count) const;
   void run_substeps(int first, int count);
+  int particles(std::size_t cloth) const;
+  bool keep_busy(const std::vector<std::size_t>& each);
   void save();
   void restore();
-  bool finite() const;
   void find_fault();
 };
 

@@ -139,11 +139,9 @@ bool Simulation::State::finest() const {
 bool Simulation::State::too_coarse() {
   const bool springs = is_explicit(method), lines = !springs && scene.solver.sweep == Sweep::line;
   if (!(springs || lines) || (rest && rest->all_asleep())) return false;
-  const bool lost = !finite();
   bool beyond_limit = false;
-  if (!lost) {
+  if (finite_) {
     if (springs) limit_ = stretched_limit();
-    guard_.look(scene, cloths, driven());
     beyond_limit = springs && dt > limit_;
     const bool jitters = lines && ((!finest() && overshot()) || keeps_on());
     if (!beyond_limit && guard_.holds() && !jitters) return false;
@@ -278,7 +276,6 @@ bool Simulation::State::keeps_on() {
 // Takes the energy off a frame that it cannot have.
 void Simulation::State::calm() {
   if (rest && rest->all_asleep()) return;
-  if (!is_explicit(method)) guard_.look(scene, cloths, driven());
   if (!guard_.holds()) {
     for (auto& step : cloths) {
       step->lattice().v.scale(float(guard_.reduction()));
