@@ -36,7 +36,7 @@ bool has_stage(const weft::Plan& plan, const std::string& word) {
   return false;
 }
 
-void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int threads) {
+weft::Scene scene_of(const Way& way, int n) {
   const int substeps = substeps_of(n, way.method);
   weft::Scene scene = stepping_scene(n, substeps);
   scene.solver.method = way.method;
@@ -44,6 +44,12 @@ void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int t
   if (way.sweep == weft::Sweep::line) scene.time.frame = substeps / 480.0;
   if (way.method == weft::Method::spring_friction)
     scene.cloths[0].spring_damping = {0.001, 0.001, 0.001};
+  return scene;
+}
+
+void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int threads) {
+  const weft::Scene scene = scene_of(way, n);
+  const int substeps = scene.time.substeps;
   weft::Options options;
   options.simd = simd;
   options.threads = threads;
@@ -62,13 +68,9 @@ void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int t
              {double(substeps), double(r.particles), double(c.structural + c.shear + c.bend)});
 }
 
-// Four sheets, each small enough for one thread.
+// Four sheets, which two threads can run side by side.
 void step_four(benchmark::State& state, const Way& way, int n, int threads) {
-  const int substeps = substeps_of(n, way.method);
-  weft::Scene scene = stepping_scene(n, substeps);
-  scene.solver.method = way.method;
-  scene.solver.sweep = way.sweep;
-  if (way.sweep == weft::Sweep::line) scene.time.frame = substeps / 480.0;
+  weft::Scene scene = scene_of(way, n);
   scene.cloths.resize(4, scene.cloths[0]);
   weft::Options options;
   options.threads = threads;
@@ -76,7 +78,7 @@ void step_four(benchmark::State& state, const Way& way, int n, int threads) {
   simulation.advance_frame();
   fastest_ns(state, [&] { simulation.advance_frame(); });
   if (!simulation.status().ok) state.SkipWithError(simulation.status().text.c_str());
-  state.counters["substeps"] = substeps;
+  state.counters["substeps"] = scene.time.substeps;
 }
 
 void add(const Way& way, int n, weft::Simd simd, int threads) {
