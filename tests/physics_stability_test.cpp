@@ -111,7 +111,15 @@ TEST(StabilityLimit, EstimateIsCloseAndNeverAbove) {
     const Cloth& cloth = scene.cloths[0];
     const Lattice l = lattice_of(c, cloth);
     const bool damped = c.damping > 0;
-    const Spectrum estimate = estimate_spectrum(cloth, families_of(cloth), l, damped);
+    const Spectrum estimate =
+        estimate_spectrum(cloth, families_of(cloth), l, damped, kernel_table(Simd::best));
+    for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+      if (!simd_available(simd)) continue;
+      const Spectrum same =
+          estimate_spectrum(cloth, families_of(cloth), l, damped, kernel_table(simd));
+      EXPECT_EQ(same.omega_squared, estimate.omega_squared) << c.name << ", " << simd_name(simd);
+      EXPECT_EQ(same.damping, estimate.damping) << c.name << ", " << simd_name(simd);
+    }
     Spectrum truth = dense_spectrum(cloth, l);
     if (!damped) truth.damping = 0;
     const double ratio = estimate.largest_substep() / truth.largest_substep();

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "physics/bending.h"
 #include "physics/random.h"
@@ -12,103 +14,128 @@
 namespace weft::physics {
 namespace {
 
-using Field = std::vector<float>;  // 3 planes of one value per particle
-
 // Lanczos steps without reorthogonalisation: lost orthogonality repeats the extreme eigenvalue, it
 // does not move it. The remaining gap to the largest eigenvalue is covered by kMargin.
 constexpr int kSteps = 40;
 constexpr double kMargin = 1.02;
 
-// y = A x for A = W^½ S W^½, S the sum over springs of c_n n nᵀ + c_t (I - n nᵀ), where the pair
-// (c_n, c_t) of a spring is coefficients(k, damping, l/|e|).
-template <class Coefficients>
+// Three values for every particle, laid out as the lattice; zero in the padding. Calls
+// visit(component) with each of several fields' components.
+template <class Visit, class... Fields>
+void for_each_component(Visit&& visit, Fields&... fields) {
+  visit(fields.row(0).x...);
+  visit(fields.row(0).y...);
+  visit(fields.row(0).z...);
+}
+
+// A = W^½ S W^½, S the sum of all springs' tangent stiffness or damping (kernels/tangent.cpp).
 struct Operator {
   const Cloth& cloth;
   const std::vector<Family>& families;
   const Lattice& l;
-  bool bending;  // the curvature energy's share too
-  Field root_w;
-  Coefficients coefficients;
+  const KernelTable& kernels;
+  bool damping;  // in place of the stiffness
+  AlignedArray<float> root_w;
+  Rows scaled;
 
-  void apply(const Field& x, Field& y) const {
-    const std::size_t n = root_w.size();
-    Field scaled(3 * n);
-    for (int c = 0; c < 3; ++c)
-      for (std::size_t p = 0; p < n; ++p) scaled[c * n + p] = root_w[p] * x[c * n + p];
-    std::fill(y.begin(), y.end(), 0.0f);
+  Operator(const Cloth& c, const std::vector<Family>& f, const Lattice& lattice,
+           const KernelTable& k, bool of_damping)
+      : cloth(c),
+        families(f),
+        l(lattice),
+        kernels(k),
+        damping(of_damping),
+        root_w(lattice.inverse_mass.size()),
+        scaled(lattice.rows, lattice.stride) {
+    for (std::size_t p = 0; p < size(); ++p) root_w[p] = std::sqrt(l.inverse_mass[p]);
+  }
+  std::size_t size() const { return l.inverse_mass.size(); }
+
+  // y = A u.
+  void apply(Rows& u, Rows& y) {
+    for_each_component(
+        [&](float* to, const float* from) {
+          for (std::size_t p = 0; p < size(); ++p) to[p] = root_w[p] * from[p];
+        },
+        scaled, u);
+    y.clear();
     for (const Family& f : families)
-      for (int j = 0; j + f.dj < l.rows; ++j) apply_row(f, j, scaled, y);
-    if (bending) apply_bending(scaled, y);
-    for (int c = 0; c < 3; ++c)
-      for (std::size_t p = 0; p < n; ++p) y[c * n + p] *= root_w[p];
+      for (int j = 0; j + f.dj < l.rows; ++j) apply_row(f, j, y);
+    if (cloth.bending > 0 && !damping) apply_bending(y);
+    for_each_component(
+        [&](float* to) {
+          for (std::size_t p = 0; p < size(); ++p) to[p] *= root_w[p];
+        },
+        y);
   }
 
-  void apply_bending(const Field& x, Field& y) const {
-    const std::size_t n = root_w.size();
+  void apply_row(const Family& f, int j, Rows& y) {
+    TangentRow r{};
+    static_cast<FarRows&>(r) = far_rows(f, l.x, l.columns, j);
+    const FarRows u = far_rows(f, scaled, l.columns, j);
+    r.u_near = u.near;
+    r.u_far = u.far;
+    r.pull_near = y.row(j).from(f.near());
+    r.pull_far = y.row(j + f.dj).from(f.far());
+    r.rest = float(f.rest);
+    r.stiffness = float(damping ? f.damping : f.stiffness) * float(gradient_factor(cloth, j, f.dj));
+    r.sideways = !damping;
+    kernels.tangent(r);
+  }
+
+  void apply_bending(Rows& y) {
     for_each_bend(cloth, [&](double k, int count, const int* particles, const double* factor) {
       for (int c = 0; c < 3; ++c) {
+        const auto value = [&](Rows& field, int q) -> float& {
+          return field.at(c, particles[q] / l.columns, particles[q] % l.columns);
+        };
         double d = 0;
-        for (int q = 0; q < count; ++q) d += factor[q] * x[c * n + particles[q]];
-        for (int q = 0; q < count; ++q) y[c * n + particles[q]] += float(k * factor[q] * d);
+        for (int q = 0; q < count; ++q) d += factor[q] * value(scaled, q);
+        for (int q = 0; q < count; ++q) value(y, q) += float(k * factor[q] * d);
       }
     });
   }
-
-  void apply_row(const Family& f, int j, const Field& x, Field& y) const {
-    const std::size_t n = root_w.size();
-    const float factor = float(gradient_factor(cloth, j, f.dj));
-    const float rest = float(f.rest);
-    for (int m = 0; m < f.per_row(l.columns); ++m) {
-      if (!f.alive(j, m)) continue;
-      const int ia = m + f.near(), ib = m + f.far();
-      const std::size_t a = std::size_t(j) * l.columns + ia;
-      const std::size_t b = std::size_t(j + f.dj) * l.columns + ib;
-      float e[3], d[3], squared = 1e-30f, along = 0;
-      for (int c = 0; c < 3; ++c) {
-        e[c] = l.x.at(c, j + f.dj, ib) - l.x.at(c, j, ia);
-        d[c] = x[c * n + a] - x[c * n + b];
-        squared += e[c] * e[c];
-        along += e[c] * d[c];
-      }
-      const auto [normal, transverse] = coefficients(f, factor, rest / std::sqrt(squared));
-      const float s = (normal - transverse) * along / squared;
-      for (int c = 0; c < 3; ++c) {
-        const float g = s * e[c] + transverse * d[c];
-        y[c * n + a] += g;
-        y[c * n + b] -= g;
-      }
-    }
-  }
 };
 
-double dot(const Field& a, const Field& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += double(a[i]) * b[i];
-  return sum;
+// Eight sums side by side, in double.
+double dot(Rows& a, Rows& b, std::size_t size) {
+  constexpr int kSums = 8;
+  double sums[kSums] = {};
+  for_each_component(
+      [&](const float* x, const float* y) {
+        for (std::size_t p = 0; p < size; p += kSums)
+          for (int n = 0; n < kSums; ++n) sums[n] += double(x[p + n]) * y[p + n];
+      },
+      a, b);
+  return std::accumulate(sums, sums + kSums, 0.0);
 }
 
 // Largest eigenvalue of a symmetric positive operator.
-template <class Operator>
-double largest_eigenvalue(const Operator& op) {
-  const std::size_t size = 3 * op.root_w.size();
-  Field before(size), v(size), next(size);
+double largest_eigenvalue(Operator& op) {
+  const Lattice& l = op.l;
+  const std::size_t size = op.size();
+  Rows before(l.rows, l.stride), v(l.rows, l.stride), next(l.rows, l.stride);
   Random random(7, 0);
-  for (float& c : v) c = float(random.symmetric());
-  const double norm = std::sqrt(dot(v, v));
-  for (float& c : v) c = float(c / norm);
+  for (int c = 0; c < 3; ++c)
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i) v.at(c, j, i) = float(random.symmetric());
+  v.scale(float(1 / std::sqrt(dot(v, v, size))));
   std::vector<double> diagonal, off;
   double beta = 0;
   for (int step = 0; step < kSteps; ++step) {
     op.apply(v, next);
-    const double alpha = dot(v, next);
+    const double alpha = dot(v, next, size);
     diagonal.push_back(alpha);
-    for (std::size_t i = 0; i < size; ++i) next[i] -= float(alpha) * v[i] + float(beta) * before[i];
-    beta = std::sqrt(dot(next, next));
+    for_each_component(
+        [&](float* n, const float* a, const float* b) {
+          for (std::size_t p = 0; p < size; ++p) n[p] -= float(alpha) * a[p] + float(beta) * b[p];
+        },
+        next, v, before);
+    beta = std::sqrt(dot(next, next, size));
     if (!(beta > 1e-12 * std::abs(alpha))) break;
-    for (std::size_t i = 0; i < size; ++i) {
-      before[i] = v[i];
-      v[i] = float(next[i] / beta);
-    }
+    std::swap(before, v);
+    std::swap(v, next);
+    v.scale(float(1 / beta));
     off.push_back(beta);
   }
   const int m = int(diagonal.size());
@@ -120,13 +147,9 @@ double largest_eigenvalue(const Operator& op) {
   return solver.eigenvalues().maxCoeff();
 }
 
-template <class Coefficients>
 double largest(const Cloth& cloth, const std::vector<Family>& families, const Lattice& l,
-               bool bending, Coefficients coefficients) {
-  Operator<Coefficients> op{cloth, families, l, bending, {}, coefficients};
-  op.root_w.reserve(std::size_t(l.columns) * l.rows);
-  for (int j = 0; j < l.rows; ++j)
-    for (int i = 0; i < l.columns; ++i) op.root_w.push_back(std::sqrt(l.w(j, i)));
+               const KernelTable& kernels, bool damping) {
+  Operator op(cloth, families, l, kernels, damping);
   return std::max(0.0, largest_eigenvalue(op)) * kMargin;
 }
 
@@ -139,20 +162,10 @@ double Spectrum::largest_substep() const {
 }
 
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Family>& families,
-                           const Lattice& l, bool damped) {
-  struct Pair {
-    float normal, transverse;
-  };
+                           const Lattice& l, bool damped, const KernelTable& kernels) {
   Spectrum spectrum;
-  spectrum.omega_squared = largest(cloth, families, l, cloth.bending > 0,
-                                   [](const Family& f, float factor, float ratio) {
-                                     const float k = float(f.stiffness) * factor;
-                                     return Pair{k, k * std::max(0.0f, 1 - ratio)};
-                                   });
-  if (damped)
-    spectrum.damping = largest(cloth, families, l, false, [](const Family& f, float factor, float) {
-      return Pair{float(f.damping) * factor, 0};
-    });
+  spectrum.omega_squared = largest(cloth, families, l, kernels, false);
+  if (damped) spectrum.damping = largest(cloth, families, l, kernels, true);
   return spectrum;
 }
 

@@ -24,7 +24,7 @@ struct Spectrum {
 // Estimates the spectrum of the lattice as it lies now by a Lanczos iteration, from above: the
 // substep it allows is never larger than the true limit, and at most about 3 % smaller.
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Family>& families,
-                           const Lattice& lattice, bool damped);
+                           const Lattice& lattice, bool damped, const KernelTable& kernels);
 
 // s, of methods that project; about what a sheet of 1 m with 32 x 32 points needs.
 inline constexpr double kLongestProjection = 1.0 / 960;

@@ -54,7 +54,8 @@ Spectrum Simulation::State::spectrum_of(std::size_t cloth) const {
   Lattice start = make_lattice(step.cloth(), int(cloth), options.seed, false);
   const std::span<const float> now = masses(cloth).span();
   std::copy(now.begin(), now.end(), start.inverse_mass.data());
-  return estimate_spectrum(step.cloth(), step.families(), start, method == Method::spring_friction);
+  return estimate_spectrum(step.cloth(), step.families(), start, method == Method::spring_friction,
+                           kernel_table(simd));
 }
 
 // Explicit springs: the substep from the stability limit, or the user's if it is inside; beyond it,

@@ -19,6 +19,7 @@ struct Row3 {
   float* x;
   float* y;
   float* z;
+  Row3 from(int i) const { return {x + i, y + i, z + i}; }  // particle i on
 };
 
 struct ConstRow3 {
@@ -180,6 +181,19 @@ struct StretchRow : FarRows {
   float give;  // m; what is beyond it is taken back in one substep besides; infinite: no limit
 };
 
+// Springs as they lie, and a small displacement u of their ends: what they pull by, S u with
+//
+//   S = Σ k [n nᵀ + t (I - n nᵀ)],   t = max(0, 1 - l/|e|), or none without `sideways`
+//
+// is added to `pull`, laid out as u; of the near end as it is, of the far end in the other direction.
+struct TangentRow : FarRows {
+  ConstRow3 u_near, u_far;
+  Row3 pull_near, pull_far;
+  float rest;       // m
+  float stiffness;  // k
+  bool sideways;
+};
+
 // Constants of a collider's shape, about its place (colliders/).
 struct ShapeConstants {
   float radius = 0;           // sphere, capsule; the box's rounding [m]
@@ -339,6 +353,7 @@ struct KernelTable {
   RowEnergy (*row_energy)(const EnergyRow&);
   float (*greatest_square)(const FarRows&);     // of a constraint's length
   double (*stretch_energy)(const StretchRow&);  // J
+  void (*tangent)(const TangentRow&);
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

@@ -110,6 +110,7 @@ float greatest(const float* values, std::ptrdiff_t count);
 physics::RowEnergy row_energy(const physics::EnergyRow&);
 float greatest_square(const physics::FarRows&);
 double stretch_energy(const physics::StretchRow&);
+void tangent(const physics::TangentRow&);
 void wind(const physics::WindRow&);
 void push(const physics::PushRow&);
 void block_bounds(const physics::BlockRows&);

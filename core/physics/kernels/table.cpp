@@ -50,6 +50,7 @@ const physics::KernelTable& table() {
       row_energy,
       greatest_square,
       stretch_energy,
+      tangent,
   };
   return table;
 }
