@@ -47,25 +47,31 @@ weft::Scene scene_of(const Way& way, int n) {
   return scene;
 }
 
-void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int threads) {
-  const weft::Scene scene = scene_of(way, n);
-  const int substeps = scene.time.substeps;
-  weft::Options options;
-  options.simd = simd;
-  options.threads = threads;
-  weft::Simulation simulation(scene, options);
+// Of a frame; 0 where the way is not run as it is meant.
+double frame_ns(benchmark::State& state, const Way& way, weft::Simulation& simulation) {
   if (way.sweep == weft::Sweep::line && !has_stage(simulation.plan(), "line")) {
     state.SkipWithError("no line sweeps in the plan");
-    return;
+    return 0;
   }
   simulation.advance_frame();  // makes room for what the run needs
   const double ns = fastest_ns(state, [&] { simulation.advance_frame(); });
   if (!simulation.status().ok) state.SkipWithError(simulation.status().text.c_str());
-  state.counters["substeps"] = substeps;
+  state.counters["substeps"] = simulation.plan().substeps;
+  return ns;
+}
+
+void step(benchmark::State& state, const Way& way, int n, weft::Simd simd, int threads) {
+  weft::Options options;
+  options.simd = simd;
+  options.threads = threads;
+  weft::Simulation simulation(scene_of(way, n), options);
+  const double ns = frame_ns(state, way, simulation);
+  if (ns == 0) return;
   const weft::Report r = simulation.report(false);
   const auto& c = r.constraints;
   count_work(state, simd, ns,
-             {double(substeps), double(r.particles), double(c.structural + c.shear + c.bend)});
+             {double(simulation.plan().substeps), double(r.particles),
+              double(c.structural + c.shear + c.bend)});
 }
 
 // Four sheets, which two threads can run side by side.
@@ -75,10 +81,7 @@ void step_four(benchmark::State& state, const Way& way, int n, int threads) {
   weft::Options options;
   options.threads = threads;
   weft::Simulation simulation(scene, options);
-  simulation.advance_frame();
-  fastest_ns(state, [&] { simulation.advance_frame(); });
-  if (!simulation.status().ok) state.SkipWithError(simulation.status().text.c_str());
-  state.counters["substeps"] = scene.time.substeps;
+  frame_ns(state, way, simulation);
 }
 
 void add(const Way& way, int n, weft::Simd simd, int threads) {

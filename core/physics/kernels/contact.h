@@ -190,15 +190,15 @@ struct alignas(32) AskedSum {
 };
 
 // Pairs, what they ask for, and where it is summed up for the bodies from `begin` to `end`. Returned is
-// how many of these get something for the first time.
+// how many of these get something for the first time: they are listed in `body`, which has room for one
+// more than there can be.
 struct SumAsked {
   int pairs;
   const std::int32_t *owner, *neighbour;
   const Asked* asked;
   std::int32_t begin, end;
   AskedSum* sum;
-  std::int32_t*
-      body;  // out: those that get something for the first time; room for one more than ends
+  std::int32_t* body;
 };
 
 // Bodies, and what they are asked, which is nothing any more afterwards.

@@ -36,7 +36,7 @@ using physics::SumAsked;
 // Of the thickness, at once: what starts intersecting comes apart slowly.
 constexpr float kMostPush = 0.5f;
 constexpr float kTiny = 1e-12f;
-// Of what is asked, all of it.
+// All that a pair asks for, push and gain.
 typedef float Eight __attribute__((vector_size(32), may_alias));
 
 constexpr int kBody = 4;  // floats of a place, and of a motion

@@ -63,8 +63,7 @@ class Blocks {
   void measure(Threads& threads);
 
   struct Outlook {
-    bool
-        covered;  // all pairs of blocks that may touch, or soon will, are active and have moved little
+    bool covered;    // all pairs that may touch, or soon will, are active and have moved little
     double seconds;  // until the next look
     bool touching;   // some may touch
   };
