@@ -37,12 +37,12 @@ TEST_P(Sizes, FindTheGreatestSize) {
   }
 }
 
-TEST_P(Sizes, CountTheEnergyOfARow) {
+TEST_P(Sizes, TallyARow) {
   if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
   Rows x(1, 112), v(1, 112);
   AlignedArray<float> w(112);
   Random random(7, 3);
-  EnergyRow r{};
+  TallyRow r{};
   r.x = x.row(0);
   r.v = v.row(0);
   r.w = w.data();
@@ -50,6 +50,7 @@ TEST_P(Sizes, CountTheEnergyOfARow) {
   for (int k = 0; k < 3; ++k) r.g[k] = g[k];
   for (const int columns : {0, 1, 16, 31, 96}) {
     double kinetic = 0, potential = 0, size = 0;
+    float greatest = 0;
     std::fill_n(w.data(), w.size(), 0.0f);
     for (int i = 0; i < columns; ++i) {
       if (i % 5 > 0) w[std::size_t(i)] = float(50 + 40 * random.symmetric());
@@ -57,18 +58,20 @@ TEST_P(Sizes, CountTheEnergyOfARow) {
       for (int k = 0; k < 3; ++k) {
         x.at(k, 0, i) = float(random.symmetric());
         v.at(k, 0, i) = float(random.symmetric());
+        greatest = std::max(greatest, std::abs(x.at(k, 0, i)));
         kinetic += 0.5 * mass * v.at(k, 0, i) * v.at(k, 0, i);
         potential -= mass * g[k] * x.at(k, 0, i);
         size += mass * std::abs(g[k] * x.at(k, 0, i));
       }
     }
     r.columns = columns;
-    const RowEnergy got = kernel_table(GetParam()).row_energy(r);
-    const RowEnergy scalar = kernel_table(Simd::scalar).row_energy(r);
+    const Tally got = kernel_table(GetParam()).tally(r);
+    const Tally scalar = kernel_table(Simd::scalar).tally(r);
     EXPECT_EQ(got.kinetic, scalar.kinetic);
     EXPECT_EQ(got.potential, scalar.potential);
     EXPECT_NEAR(got.kinetic, kinetic, 2e-7 * kinetic);
     EXPECT_NEAR(got.potential, potential, 1e-7 * size);
+    EXPECT_EQ(got.greatest, greatest);
   }
 }
 

@@ -1,6 +1,7 @@
 // The wavefront gives what running the stages one after the other gives, for any number of threads,
 // shape of tiles, stages, reaches, rows and substeps. The stages here mix integers: every value
-// depends on the order of all that was done to its rows before.
+// depends on the order of all that was done to its rows before. And it keeps rows as they were before
+// all stages, and looks at them after all.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -8,6 +9,7 @@
 #include <deque>
 #include <thread>
 
+#include "physics/frame_record.h"
 #include "physics/random.h"
 #include "physics/threads.h"
 #include "physics/wavefront.h"
@@ -20,11 +22,33 @@ std::uint64_t mixed(std::uint64_t a, std::uint64_t b) {
   return z ^ (z >> 29);
 }
 
+// Rows of integers, and a lattice of one column that shows them.
+struct Mixed {
+  explicit Mixed(int rows) : values(std::size_t(rows), 1) {
+    lattice.columns = 1;
+    lattice.rows = rows;
+    lattice.stride = row_stride(1);
+    lattice.x = Rows(rows, lattice.stride);
+    lattice.v = Rows(rows, lattice.stride);
+    lattice.inverse_mass = AlignedArray<float>(std::size_t(rows) * lattice.stride);
+    for (int j = 0; j < rows; ++j) lattice.w(j)[0] = 1;
+  }
+  void set(int j, std::uint64_t value) {
+    values[std::size_t(j)] = value;
+    lattice.x.at(0, j, 0) = shown(j);
+    lattice.v.at(1, j, 0) = shown(j);
+  }
+  float shown(int j) const { return float(values[std::size_t(j)] % 1000); }
+
+  std::vector<std::uint64_t> values;
+  Lattice lattice;
+};
+
 // Reads and rewrites rows j … j+reach. Where rows reach others, they come in order, and carry a value
 // from one to the next of a substep.
 class MixingStage final : public RowStage {
  public:
-  MixingStage(int number, int reach, std::vector<std::uint64_t>& rows)
+  MixingStage(int number, int reach, Mixed& rows)
       : RowStage("mix", "", reach, 1, "rows"), number_(number), rows_(rows) {}
 
   using RowStage::run;
@@ -48,9 +72,9 @@ class MixingStage final : public RowStage {
         mixed(reach > 0 ? carried_[slot] : std::uint64_t(j), std::bit_cast<std::uint64_t>(s.time));
     value = mixed(value, std::bit_cast<std::uint64_t>(s.dt));
     value = mixed(value, std::bit_cast<std::uint64_t>(s.kick));
-    for (int k = j; k <= std::min(j + reach, int(rows_.size()) - 1); ++k) {
-      value = mixed(value, rows_[std::size_t(k)]);
-      rows_[std::size_t(k)] = mixed(value, std::uint64_t(k));
+    for (int k = j; k <= std::min(j + reach, rows_.lattice.rows - 1); ++k) {
+      value = mixed(value, rows_.values[std::size_t(k)]);
+      rows_.set(k, mixed(value, std::uint64_t(k)));
     }
     if (reach > 0) carried_[slot] = value;
     ++calls_;
@@ -60,7 +84,7 @@ class MixingStage final : public RowStage {
 
  private:
   int number_;
-  std::vector<std::uint64_t>& rows_;
+  Mixed& rows_;
   std::vector<std::uint64_t> carried_;
   std::vector<int> next_row_;
   std::atomic<bool> out_of_order_{false};
@@ -88,7 +112,7 @@ Layout random_layout(Random& random) {
 }
 
 std::vector<std::uint64_t> one_after_the_other(const Layout& layout) {
-  std::vector<std::uint64_t> rows(std::size_t(layout.rows), 1);
+  Mixed rows(layout.rows);
   for (std::size_t frame = 0; frame < layout.substeps.size(); ++frame)
     for (int s = 0; s < layout.substeps[frame]; ++s)
       for (std::size_t q = 0; q < layout.reaches.size(); ++q) {
@@ -97,11 +121,12 @@ std::vector<std::uint64_t> one_after_the_other(const Layout& layout) {
         for (int j = 0; j < layout.rows; ++j)
           stage.run(j, {0.125, double(frame) * 10 + (s + 1) * 0.125, s == 0 ? 0.1 : 0.125, 0});
       }
-  return rows;
+  return rows.values;
 }
 
 std::vector<std::uint64_t> by_wavefront(const Layout& layout, int thread_count) {
-  std::vector<std::uint64_t> rows(std::size_t(layout.rows), 1);
+  Mixed rows(layout.rows);
+  FrameRecord record(rows.lattice, {0, -1, 0}, kernel_table(Simd::scalar));
   std::deque<MixingStage> stages;
   std::vector<RowStage*> pointers;
   for (const int reach : layout.reaches)
@@ -110,14 +135,25 @@ std::vector<std::uint64_t> by_wavefront(const Layout& layout, int thread_count) 
   Threads threads(thread_count);
   std::int64_t substeps = 0;
   for (std::size_t frame = 0; frame < layout.substeps.size(); ++frame) {
-    wavefront.run({double(frame) * 10, 0.125, layout.substeps[frame], 0.1}, threads);
+    std::vector<float> before;
+    for (int j = 0; j < layout.rows; ++j) before.push_back(rows.lattice.x.at(0, j, 0));
+    wavefront.run({double(frame) * 10, 0.125, layout.substeps[frame], 0.1}, threads, {}, &record);
     substeps += layout.substeps[frame];
+    float greatest = 0;
+    double kinetic = 0;
+    for (int j = 0; j < layout.rows; ++j) {
+      EXPECT_EQ(record.x().at(0, j, 0), before[std::size_t(j)]) << "row " << j;
+      greatest = std::max(greatest, rows.shown(j));
+      kinetic += 0.5 * rows.shown(j) * rows.shown(j);
+    }
+    EXPECT_EQ(record.tally().greatest, greatest);
+    EXPECT_EQ(record.tally().kinetic, kinetic);
   }
   for (const MixingStage& stage : stages) {
     EXPECT_FALSE(stage.out_of_order());
     EXPECT_EQ(stage.calls(), substeps * layout.rows);
   }
-  return rows;
+  return rows.values;
 }
 
 class WavefrontOfThreads : public testing::TestWithParam<int> {};

@@ -93,6 +93,10 @@ void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Fam
     }
 }
 
+TallyRow tally_row(const Lattice& l, ConstRow3 x, ConstRow3 v, int j, const Vec3& gravity) {
+  return {l.columns, x, v, l.w(j), {gravity[0], gravity[1], gravity[2]}};
+}
+
 Strain structural_strain(const Cloth& cloth, const std::vector<Family>& families,
                          const std::vector<Vec3>& x) {
   Strain strain;

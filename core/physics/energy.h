@@ -2,7 +2,7 @@
 // lattice. Everything that measures or prepares a run uses this; the kernels are what is measured.
 #pragma once
 
-#include <functional>
+#include <algorithm>
 #include <vector>
 
 #include "physics/family.h"
@@ -40,6 +40,16 @@ std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Family>& f
 void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Family>& families,
                    const Lattice& lattice, const BendLinks* left, bool damped,
                    std::vector<Vec3>& a);
+
+// Row j of a lattice with positions x and velocities v, as the tally is made of it.
+TallyRow tally_row(const Lattice& lattice, ConstRow3 x, ConstRow3 v, int j, const Vec3& gravity);
+// What rows have together.
+inline Tally& operator+=(Tally& all, const Tally& more) {
+  all.kinetic += more.kinetic;
+  all.potential += more.potential;
+  all.greatest = std::max(all.greatest, more.greatest);
+  return all;
+}
 
 struct Strain {
   double max = 0, mean = 0;  // |e|/l - 1

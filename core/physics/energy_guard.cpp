@@ -116,20 +116,11 @@ double rounding_gain(const ClothStep& step) {
   return stiffness * std::pow(kHalfUnit * greatest_coordinate(step, step.lattice().x), 2);
 }
 
-RowEnergy motion(const Scene& scene, const ClothStep& step, const Rows& x, const Rows& v) {
+Tally motion(const Scene& scene, const ClothStep& step, const Rows& x, const Rows& v) {
   const Lattice& l = step.lattice();
-  EnergyRow r{};
-  r.columns = l.columns;
-  for (int k = 0; k < 3; ++k) r.g[k] = scene.gravity[k];
-  RowEnergy sum{0, 0};
-  for (int j = 0; j < l.rows; ++j) {
-    r.x = x.row(j);
-    r.v = v.row(j);
-    r.w = l.w(j);
-    const RowEnergy e = step.parts().kernels.row_energy(r);
-    sum.kinetic += e.kinetic;
-    sum.potential += e.potential;
-  }
+  Tally sum;
+  for (int j = 0; j < l.rows; ++j)
+    sum += step.parts().kernels.tally(tally_row(l, x.row(j), v.row(j), j, scene.gravity));
   return sum;
 }
 
@@ -163,19 +154,19 @@ bool gained(const Scene& scene, Method method, const ClothStep& step, const Rows
             double dt, double start, double end) {
   constexpr double kMore = 2;
   const Lattice& l = step.lattice();
-  const RowEnergy before = motion(scene, step, x, v), now = motion(scene, step, l.x, l.v);
+  const Tally before = motion(scene, step, x, v), now = motion(scene, step, l.x, l.v);
   double put_in = std::max(0.0, before.potential - now.potential);
   if (const double speed = kMore * fastest_drive(scene, start, end); speed > 0)
     put_in += 0.5 * free_mass(l) * speed * speed;
   const double inner = now.kinetic + elastic(scene, method, step, l.x, dt);
-  // Motion alone accounts for most frames.
+  // Tally alone accounts for most frames.
   if (inner <= kMore * before.kinetic + put_in) return false;
   return inner > kMore * (before.kinetic + elastic(scene, method, step, x, dt)) + put_in;
 }
 
 Balance balance(const Scene& scene, Method method, const ClothStep& step, double dt) {
   const Lattice& l = step.lattice();
-  const RowEnergy now = motion(scene, step, l.x, l.v);
+  const Tally now = motion(scene, step, l.x, l.v);
   return {now.kinetic + elastic(scene, method, step, l.x, dt), now.potential,
           2 * step.cloth().drag * now.kinetic * scene.time.frame};
 }
@@ -223,13 +214,15 @@ void EnergyGuard::drive(double speed) {
 }
 
 void EnergyGuard::look(const Scene& scene, const Cloths& cloths, bool driven) {
+  Tally all;
+  for (const auto& step : cloths) all += motion(scene, *step, step->lattice().x, step->lattice().v);
+  look(all, driven);
+}
+
+void EnergyGuard::look(const Tally& all, bool driven) {
   driven_ = driven;
-  kinetic_ = potential_ = 0;
-  for (const auto& step : cloths) {
-    const RowEnergy e = motion(scene, *step, step->lattice().x, step->lattice().v);
-    kinetic_ += e.kinetic;
-    potential_ += e.potential;
-  }
+  kinetic_ = all.kinetic;
+  potential_ = all.potential;
   fall_ = std::max(released_, highest_ - potential_);
 }
 

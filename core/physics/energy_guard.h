@@ -64,6 +64,8 @@ class EnergyGuard {
   void put_in(double energy) { put_in_ += energy; }
   // Looks at the end of a frame; `driven`: something but gravity did work in it.
   void look(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths, bool driven);
+  // The same, by what has been summed over all cloths.
+  void look(const Tally& all, bool driven);
   // Whether the motion last looked at is within the bound.
   bool holds() const { return kinetic_ <= bound(); }
   // Takes the frame last looked at, of so many substeps, for good.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/energy.h"
 #include "physics/state.h"
 
 namespace weft {
@@ -50,7 +51,7 @@ void Simulation::State::advance_frame() {
   ++frame;
   total_substeps += substeps;
 
-  if (rest) rest->end_frame([&](std::size_t c) -> const Rows& { return backups_[c].x; });
+  if (rest) rest->end_frame([&](std::size_t c) -> const Rows& { return records_[c].x(); });
   if (is_explicit(method) && !(rest && rest->all_asleep())) follow_stretch(limit_);
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   total_ms += spent.count();
@@ -72,10 +73,14 @@ void Simulation::State::run_frame() {
 // What the frame has come to.
 void Simulation::State::look() {
   finite_ = true;
-  for (std::size_t c = 0; c < cloths.size(); ++c)
-    finite_ =
-        finite_ && (asleep(c) || cloths[c]->lattice().x.greatest(kernel_table(simd)) < kFarAway);
-  if (finite_ && !(rest && rest->all_asleep())) guard_.look(scene, cloths, driven());
+  if (rest && rest->all_asleep()) return;
+  Tally all;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (self_collision || asleep(c)) records_[c].look();  // else its passes have looked
+    all += records_[c].tally();
+  }
+  finite_ = all.greatest < kFarAway;
+  if (finite_) guard_.look(all, driven());
 }
 
 void Simulation::State::run_with_contact() {
@@ -119,7 +124,8 @@ Substeps Simulation::State::substeps_from(int first, int count) const {
 void Simulation::State::run_substeps(int first, int count) {
   const Substeps now = substeps_from(first, count);
   const auto run = [&](std::size_t c, Threads& team) {
-    cloths[c]->passes().run(now, team, rest ? rest->rows(c) : std::span<const RowSpan>());
+    cloths[c]->passes().run(now, team, rest ? rest->rows(c) : std::span<const RowSpan>(),
+                            self_collision ? nullptr : &records_[c]);
   };
   const bool standing_by = threads.standing_by();
   const auto worth_running_apart = [&] {

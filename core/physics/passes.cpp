@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "physics/frame_record.h"
 #include "physics/threads.h"
 
 namespace weft::physics {
@@ -57,15 +58,17 @@ bool Passes::worth_running_apart(std::int64_t particles, int substeps, bool stan
   return double(particles) * substeps >= (standing_by ? kSharedStandingBy : kSharedRun);
 }
 
-void Passes::run(const Substeps& given, Threads& threads, std::span<const RowSpan> awake) {
+void Passes::run(const Substeps& given, Threads& threads, std::span<const RowSpan> awake,
+                 FrameRecord* record) {
   if (given.dt != prepared_dt_) prepare(given.dt);
   Substeps substeps = given;
   substeps.velocities_between = velocities_between_;
   threads.together([&] {
-    if (rows_only())
-      for (Pass& p : passes_) p.wavefront->run(substeps, threads, awake);
-    else
-      for (int s = 0; s < substeps.count; ++s) run_substep(substeps, s, threads, awake);
+    if (rows_only() && !passes_.empty())
+      return passes_.front().wavefront->run(substeps, threads, awake, record);
+    if (record) record->keep();
+    for (int s = 0; s < substeps.count; ++s) run_substep(substeps, s, threads, awake);
+    if (record) record->look();
   });
 }
 

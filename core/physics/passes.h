@@ -17,8 +17,10 @@ class Passes {
   // The stages outlive the passes. `row_bytes`: of one row of the lattice.
   Passes(const Stages& stages, int rows, std::size_t row_bytes);
 
-  // Rows outside `awake` are passed over (empty: none).
-  void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {});
+  // Rows outside `awake` are passed over (empty: none). The `record` keeps all rows as they are before
+  // and looks at them after.
+  void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {},
+           FrameRecord* record = nullptr);
 
   // Adds to ticks[q] the time that stage q took.
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds);

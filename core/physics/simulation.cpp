@@ -171,7 +171,7 @@ double Simulation::bytes_per_particle() const {
     particles += std::size_t(step->lattice().columns) * step->lattice().rows;
   }
   if (state_->rest) bytes += state_->rest->bytes();
-  return double(bytes + state_->backup_bytes()) / double(particles);
+  return double(bytes + state_->record_bytes()) / double(particles);
 }
 
 }  // namespace weft

@@ -81,16 +81,15 @@ Simulation::State::State(Scene given, const Options& given_options, const Vec3& 
 void Simulation::State::build_cloths() {
   cloths.clear();
   carried_.clear();
-  backups_.clear();
+  records_.clear();
   stage_ns.clear();
   apart_.reserve(scene.cloths.size());
   busy_.reserve(std::size_t(threads.count()));
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     cloths.push_back(
         std::make_unique<ClothStep>(scene, int(c), method, options.seed, kernel_table(simd)));
-    const Lattice& l = cloths.back()->lattice();
     carried_.push_back(nullptr);
-    backups_.push_back({Rows(l.rows, l.stride), Rows(l.rows, l.stride)});
+    records_.emplace_back(cloths.back()->lattice(), scene.gravity, kernel_table(simd));
     stage_ns.emplace_back(cloths.back()->stages().size());
     if (options.profile) cloths.back()->passes().profile(stage_ns.back());
   }
@@ -225,13 +224,13 @@ void Simulation::State::wake(int cloth) {
     if (cloth < 0 || std::size_t(cloth) == c) rest->wake(int(c));
 }
 
+// The passes keep rows as they come to them, unless contact moves them before.
 void Simulation::State::save() {
   saved_substeps_ = substeps;
   saved_lag_ = lag;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
-    backups_[c].x.copy(cloths[c]->lattice().x);
-    backups_[c].v.copy(cloths[c]->lattice().v);
+    if (self_collision) records_[c].keep();
     if (Topology* topology = cloths[c]->topology()) topology->remember();
   }
 }
@@ -239,17 +238,16 @@ void Simulation::State::save() {
 void Simulation::State::restore() {
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
-    cloths[c]->lattice().x.copy(backups_[c].x);
-    cloths[c]->lattice().v.copy(backups_[c].v);
+    records_[c].restore();
     if (Topology* topology = cloths[c]->topology()) topology->go_back();
   }
   take_substeps(saved_substeps_);
   lag = saved_lag_;
 }
 
-std::size_t Simulation::State::backup_bytes() const {
+std::size_t Simulation::State::record_bytes() const {
   std::size_t bytes = 0;
-  for (const Backup& b : backups_) bytes += b.x.bytes() + b.v.bytes();
+  for (const FrameRecord& r : records_) bytes += r.bytes();
   return bytes;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "physics/energy_guard.h"
+#include "physics/frame_record.h"
 #include "physics/plan.h"
 #include "physics/rest.h"
 #include "physics/self_collision/self_collision.h"
@@ -47,7 +48,7 @@ struct Simulation::State {
   void restore(const Moment& moment);
   // A collider has been put where cloths may be.
   void meet(std::size_t collider);
-  std::size_t backup_bytes() const;
+  std::size_t record_bytes() const;
   void accelerations_now(std::size_t cloth, std::vector<Vec3>& a) const;
 
   // As simulated, about the origin; only move_collider(), restore() and go_on_as() change it. And where
@@ -86,13 +87,10 @@ struct Simulation::State {
   std::int64_t self_collision_ns = 0, self_collision_runs = 0;
 
  private:
-  struct Backup {
-    physics::Rows x, v;
-  };
-  std::vector<Backup> backups_;
-  std::vector<std::size_t> apart_;  // cloths that take a thread each
-  std::vector<std::int64_t> busy_;  // of each thread, with so many particles
-  bool finite_ = true;              // at the end of the frame
+  std::vector<physics::FrameRecord> records_;  // of each cloth
+  std::vector<std::size_t> apart_;             // cloths that take a thread each
+  std::vector<std::int64_t> busy_;             // of each thread, with so many particles
+  bool finite_ = true;                         // at the end of the frame
   int saved_substeps_ = 1;
   double saved_lag_ = 0;
   physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_

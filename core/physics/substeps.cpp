@@ -195,8 +195,8 @@ void Simulation::State::begin_again() {
 
 // Whether something was so fast at the frame's start that it leaves all bounds by any method.
 bool Simulation::State::flies_away() const {
-  return std::any_of(backups_.begin(), backups_.end(), [&](const Backup& b) {
-    return !(b.v.greatest(kernel_table(simd)) * scene.time.frame < kFarAway);
+  return std::any_of(records_.begin(), records_.end(), [&](const FrameRecord& r) {
+    return !(r.v().greatest(kernel_table(simd)) * scene.time.frame < kFarAway);
   });
 }
 
@@ -244,11 +244,11 @@ bool Simulation::State::overshot() const {
     const Lattice& l = step.lattice();
     const float most = greatest_stretch(step, l.x);
     if (!(most > kNoticed)) continue;
-    const float at_start = greatest_stretch(step, backups_[c].x);
+    const float at_start = greatest_stretch(step, records_[c].x());
     const bool doubled = most - 1 > 2 * (at_start - 1);
     if (most <= at_start || !(most > kStretched || doubled)) continue;
     const double start = double(frame) * scene.time.frame;
-    if (gained(scene, method, step, backups_[c].x, backups_[c].v, dt, start,
+    if (gained(scene, method, step, records_[c].x(), records_[c].v(), dt, start,
                start + scene.time.frame))
       return true;
   }

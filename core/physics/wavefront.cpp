@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "physics/frame_record.h"
 #include "physics/threads.h"
 
 namespace weft::physics {
@@ -31,6 +32,7 @@ constexpr int kNone = -1;  // no tile
 struct Wavefront::Run {
   const Substeps& substeps;
   std::span<const RowSpan> awake;
+  FrameRecord* record;
 };
 
 Wavefront::Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes,
@@ -120,7 +122,8 @@ void Wavefront::choose_chunks(int count, int threads) {
   while (--rising > 0) add(length(rising));
 }
 
-void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake) {
+void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake,
+                    FrameRecord* record) {
   // Tiles of one substep follow one on the other, unless no row reaches another.
   const bool apart = reach_ == 0 && substeps.count == 1;
   const int at_once = substeps.count > 1 || apart ? threads.count() : 1;
@@ -128,7 +131,7 @@ void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const 
   if (substeps.dt != prepared_dt_)
     for (RowStage* s : stages_) s->prepare(substeps.dt);
   prepared_dt_ = substeps.dt;
-  const Run r{substeps, awake};
+  const Run r{substeps, awake, record};
   if (const int slots = chunk_substeps_ * ring_; slots > slots_) {
     for (RowStage* s : stages_) s->reserve_slots(slots);
     slots_ = slots;
@@ -156,25 +159,36 @@ void Wavefront::run_rows(const Run& r, RowStage& stage, RowSpan rows, const Subs
   }
 }
 
+RowSpan Wavefront::tile_rows(int tile, int offset) const {
+  return {std::clamp(tile * height_ - offset, 0, rows_),
+          std::clamp((tile + 1) * height_ - offset, 0, rows_)};
+}
+
 void Wavefront::run_tile(const Run& r, int tile, const Chunk& chunk) const {
+  // The first stage reaches ahead of the tile.
+  const int ahead = stages_.front()->reach;
+  if (r.record && chunk.first == 0)
+    r.record->keep({tile == 0 ? 0 : tile_rows(tile, -ahead).begin, tile_rows(tile, -ahead).end});
   std::size_t level = 0;
   for (int s = 0; s < chunk.count; ++s) {
     const Substep substep = r.substeps.at(chunk.first + s, chunk.slot + s);
     for (std::size_t q = 0; q < stages_.size(); ++q, ++level) {
-      const int begin = std::max(0, tile * height_ - offset_[level]);
-      const int end = std::min(rows_, (tile + 1) * height_ - offset_[level]);
-      if (begin >= end) continue;
+      const RowSpan rows = tile_rows(tile, offset_[level]);
+      if (rows.begin == rows.end) continue;
       RowStage& stage = *stages_[q];
       if (profile_.empty()) {
-        run_rows(r, stage, {begin, end}, substep);
+        run_rows(r, stage, rows, substep);
         continue;
       }
       const auto before = std::chrono::steady_clock::now();
-      run_rows(r, stage, {begin, end}, substep);
+      run_rows(r, stage, rows, substep);
       const auto spent = std::chrono::steady_clock::now() - before;
       profile_[q] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
     }
   }
+  // What the last stage leaves behind is final.
+  if (r.record && chunk.first + chunk.count == r.substeps.count)
+    r.record->look(tile_rows(tile, offset_[level - 1]));
 }
 
 // Every tile counts the tiles it still waits for. Whoever finishes the last of them goes on with it,

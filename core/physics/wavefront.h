@@ -21,6 +21,7 @@
 
 namespace weft::physics {
 
+class FrameRecord;
 class Threads;
 
 class Wavefront {
@@ -28,8 +29,10 @@ class Wavefront {
   // Stages of one substep, in order. `row_bytes` sizes the tiles to the cache.
   Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes, double row_nanoseconds);
 
-  // Only the rows of `awake` are worked on, spans in order and apart; empty: all rows.
-  void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {});
+  // Only the rows of `awake` are worked on, spans in order and apart; empty: all rows. The `record`
+  // keeps all rows as they are before, and looks at them after.
+  void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {},
+           FrameRecord* record = nullptr);
 
   // Adds to ticks[q] the time that stage q took; off when null.
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds) { profile_ = nanoseconds; }
@@ -48,6 +51,7 @@ class Wavefront {
   void choose_chunks(int count, int threads);
   Chunk chunk(int number, int first, int count) const;
   void run_tile(const Run& run, int tile, const Chunk& chunk) const;
+  RowSpan tile_rows(int tile, int offset) const;
   static void run_rows(const Run& run, RowStage& stage, RowSpan rows, const Substep& substep);
   void run_parallel(const Run& run, Threads& threads);
   void work(const Run& run);

@@ -153,15 +153,17 @@ struct AdvanceRow {
   float inverse_dt;
 };
 
-// One row, and what its free particles have: ½ Σ m v² and -Σ m g·x.
-struct EnergyRow {
+// One row, and what a frame is judged by: the energies of its free particles, ½ Σ m v² and -Σ m g·x,
+// and the greatest size of a coordinate; infinite if one is not a number.
+struct TallyRow {
   int columns;
   ConstRow3 x, v;
   const float* w;  // inverse mass [1/kg]
   double g[3];     // m/s²
 };
-struct RowEnergy {
-  double kinetic, potential;  // J
+struct Tally {
+  double kinetic = 0, potential = 0;  // J
+  float greatest = 0;                 // m
 };
 
 // The constraints of one family and row: ends next to each other, and which are left.
@@ -350,7 +352,7 @@ struct KernelTable {
   int (*surface_pairs)(const SurfacePairs&);    // measures them; returns how many touch
   // The greatest size of `count` values, a multiple of 16; infinite if one is not a number.
   float (*greatest)(const float* values, std::ptrdiff_t count);
-  RowEnergy (*row_energy)(const EnergyRow&);
+  Tally (*tally)(const TallyRow&);
   float (*greatest_square)(const FarRows&);     // of a constraint's length
   double (*stretch_energy)(const StretchRow&);  // J
   void (*tangent)(const TangentRow&);

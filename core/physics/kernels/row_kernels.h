@@ -107,7 +107,7 @@ void bend_line(const physics::BendLine&);
 void bend_twist(const physics::TwistRow&);
 
 float greatest(const float* values, std::ptrdiff_t count);
-physics::RowEnergy row_energy(const physics::EnergyRow&);
+physics::Tally tally(const physics::TallyRow&);
 float greatest_square(const physics::FarRows&);
 double stretch_energy(const physics::StretchRow&);
 void tangent(const physics::TangentRow&);

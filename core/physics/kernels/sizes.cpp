@@ -10,27 +10,39 @@ typedef double WideDouble __attribute__((vector_size(8 * kLanes)));
 WEFT_INLINE WideDouble twice(Wide v) {  // as precise
   return __builtin_convertvector(v, WideDouble);
 }
-}  // namespace
 
 // As whole numbers the sizes of floats have the order of their bits, and what is not a number lies
 // above infinity.
+class Greatest {
+ public:
+  void add(int block, Wide values) {
+    const WideInt size = (WideInt)values & 0x7fffffff;
+    most_[block] = size > most_[block] ? size : most_[block];
+  }
+  float value() const {
+    constexpr int kInfinite = 0x7f800000;
+    int greatest = 0;
+    for (const WideInt& m : most_)
+      for (int lane = 0; lane < kLanes; ++lane) greatest = m[lane] > greatest ? m[lane] : greatest;
+    return ((Wide)(WideInt{} + (greatest > kInfinite ? kInfinite : greatest)))[0];
+  }
+
+ private:
+  WideInt most_[kBlocks] = {};
+};
+}  // namespace
+
 float greatest(const float* values, std::ptrdiff_t count) {
-  constexpr int kSize = 0x7fffffff, kInfinite = 0x7f800000;
-  WideInt most[kBlocks] = {};
+  Greatest most;
   for (std::ptrdiff_t i = 0; i < count; i += 16)
-    for (int b = 0; b < kBlocks; ++b) {
-      const WideInt size = (WideInt)load(values + i + b * kLanes) & kSize;
-      most[b] = size > most[b] ? size : most[b];
-    }
-  int greatest = 0;
-  for (const WideInt& m : most)
-    for (int lane = 0; lane < kLanes; ++lane) greatest = m[lane] > greatest ? m[lane] : greatest;
-  return ((Wide)(WideInt{} + (greatest > kInfinite ? kInfinite : greatest)))[0];
+    for (int b = 0; b < kBlocks; ++b) most.add(b, load(values + i + b * kLanes));
+  return most.value();
 }
 
 // In double: what a small swing releases is a millionth of the height it has.
-physics::RowEnergy row_energy(const physics::EnergyRow& r) {
+physics::Tally tally(const physics::TallyRow& r) {
   WideDouble motion[kBlocks] = {}, height[kBlocks] = {};
+  Greatest most;
   for (int i = 0; i < padded(r.columns); i += 16)
     for (int b = 0; b < kBlocks; ++b) {
       const int at = i + b * kLanes;
@@ -40,8 +52,9 @@ physics::RowEnergy row_energy(const physics::EnergyRow& r) {
       motion[b] = motion[b] + mass * twice(dot(v, v));
       height[b] =
           height[b] - mass * (twice(x.x) * r.g[0] + twice(x.y) * r.g[1] + twice(x.z) * r.g[2]);
+      for (const Wide c : {x.x, x.y, x.z}) most.add(b, c);
     }
-  physics::RowEnergy e{0, 0};
+  physics::Tally e{0, 0, most.value()};
   for (int b = 0; b < kBlocks; ++b)
     for (int lane = 0; lane < kLanes; ++lane) {
       e.kinetic += 0.5 * motion[b][lane];

@@ -47,7 +47,7 @@ const physics::KernelTable& table() {
       squares_within,
       surface_pairs,
       greatest,
-      row_energy,
+      tally,
       greatest_square,
       stretch_energy,
       tangent,
