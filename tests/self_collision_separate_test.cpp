@@ -147,12 +147,13 @@ class Separating : public testing::TestWithParam<Simd> {
     // In two parts, each of its own bodies.
     const auto bodies = std::int32_t(place.size());
     std::vector<AskedSum> sum(place.size());
-    std::vector<std::int32_t> moved(2 * touching.owner.size());
+    std::vector<std::int32_t> asked_of(2 * touching.owner.size());
+    std::vector<std::uint8_t> moved(place.size() / 16 + 1);
     for (const auto& [begin, end] : {std::pair{0, bodies / 3}, {bodies / 3, bodies}}) {
       const int first = kernels.sum_asked({count, touching.owner.data(), touching.neighbour.data(),
-                                           asked.data(), begin, end, sum.data(), moved.data()});
-      kernels.move_bodies(
-          {place.data(), motion.data(), friction, sum.data(), first, moved.data(), 0.25f, 100});
+                                           asked.data(), begin, end, sum.data(), asked_of.data()});
+      kernels.move_bodies({place.data(), motion.data(), friction, sum.data(), first,
+                           asked_of.data(), moved.data(), 0.25f, 100});
     }
     for (const AskedSum& s : sum)
       for (int k = 0; k < 4; ++k) EXPECT_TRUE(s.push[k] == 0 && s.gain[k] == 0);
@@ -160,6 +161,8 @@ class Separating : public testing::TestWithParam<Simd> {
     for (std::size_t a = 0; a < out.size(); ++a) {
       std::copy_n(place[a].x, 4, out[a].x);
       std::copy_n(motion[a].v, 4, out[a].v);
+      const bool stayed = std::equal(out[a].x, out[a].x + 3, crowd.bodies[a].x);
+      EXPECT_TRUE(stayed || moved[a / 16]) << "body " << a;
     }
     return out;
   }
@@ -277,6 +280,10 @@ TEST_P(Separating, BodiesAreTheParticles) {
   block.since = 0.5f;
   block.inverse_since = 2;
   block.advance = 0.5f;
+  std::vector<std::uint8_t> moved(place.size() / 16 + 2, 1), loaded(kFloats / 16);
+  block.moved = moved.data();
+  block.first_body = kFirstBody;
+  block.loaded = loaded.data() + kFirst / 16;
   kernel_table(GetParam()).gather_bodies(block);
   // visit(number in the lattice, of the body)
   const auto each = [&](auto&& visit) {
@@ -304,6 +311,15 @@ TEST_P(Separating, BodiesAreTheParticles) {
   });
   kernel_table(GetParam()).scatter_bodies(block);
   for (int c = 0; c < 7; ++c) EXPECT_EQ(lattice[c], expected[c]);
+  // What has neither moved nor a load is passed over: the loads are gone after once more.
+  std::fill(moved.begin(), moved.end(), std::uint8_t(0));
+  for (const bool have_loads : {true, false}) {
+    EXPECT_EQ(std::count(loaded.begin(), loaded.end(), 1), have_loads ? 2 * kRows : 0);
+    for (Place& p : place) p.x[0] += 1;
+    const std::vector<float> before = lattice[0];
+    kernel_table(GetParam()).scatter_bodies(block);
+    EXPECT_EQ(lattice[0] != before, have_loads);
+  }
 }
 
 // A row of particles that contact gives the same velocity, time after time: half of it comes in advance
@@ -331,6 +347,10 @@ TEST_P(Separating, LoadsThatLastAreCarriedInAdvance) {
   block.since = kSince;
   block.inverse_since = 1 / kSince;
   block.advance = 0.5f;
+  const std::vector<std::uint8_t> moved(4, 1);
+  std::vector<std::uint8_t> loaded(kFloats / 16);
+  block.moved = moved.data();
+  block.loaded = loaded.data();
   // What contact gives besides what it gave in advance, which has been used up by the next time.
   const auto press = [&](float gain) {
     for (auto& component : v) std::fill(component.begin(), component.end(), 0.0f);

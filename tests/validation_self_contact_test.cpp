@@ -10,17 +10,20 @@ namespace weft {
 namespace {
 
 TEST(SelfContact, CourseSheetFoldsAndRestsAThicknessApart) {
-  Simulation simulation(read_scene("selfCollision").scene);
-  std::int64_t substeps = 0, crossings = 0, pairs = 0;
-  while (substeps < 12000) {
-    simulation.advance_frame();
-    substeps += simulation.substeps();
-    if (simulation.frame() % 10 != 0) continue;
-    const auto p = simulation.report().penetration;
-    crossings = std::max(crossings, p.crossings);
-    if (substeps >= 10000) pairs = std::max(pairs, p.self_pairs);
+  std::int64_t crossings = 0, pairs = 0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    Options options;
+    options.seed = seed;
+    Simulation simulation(read_scene("selfCollision").scene, options);
+    for (std::int64_t substeps = 0; substeps < 12000; substeps += simulation.substeps()) {
+      simulation.advance_frame();
+      if (simulation.frame() % 10 != 0) continue;
+      const auto p = simulation.report().penetration;
+      crossings = std::max(crossings, p.crossings);
+      if (substeps >= 10000) pairs = std::max(pairs, p.self_pairs);
+    }
   }
-  const char* const law = "sheet that folds onto itself, 12000 substeps";
+  const char* const law = "sheet that folds onto itself, 12000 substeps, the worst of five starts";
   expect({law, "scene selfCollision, particles: crossings", 0, 0, "triangle pairs"},
          double(crossings));
   expect({law, "scene selfCollision, particles: closer than the thickness at rest", 0, 0, "pairs"},

@@ -30,16 +30,29 @@ struct WideSpread {
 }  // namespace
 
 void block_bounds(const physics::BlockRows& b) {
-  WideSpread x, v, moved, along, across;
+  WideSpread x, v, moved;
+  for (int j = 0; j < b.rows; ++j)
+    for (int i = 0; i < b.columns; i += kLanes) {
+      const std::ptrdiff_t at = std::ptrdiff_t(j) * b.stride + i;
+      const WideInt inside = lanes_below(b.columns - i);
+      const Wide3 here = load3(b.x, at);
+      x.add(here, inside);
+      v.add(load3(b.v, at), inside);
+      if (b.then.x) moved.add(here - load3(b.then, at), inside);
+    }
+  b.bounds->x = x.spread();
+  b.bounds->v = v.spread();
+  if (b.then.x) b.bounds->moved = moved.spread();
+}
+
+void block_edges(const physics::BlockRows& b) {
+  WideSpread along, across;
   Wide change_along{}, change_across{};
   for (int j = 0; j < b.rows; ++j)
     for (int i = 0; i < b.columns; i += kLanes) {
       const std::ptrdiff_t at = std::ptrdiff_t(j) * b.stride + i;
       const WideInt inside = lanes_below(b.columns - i);
       const Wide3 here = load3(b.x, at), speed = load3(b.v, at);
-      x.add(here, inside);
-      v.add(speed, inside);
-      if (b.then.x) moved.add(here - load3(b.then, at), inside);
       const WideInt starts = lanes_below(b.edges_along - i);
       along.add(load3(b.x, at + 1) - here, starts);
       const Wide3 pulled = load3(b.v, at + 1) - speed;
@@ -49,9 +62,6 @@ void block_bounds(const physics::BlockRows& b) {
       const Wide3 turned = load3(b.v, at + b.stride) - speed;
       change_across = max(change_across, select(inside, dot(turned, turned), Wide{}));
     }
-  b.bounds->x = x.spread();
-  b.bounds->v = v.spread();
-  if (b.then.x) b.bounds->moved = moved.spread();
   b.bounds->along = along.spread();
   b.bounds->across = across.spread();
   b.bounds->change_along = greatest(change_along);

@@ -134,11 +134,46 @@ struct BodyBlock {
   Row3 load, ahead;
   float since, inverse_since;  // the last time: s, 1/s
   float advance;               // share of a lasting load that is given in advance
+  // What neither contact has moved nor carries a load is passed over, 16 columns at once: whether any of
+  // every 16 bodies has moved, and the first of these; and of every 16 in the lattice, whether any has a
+  // load or something in advance, the first of the block's.
+  const std::uint8_t* moved;
+  std::int32_t first_body;
+  std::uint8_t* loaded;
 };
 
 // Room for pairs, and 16 lanes of padding.
 struct PairRoom {
   std::int32_t *owner, *neighbour;
+  PairRoom from(int i) const { return {owner + i, neighbour + i}; }  // pair i on
+};
+
+// So many columns and rows further on in a sheet: down > 0, or down = 0 and across > 0.
+struct SheetStep {
+  int across, down;
+};
+
+// Particles of one sheet, and those that lie a step away in it, row against row: no list is needed to
+// find them.
+struct BesidePairs {
+  ConstRow3 x;  // the sheet's first particle
+  std::ptrdiff_t stride;
+  int columns, rows;              // of the sheet
+  int column, row;                // the block's first particle,
+  int block_columns, block_rows;  // and how many it has
+  const SheetStep* step;
+  int steps;
+  float range_squared;              // m²
+  std::int32_t first, name_stride;  // names, of the sheet's first particle and from row to row
+  // Out, row after row and step after step: pairs within the range. Room for block_columns * steps more
+  // than `most`.
+  PairRoom pairs;
+  int most;
+};
+
+// Of a block, or as many of its rows as there was room for.
+struct BesideFound {
+  int rows, pairs;
 };
 
 // Pairs, one owner's after another's, and where those of them go that are close, nearer than `reach` of
@@ -209,8 +244,9 @@ struct MoveBodies {
   AskedSum* sum;
   int bodies;
   const std::int32_t* body;
-  float course_share;  // of a correction, per run
-  float inverse_dt;    // 1/s
+  std::uint8_t* moved;  // out: set for every 16 bodies of which one moves
+  float course_share;   // of a correction, per run
+  float inverse_dt;     // 1/s
 };
 
 }  // namespace weft::physics

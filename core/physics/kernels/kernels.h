@@ -285,6 +285,8 @@ struct BlockRows;  // kernels/contact.h
 struct NearBoxes;
 struct CellKeys;
 struct NearSearch;
+struct BesideFound;
+struct BesidePairs;
 struct NearFound;
 struct ClosePairs;
 struct CloseFound;
@@ -339,9 +341,11 @@ struct KernelTable {
   void (*wind)(const WindRow&);
   void (*push)(const PushRow&);
   void (*block_bounds)(const BlockRows&);  // how a block lies and moves
+  void (*block_edges)(const BlockRows&);   // and its edges
   int (*near_boxes)(const NearBoxes&);     // returns how many are near
   void (*cell_keys)(const CellKeys&);
   NearFound (*near_pairs)(const NearSearch&);  // who is in range of whom
+  BesideFound (*beside_pairs)(const BesidePairs&);
   CloseFound (*close_pairs)(const ClosePairs&);
   AskFound (*ask_pairs)(const AskPairs&);
   int (*sum_asked)(const SumAsked&);  // returns how many are asked for the first time

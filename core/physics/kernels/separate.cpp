@@ -188,6 +188,7 @@ void move_bodies(const MoveBodies& given) {
     const Four faster = course ? by * s.inverse_dt : gain * Four{1, 1, 1, 0} * mean;
     store_four(x, load_four(x) + by);
     store_four(v, load_four(v) + faster);
+    s.moved[body / 16] = 1;
   }
 }
 
@@ -204,21 +205,30 @@ void gather_bodies(const BodyBlock& given) {
 void scatter_bodies(const BodyBlock& given) {
   const BodyBlock b = given;
   for (int j = 0; j < b.rows; ++j)
-    for (int i = 0; i < b.columns; i += kLanes) {
-      const std::ptrdiff_t at = j * b.stride + i, body = j * b.body_stride + i;
-      store3(b.x, at, records_in_row(b.place[body].x, kBody).xyz);
-      const Wide4 now = records_in_row(b.motion[body].v, kBody);
-      const Wide3 gain = now.xyz - load3(b.v, at);
-      const Wide3 load = (gain + load3(b.ahead, at)) * wide(b.inverse_since);
-      const Wide square = dot(load, load);
-      const Wide lasting =
-          b.advance * b.since * min(wide(1), dot(load, load3(b.load, at)) / square);
-      const Wide share = max(Wide{}, min(lasting, dot(gain, load) / square));
-      const WideInt pressed = (now.last > 0.0f) & (square > 0.0f);
-      const Wide3 ahead = load * select(pressed, share, Wide{});
-      store3(b.load, at, load);
-      store3(b.ahead, at, ahead);
-      store3(b.v, at, now.xyz + ahead);
+    for (int group = 0; group < b.columns; group += 16) {
+      const std::ptrdiff_t first = j * b.body_stride + group, number = b.first_body + first;
+      std::uint8_t& loaded = b.loaded[(j * b.stride + group) / 16];
+      if (!(b.moved[number / 16] | b.moved[(number + 15) / 16] | loaded)) continue;
+      WideInt loads{};
+      for (int i = 0; i < 16 && group + i < b.columns; i += kLanes) {
+        const std::ptrdiff_t at = j * b.stride + group + i, body = first + i;
+        store3(b.x, at, records_in_row(b.place[body].x, kBody).xyz);
+        const Wide4 now = records_in_row(b.motion[body].v, kBody);
+        const Wide3 gain = now.xyz - load3(b.v, at);
+        const Wide3 load = (gain + load3(b.ahead, at)) * wide(b.inverse_since);
+        const Wide square = dot(load, load);
+        const Wide lasting =
+            b.advance * b.since * min(wide(1), dot(load, load3(b.load, at)) / square);
+        const Wide share = max(Wide{}, min(lasting, dot(gain, load) / square));
+        const WideInt pressed = (now.last > 0.0f) & (square > 0.0f);
+        const Wide3 ahead = load * select(pressed, share, Wide{});
+        store3(b.load, at, load);
+        store3(b.ahead, at, ahead);
+        store3(b.v, at, now.xyz + ahead);
+        // (What is ahead is a share of the load.)
+        loads = loads | (load.x != 0.0f) | (load.y != 0.0f) | (load.z != 0.0f);
+      }
+      loaded = any(loads);
     }
 }
 

@@ -64,6 +64,7 @@ Blocks::Blocks(const std::vector<Sheet>& sheets, float neighbour, const KernelTa
   cut(sheets);
   bounds_.resize(blocks_.size());
   flat_.resize(blocks_.size());
+  edges_.resize(blocks_.size());
   near_.resize(blocks_.size() + kPadding);
   near_squared_.resize(blocks_.size() + kPadding);
   for (int k = 0; k < 3; ++k) {
@@ -86,13 +87,45 @@ void Blocks::cut(const std::vector<Sheet>& sheets) {
   }
 }
 
-void Blocks::measure(Threads& threads) {
-  const bool few = blocks_.size() < kFewBlocks;
-  threads.share(blocks_.size(), few, [&](std::size_t b) { measure_block(b); });
-  for (std::size_t b = 0; b < blocks_.size(); ++b) flat_[b] = flat(b);
+// visit(block) for a block, and those beyond it along the row, the column and both.
+template <class Visit>
+void Blocks::for_each_of_square(std::size_t b, const Visit& visit) const {
+  const Block& block = blocks_[b];
+  const Extent& e = extents_[std::size_t(block.sheet)];
+  const auto across = std::size_t(e.across);
+  const bool along = block.across + 1 < e.across, below = block.down + 1 < e.down;
+  visit(b);
+  if (along) visit(b + 1);
+  if (below) visit(b + across);
+  if (along && below) visit(b + across + 1);
 }
 
-void Blocks::measure_block(std::size_t b) {
+void Blocks::measure(Threads& threads) {
+  threads.share(blocks_.size(), blocks_.size() < kFewBlocks, [&](std::size_t b) {
+    measure_block(b);
+    if (edges_[b]) kernels_.block_edges(rows_of(b));
+  });
+  measure_flat(false);
+}
+
+void Blocks::measure_edges(Threads& threads) {
+  threads.share(blocks_.size(), blocks_.size() < kFewBlocks,
+                [&](std::size_t b) { kernels_.block_edges(rows_of(b)); });
+  measure_flat(true);
+}
+
+// Of all squares, or of those that were nearly flat before.
+void Blocks::measure_flat(bool all) {
+  std::fill(edges_.begin(), edges_.end(), std::uint8_t(0));
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    Flat& f = flat_[b];
+    if (!all && f.ratio <= f.needed) continue;
+    f = flat(b);
+    if (f.ratio > f.needed) for_each_of_square(b, [&](std::size_t of) { edges_[of] = 1; });
+  }
+}
+
+BlockRows Blocks::rows_of(std::size_t b) {
   const Block& block = blocks_[b];
   Lattice& l = *sheets_[std::size_t(block.sheet)].lattice;
   BlockRows rows{};
@@ -106,7 +139,11 @@ void Blocks::measure_block(std::size_t b) {
   rows.then = block.active ? ConstRow3(first_of(block, then_[std::size_t(block.sheet)]))
                            : ConstRow3(nullptr, nullptr, nullptr);
   rows.bounds = &bounds_[b];
-  kernels_.block_bounds(rows);
+  return rows;
+}
+
+void Blocks::measure_block(std::size_t b) {
+  kernels_.block_bounds(rows_of(b));
   for (int k = 0; k < 3; ++k) {
     low_[k][b] = bounds_[b].x.low[k];
     high_[k][b] = bounds_[b].x.high[k];
@@ -119,20 +156,14 @@ Blocks::Flat Blocks::flat(std::size_t b) const {
   const Block& block = blocks_[b];
   const Sheet& sheet = sheets_[std::size_t(block.sheet)];
   if (std::abs(sheet.uv) > 1e-3f * std::sqrt(sheet.uu * sheet.vv)) return {};
-  const Extent& e = extents_[std::size_t(block.sheet)];
-  const auto across = std::size_t(e.across);
-  const bool along = block.across + 1 < e.across, below = block.down + 1 < e.down;
   BlockBounds all = bounds_[b];
-  const auto add = [&](std::size_t other) {
+  for_each_of_square(b, [&](std::size_t other) {
     const BlockBounds& o = bounds_[other];
     all.along = both(all.along, o.along);
     all.across = both(all.across, o.across);
     all.change_along = std::max(all.change_along, o.change_along);
     all.change_across = std::max(all.change_across, o.change_across);
-  };
-  if (along) add(b + 1);
-  if (below) add(b + across);
-  if (along && below) add(b + across + 1);
+  });
   const Middle u = middle(all.along), v = middle(all.across);
   const float lu = std::sqrt(dot(u.at, u.at)), lv = std::sqrt(dot(v.at, v.at));
   const float ru = std::sqrt(sheet.uu), rv = std::sqrt(sheet.vv);

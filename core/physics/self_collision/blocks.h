@@ -59,8 +59,10 @@ class Blocks {
   // Where the particles of a sheet were when last remembered.
   const Rows& then(std::size_t sheet) const { return then_[sheet]; }
 
-  // Bounds of every block, as its particles are now.
+  // Bounds of every block, as its particles are now. What is not known to be nearly flat counts as not
+  // flat, until all edges are measured again.
   void measure(Threads& threads);
+  void measure_edges(Threads& threads);
 
   struct Outlook {
     bool covered;    // all pairs that may touch, or soon will, are active and have moved little
@@ -71,7 +73,8 @@ class Blocks {
   // `motion`: the same between two looks [m]; `longest`: until the next look [s].
   Outlook look(float reach, float skin, float motion, double longest);
 
-  // Makes active what may touch within `reach`, or all, and remembers where it is.
+  // Makes active what may touch within `reach`, or all, and remembers where it is. Edges are to be
+  // measured before.
   void choose(float reach);
   void choose_all();
   Spread box() const;  // about the active blocks, as measured [m]
@@ -85,8 +88,12 @@ class Blocks {
     float rate = 0;    // at most so much less in a second [1/s]
   };
   void cut(const std::vector<Sheet>& sheets);
+  BlockRows rows_of(std::size_t b);
   void measure_block(std::size_t b);
+  void measure_flat(bool all);
   Flat flat(std::size_t b) const;
+  template <class Visit>
+  void for_each_of_square(std::size_t b, const Visit& visit) const;
   // The first of a square of four blocks that holds both, a <= b; -1 when none does.
   int corner(std::size_t a, std::size_t b) const;
   template <class Visit>
@@ -103,6 +110,7 @@ class Blocks {
   std::vector<Extent> extents_;  // of every sheet, in blocks
   std::vector<BlockBounds> bounds_;
   std::vector<Flat> flat_;
+  std::vector<std::uint8_t> edges_;       // whether a block is of a square that is nearly flat
   AlignedArray<float> low_[3], high_[3];  // of bounds_.x
   std::vector<std::int32_t> near_;        // of one block, which others,
   std::vector<float> near_squared_;       // and how far their boxes are

@@ -11,15 +11,18 @@ constexpr float kHair = 1.001f;            // cells are wider than the range, fo
 constexpr std::size_t kPairsReserved = 4;  // per point
 constexpr std::size_t kCandidates = 512;   // of one cell, room at first
 
-// The neighbours of a point that lie b rows further on: those from `first` to `last` columns further on.
+bool within(const NamedSheet& s, float range_squared, int a, int b) {
+  return double(a) * a * s.uu + 2.0 * a * b * s.uv + double(b) * b * s.vv < range_squared;
+}
+
+// The points near one on the flat sheet that lie b rows further on: those from `first` to `last` columns
+// further on.
 struct Columns {
   int first, last;
 };
 
-Columns neighbours_in_row(const NamedSheet& s, int b) {
-  const auto near = [&](int a) {
-    return double(a) * a * s.uu + 2.0 * a * b * s.uv + double(b) * b * s.vv < s.range_squared;
-  };
+Columns near_in_row(const NamedSheet& s, int b) {
+  const auto near = [&](int a) { return within(s, s.range_squared, a, b); };
   // About the nearest; rounding may leave out a column at either end.
   const double shear = double(s.uv) / s.uu;
   const double height_squared = std::max(0.0, double(s.vv) - shear * s.uv);
@@ -33,13 +36,13 @@ Columns neighbours_in_row(const NamedSheet& s, int b) {
   return c;
 }
 
-// visit(b, columns) for every row of neighbours, from the point's own on.
+// visit(b, columns) for every row of points near one, from the point's own on.
 template <class Visit>
 void for_each_row(const NamedSheet& s, const Visit& visit) {
   const double shear = double(s.uv) / s.uu, height_squared = double(s.vv) - shear * s.uv;
   for (int b = 0; b < s.rows; ++b) {
     if (b > 0 && double(b - 1) * (b - 1) * height_squared >= s.range_squared) break;
-    const Columns columns = neighbours_in_row(s, b);
+    const Columns columns = near_in_row(s, b);
     if (columns.first <= columns.last) visit(b, columns);
   }
 }
@@ -63,6 +66,15 @@ std::size_t give_names(std::vector<NamedSheet>& sheets) {
     between = farthest;
   }
   return std::size_t(next);
+}
+
+std::vector<SheetStep> steps_beyond(const NamedSheet& s, float range_squared) {
+  std::vector<SheetStep> steps;
+  for_each_row(s, [&](int b, Columns c) {
+    for (int a = b == 0 ? 1 : c.first; a <= c.last; ++a)
+      if (!within(s, range_squared, a, b)) steps.push_back({a, b});
+  });
+  return steps;
 }
 
 PairSearch::PairSearch(std::size_t most_points, const std::vector<NamedSheet>& sheets,

@@ -1,6 +1,6 @@
 // Who is within a range of whom: points sorted into cells (cell_grid.h) and searched in shares of the
 // sorted order, so that the result is the same for any threads. Points have names. Those of a sheet are
-// named row after row, so that the difference of two names tells whether they are neighbours there.
+// named row after row, so that the difference of two names tells whether they lie beside each other there.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,15 @@
 
 namespace weft::physics {
 
-// A flat sheet of points, where two at (i, j) and (i + a, j + b) are neighbours, and no pair, when
+// A flat sheet of points, where two at (i, j) and (i + a, j + b) are left out of the search when
 // a² uu + 2 a b uv + b² vv < range². That at (i, j) is named first + stride j + i.
 struct NamedSheet {
   int columns, rows;
   float uu, uv, vv, range_squared;  // m²
   std::int32_t stride, first;
 };
+// The steps of which that holds, but not with so much less a range [m²].
+std::vector<SheetStep> steps_beyond(const NamedSheet& sheet, float range_squared);
 // Chooses the first names, and makes the strides greater where need be, so that names differ by as much
 // as those of neighbours for no others. Returns how many names there are, unused ones included.
 std::size_t give_names(std::vector<NamedSheet>& sheets);
@@ -25,7 +27,7 @@ class PairSearch {
  public:
   static constexpr std::size_t kChunk = 256;  // points
 
-  // With no sheets, there are no neighbours.
+  // With no sheets, none are left out.
   PairSearch(std::size_t most_points, const std::vector<NamedSheet>& sheets,
              const KernelTable& kernels);
 

@@ -12,17 +12,23 @@
 namespace weft::physics {
 namespace {
 
-constexpr double kNeighbour = 1.3;  // thicknesses: pairs nearer than that at rest are none
+// Thicknesses at rest: pairs nearer than that are none; others, nearer than that, are beside each other.
+constexpr double kNeighbour = 1.3, kBeside = 2.6;
 // Of the thickness: wider where the list of pairs was good for a few runs only, narrower where it was
 // for many.
-constexpr float kLeastSkin = 0.45f, kMostSkin = 1.1f;
+constexpr float kLeastSkin = 0.45f, kMostSkin = 1.4f;
 constexpr int kFewRuns = 3, kManyRuns = 8;
+constexpr int kRunsToEdges = 16;  // until what was not flat is looked at again
 // Of the thickness, relative motion between two runs: of those that touch; of others, which must
 // not come from a thickness apart to the other side.
 constexpr double kMotion = 0.4, kMotionApart = 0.9;
 constexpr double kFall = 0.0034;   // of the thickness, twice the fall from rest between two runs
 constexpr int kMostSubsteps = 32;  // between two looks
 constexpr int kMostSubstepsTouching = 12;
+// Of the distance at which they are held: how deep two may be when looked at, or else the next time comes
+// in half as many substeps, but not in fewer than these.
+constexpr double kSunk = 0.04;
+constexpr int kLeastSubstepsSunk = 2;
 constexpr int kMostSubstepsCourse = 4;  // its push acts like a spring, stable up to here
 constexpr std::size_t kFew = 4096;      // particles that one thread does faster
 
@@ -30,7 +36,7 @@ constexpr std::size_t kFew = 4096;      // particles that one thread does faster
 std::vector<NamedSheet> named(const std::vector<Sheet>& sheets) {
   std::vector<NamedSheet> named;
   for (const Sheet& s : sheets) {
-    const float range = s.thickness * float(kNeighbour);
+    const float range = s.thickness * float(kBeside);
     named.push_back({s.lattice->columns, s.lattice->rows, s.uu, s.uv, s.vv, range * range,
                      (s.lattice->columns + 15) / 16 * 16, 0});
   }
@@ -76,14 +82,22 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
     thickness_ = std::max(thickness_, s.thickness);
     course_ |= s.course;
   }
+  for (std::size_t n = 0; n < sheets_.size(); ++n) {
+    const float range = sheets_[n].thickness * float(kNeighbour);
+    steps_.push_back(steps_beyond(named_[n], range * range));
+  }
+  beside_.resize(blocks_.all().size());
   first_site_.resize(blocks_.all().size());
+  most_touching_ = kMostSubstepsTouching;
   for (const Sheet& s : sheets_) {
     load_.emplace_back(s.lattice->rows, s.lattice->stride);
     ahead_.emplace_back(s.lattice->rows, s.lattice->stride);
+    loaded_.emplace_back(std::size_t(s.lattice->rows) * std::size_t(s.lattice->stride) / 16);
   }
   place_.resize(bodies_);
   motion_.resize(bodies_);
   sums_.resize(bodies_);
+  moved_.resize(bodies_ / 16 + 2);
   const auto friction = [](const Sheet& s) { return s.course ? kCourseRule : s.friction; };
   friction_alike_ = friction(sheets_[0]);
   if (std::any_of(sheets_.begin(), sheets_.end(),
@@ -119,7 +133,10 @@ void SelfContact::list_sites(Threads& threads) {
   const Row3 to = search_.points();
   threads.share(blocks.size(), count_ < kFew, [&](std::size_t b) {
     const Block& block = blocks[b];
-    if (!block.active) return forget_loads(block);
+    if (!block.active) {
+      forget_loads(block);
+      return put_far_away(block);
+    }
     std::size_t at = first_site_[b];
     for (int j = block.row; j < block.row + block.rows; ++j, at += std::size_t(block.columns)) {
       const Row3 row = sheets_[std::size_t(block.sheet)].lattice->x.row(j);
@@ -130,6 +147,14 @@ void SelfContact::list_sites(Threads& threads) {
                 std::int32_t(body(std::size_t(block.sheet), j, block.column)));
     }
   });
+}
+
+// Nothing is found to touch bodies that are not kept up to date.
+void SelfContact::put_far_away(const Block& block) {
+  constexpr Place kFar{{1e18f, 1e18f, 1e18f, 0}};  // its square is still finite
+  for (int j = block.row; j < block.row + block.rows; ++j)
+    std::fill_n(place_.data() + body(std::size_t(block.sheet), j, block.column), block.columns,
+                kFar);
 }
 
 void SelfContact::sort(double margin, Threads& threads) {
@@ -153,7 +178,6 @@ void SelfContact::find(double margin, Threads& threads) {
   search_.find(thickness_ + float(margin), threads);
   found_ = 0;
   for (std::size_t k = 0; k < search_.chunks(); ++k) found_ += search_.pairs(k).count;
-  if (found_ == 0) forget_loads();
 }
 
 void SelfContact::search(double margin, Threads& threads) {
@@ -161,6 +185,7 @@ void SelfContact::search(double margin, Threads& threads) {
   blocks_.choose_all();
   sort(margin, threads);
   find(margin, threads);
+  for (std::size_t b = 0; b < beside_.size(); ++b) list_beside(b, thickness_ + float(margin));
   valid_ = false;
 }
 
@@ -169,6 +194,7 @@ void SelfContact::restart() {
   may_touch_ = false;
   skin_ = 0;
   kept_runs_ = 0;
+  most_touching_ = kMostSubstepsTouching;
   forget_loads();
 }
 
@@ -179,7 +205,7 @@ double SelfContact::most_substeps(double dt, double swing) const {
   const Vec3& g = scene_.gravity;
   const double pull = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
   const double fall = std::sqrt(kFall * thickness_ / std::max(pull, 1e-12));
-  return std::min<double>(std::min(fall, swing) / dt, kMostSubstepsTouching);
+  return std::min<double>(std::min(fall, swing) / dt, most_touching_);
 }
 
 int SelfContact::run(double dt, int since, double swing, Threads& threads) {
@@ -187,6 +213,8 @@ int SelfContact::run(double dt, int since, double swing, Threads& threads) {
   ++runs_;
   ++kept_runs_;
   blocks_.measure(threads);
+  const bool edges = !valid_ || kept_runs_ % kRunsToEdges == 0;
+  if (edges) blocks_.measure_edges(threads);
   const Blocks::Outlook now =
       blocks_.look(thickness_, skin_ * thickness_, motion, most_substeps(dt, swing) * dt);
   may_touch_ = now.touching;
@@ -195,6 +223,7 @@ int SelfContact::run(double dt, int since, double swing, Threads& threads) {
     if (kept_runs_ > kManyRuns) skin_ *= 0.8f;
     skin_ = std::clamp(skin_, kLeastSkin, kMostSkin);
     const float skin = skin_ * thickness_;
+    if (!edges) blocks_.measure_edges(threads);
     blocks_.choose(thickness_ + skin);
     sort(skin, threads);
     find(skin, threads);
@@ -203,8 +232,13 @@ int SelfContact::run(double dt, int since, double swing, Threads& threads) {
     valid_ = true;
   }
   passed_over_ += std::int64_t(particles_ - count_);
-  const double speed = respond(dt, since, threads);
-  const double touching = kMotion * thickness_ / std::max(speed, 1e-12);
+  const Met met = respond(dt, since, threads);
+  const double touching = kMotion * thickness_ / std::max(met.speed, 1e-12);
+  // What is pressed together sinks in for as long as it is left alone.
+  if (met.deepest > kSunk)
+    most_touching_ = std::max(std::min(since, most_touching_) / 2, kLeastSubstepsSunk);
+  else
+    most_touching_ = std::min(most_touching_ + 1, kMostSubstepsTouching);
   const double most = std::max(1.0, most_substeps(dt, swing));
   return int(std::clamp(std::min(now.seconds, touching) / dt, 1.0, most));
 }
@@ -236,9 +270,12 @@ SelfContact::Overlaps SelfContact::overlaps() {
 std::size_t SelfContact::bytes() const {
   std::size_t bytes = search_.bytes() + blocks_.bytes();
   bytes += bodies_ * (sizeof(Place) + sizeof(Motion) + sizeof(AskedSum)) + 4 * friction_.size();
+  bytes += moved_.size();
   for (const auto* sheets : {&load_, &ahead_})
     for (const Rows& rows : *sheets) bytes += rows.bytes();
-  for (const PairList& c : close_) bytes += 8 * c.owner.capacity();
+  for (const auto& loaded : loaded_) bytes += loaded.size();
+  for (const auto* lists : {&close_, &beside_})
+    for (const PairList& c : *lists) bytes += 8 * c.owner.capacity();
   for (const Touching& t : touching_)
     bytes += 8 * t.pairs.owner.capacity() + sizeof(Asked) * t.asked.capacity();
   for (const Part& p : parts_) bytes += 4 * p.bodies.capacity();

@@ -1,14 +1,19 @@
-// Self-collision, mode `particles`: no two particles of any cloths nearer than the thickness,
-// except neighbours: those within the range of the search of each other on the flat sheet.
+// Self-collision, mode `particles`: no two particles of any cloths nearer than the thickness, except
+// neighbours, those hardly farther than that from each other on the flat sheet.
 //
 // Sheets are cut into blocks (blocks.h). Those that nothing can touch, themselves included, are left
 // out; the particles of the others are searched for pairs within the range, the thickness and a skin
 // (cell_grid.h). The list stays complete until blocks that may touch have moved by more than the skin
-// against each other (Verlet 1967), and is made anew then. Blocks are looked at, and pairs pushed
-// apart, as often as the motion asks for: never more than a share of the thickness in between. A pair
-// is listed once and corrects both its ends, all pairs from the same state (Jacobi); what a particle is
-// asked is summed up in the order of the list, whatever the threads. What contact takes from a particle's velocity time after time it gives
-// in part beforehand, so that layers that lie on each other do not sink in between two times.
+// against each other (Verlet 1967), and is made anew then. Particles that lie beside each other in a
+// sheet, a little farther than neighbours, would be on it all the time and hardly ever touch: they are
+// left out, and tested row against row each time (kernels/beside_pairs.cpp).
+//
+// Blocks are looked at, and pairs pushed apart, as often as the motion asks for: never more than a share
+// of the thickness in between, and more often where pairs are found pressed into each other. A pair
+// corrects both its ends, all pairs from the same state (Jacobi), some times over where they are deep;
+// what a particle is asked is summed up in the order of the lists, whatever the threads. What contact
+// takes from a particle's velocity time after time it gives in part beforehand, so that layers that lie
+// on each other do not sink in between two times.
 #pragma once
 
 #include <memory>
@@ -57,14 +62,20 @@ class SelfContact {
       for (std::size_t i = 0; i < pairs.count; ++i)
         visit(site(pairs.owner[i]), site(pairs.neighbour[i]));
     }
+    for (const PairList& pairs : beside_)
+      for (std::size_t i = 0; i < std::size_t(pairs.count); ++i)
+        visit(site(pairs.owner[i]), site(pairs.neighbour[i]));
   }
 
   // One part of a run by itself, for measuring: the sort of what was searched last, its pairs
   // within the thickness and a margin, and pushing them apart.
   void sort(double margin, Threads& threads);
   void find(double margin, Threads& threads);
-  // Returns the greatest relative speed of two that touch [m/s].
-  double respond(double dt, int since, Threads& threads);
+  struct Met {
+    double speed = 0;    // greatest relative one of two that touched [m/s]
+    double deepest = 0;  // of the distance at which they are held, before they were pushed apart
+  };
+  Met respond(double dt, int since, Threads& threads);
 
   const std::vector<Sheet>& sheets() const { return sheets_; }
   void restart();
@@ -80,6 +91,8 @@ class SelfContact {
   struct PairList {
     std::vector<std::int32_t> owner, neighbour;
     int count = 0;
+    // For so many, and what kernels may write beyond them.
+    PairRoom room(std::size_t pairs);
   };
   struct Touching {
     PairList pairs;
@@ -89,7 +102,8 @@ class SelfContact {
   void forget_loads(const Block& block);
   void forget_loads();
   void list_sites(Threads& threads);
-  bool few_pairs() const { return found_ < 4096; }  // one thread pushes them apart faster
+  void put_far_away(const Block& block);
+  bool few() const { return found_ + 4 * count_ < 8192; }  // one thread pushes them apart faster
   std::size_t body(std::size_t sheet, int row, int column) const;
   Site site(std::int32_t body) const;
   double most_substeps(double dt, double swing) const;
@@ -99,9 +113,15 @@ class SelfContact {
     std::vector<std::int32_t> bodies;
     int count = 0;
   };
+  void list_beside(std::size_t block, float range);
   void list_touching(const PairSearch::Pairs& all, bool anew, PairList& close, Touching& touching);
   AskFound ask(const BodyFriction& friction, Touching& touching);
   void sum_up(std::size_t part, const Touching& touching);
+  // Whole groups of 16 bodies, so that no two parts share one.
+  std::int32_t first_of_part(std::size_t part) const {
+    return part < parts_.size() ? std::int32_t(bodies_ * part / parts_.size() / 16 * 16)
+                                : std::int32_t(bodies_);
+  }
 
   const Scene& scene_;
   std::vector<Sheet> sheets_;
@@ -110,19 +130,24 @@ class SelfContact {
   Blocks blocks_;
   std::vector<NamedSheet> named_;  // names are the numbers of bodies
   const std::size_t bodies_;
-  PairSearch search_;                    // among the particles of active blocks
-  std::vector<std::size_t> first_site_;  // of every block
-  std::size_t found_ = 0;                // pairs
-  std::size_t count_ = 0;                // particles of active blocks
-  std::vector<Place> place_;             // those of active blocks are up to date in a run
-  std::vector<Motion> motion_;           // likewise
-  std::vector<float> friction_;          // of every body, or kCourseRule; empty where all are alike
+  std::vector<std::vector<SheetStep>> steps_;  // of every sheet, to those beside each other
+  PairSearch search_;                          // among the particles of active blocks
+  std::vector<std::size_t> first_site_;        // of every block
+  std::size_t found_ = 0;                      // pairs
+  std::size_t count_ = 0;                      // particles of active blocks
+  std::vector<Place> place_;                   // those of active blocks are up to date in a run
+  std::vector<Motion> motion_;                 // likewise
+  std::vector<float> friction_;  // of every body, or kCourseRule; empty where all are alike
   float friction_alike_ = 0;
-  std::vector<Rows> load_, ahead_;  // of every sheet: BodyBlock
-  std::vector<AskedSum> sums_;      // of every body; nothing between two rounds
+  std::vector<Rows> load_, ahead_;                 // of every sheet: BodyBlock
+  std::vector<std::vector<std::uint8_t>> loaded_;  // likewise
+  std::vector<std::uint8_t> moved_;                // likewise, of all bodies
+  std::vector<AskedSum> sums_;                     // of every body; nothing between two rounds
   // Of every chunk, the pairs that may touch in this run, and those that do.
   std::vector<PairList> close_;
+  std::vector<PairList> beside_;  // likewise those beside each other, of every block
   std::vector<Touching> touching_;
+  std::vector<std::size_t> lists_;  // those of pairs that may touch
   std::vector<AskFound> found_asked_;
   std::vector<Part> parts_;  // as many as threads
   float thickness_ = 0;      // greatest of the sheets [m]
@@ -131,6 +156,7 @@ class SelfContact {
   bool may_touch_ = false;  // whether any sheets do, as seen the last time
   float skin_ = 0;          // of the thickness
   int kept_runs_ = 0;       // since the list of pairs was made
+  int most_touching_ = 0;   // substeps between two looks, where sheets touch
   std::int64_t runs_ = 0, searches_ = 0, passed_over_ = 0;
 };
 

@@ -1,6 +1,7 @@
 // Self-collision (self_collision.h): pairs pushed apart, chunk by chunk (kernels/separate.cpp).
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "physics/self_collision/self_collision.h"
@@ -8,10 +9,10 @@
 namespace weft::physics {
 namespace {
 
-// Of pushing apart in one run, as long as pairs of a chunk touch. Where the last run was so few substeps
-// ago, what is left is pushed apart soon: then as long as they are deeper in each other than so much of
-// the distance at which they are held.
-constexpr int kIterations = 3;
+// Of pushing apart in one run, as long as pairs of a list touch. After the first few, or where the last
+// run was so few substeps ago that what is left is pushed apart soon: as long as they are deeper in each
+// other than so much of the distance at which they are held.
+constexpr int kIterations = 12, kFirstIterations = 3;
 constexpr int kSoon = 2;
 constexpr float kShallow = 0.02f;
 constexpr float kClose = 1.1f;        // distances at which two are held: may touch in this run
@@ -40,29 +41,68 @@ BodyBlock SelfContact::bodies_of(const Block& block, double since) {
   b.since = float(since);
   b.inverse_since = float(1 / since);
   b.advance = sheets_[sheet].course ? 0 : kAdvance;
+  b.moved = moved_.data();
+  b.first_body = std::int32_t(first);
+  b.loaded = loaded_[sheet].data() +
+             (std::size_t(block.row) * std::size_t(l.stride) + std::size_t(block.column)) / 16;
   return b;
+}
+
+PairRoom SelfContact::PairList::room(std::size_t pairs) {
+  if (owner.size() < pairs + kPadding) {
+    owner.resize(2 * pairs + kPadding);
+    neighbour.resize(owner.size());
+  }
+  return {owner.data(), neighbour.data()};
+}
+
+// Lists those within a range whose first is of this block.
+void SelfContact::list_beside(std::size_t block, float range) {
+  const Block& b = blocks_.all()[block];
+  const auto sheet = std::size_t(b.sheet);
+  Lattice& l = *sheets_[sheet].lattice;
+  PairList& found = beside_[block];
+  BesidePairs p{};
+  p.x = l.x.row(0);
+  p.stride = l.stride;
+  p.columns = l.columns;
+  p.rows = l.rows;
+  p.column = b.column;
+  p.block_columns = b.columns;
+  p.step = steps_[sheet].data();
+  p.steps = int(steps_[sheet].size());
+  p.range_squared = range * range;
+  p.first = named_[sheet].first;
+  p.name_stride = named_[sheet].stride;
+  const int most_in_row = b.columns * p.steps;
+  found.count = 0;
+  for (int done = 0; done < b.rows;) {
+    p.row = b.row + done;
+    p.block_rows = b.rows - done;
+    p.pairs = found.room(std::size_t(found.count + most_in_row)).from(found.count);
+    p.most = int(found.owner.size() - kPadding) - found.count - most_in_row;
+    const BesideFound some = kernels_.beside_pairs(p);
+    done += some.rows;
+    found.count += some.pairs;
+  }
+  // What kernels may read beyond the last.
+  std::fill_n(found.owner.begin() + found.count, kPadding, 0);
+  std::fill_n(found.neighbour.begin() + found.count, kPadding, 0);
 }
 
 // Lists those of all pairs that touch; `anew`, the close ones are chosen first, those that others may
 // push into each other in this run.
 void SelfContact::list_touching(const PairSearch::Pairs& all, bool anew, PairList& close,
                                 Touching& touching) {
-  const auto room = [](PairList& list, std::size_t count) {
-    if (list.owner.size() < count + kPadding) {
-      list.owner.resize(2 * count + kPadding);
-      list.neighbour.resize(list.owner.size());
-    }
-    return PairRoom{list.owner.data(), list.neighbour.data()};
-  };
   ClosePairs p{};
   p.place = place_.data();
   p.reach = kClose;
-  p.touching = room(touching.pairs, all.count);
+  p.touching = touching.pairs.room(anew ? all.count : std::size_t(close.count));
   if (anew) {
     p.pairs = int(all.count);
     p.owner = all.owner;
     p.neighbour = all.neighbour;
-    p.close = room(close, all.count);
+    p.close = close.room(all.count);
   } else {
     p.pairs = close.count;
     p.owner = close.owner.data();
@@ -88,60 +128,73 @@ void SelfContact::sum_up(std::size_t part, const Touching& touching) {
   const PairList& pairs = touching.pairs;
   const std::size_t most = std::size_t(p.count) + 2 * std::size_t(pairs.count) + 1;
   if (p.bodies.size() < most) p.bodies.resize(2 * most);
-  p.count +=
-      kernels_.sum_asked({pairs.count, pairs.owner.data(), pairs.neighbour.data(),
-                          touching.asked.data(), std::int32_t(bodies_ * part / parts_.size()),
-                          std::int32_t(bodies_ * (part + 1) / parts_.size()), sums_.data(),
-                          p.bodies.data() + p.count});
+  p.count += kernels_.sum_asked({pairs.count, pairs.owner.data(), pairs.neighbour.data(),
+                                 touching.asked.data(), first_of_part(part),
+                                 first_of_part(part + 1), sums_.data(), p.bodies.data() + p.count});
 }
 
-double SelfContact::respond(double dt, int since, Threads& threads) {
-  if (found_ == 0) return 0;
-  const bool alone = few_pairs() || threads.count() == 1;
-  const auto each_block = [&](auto kernel) {
-    threads.share(blocks_.all().size(), alone, [&](std::size_t b) {
-      if (blocks_.all()[b].active) kernel(bodies_of(blocks_.all()[b], since * dt));
+SelfContact::Met SelfContact::respond(double dt, int since, Threads& threads) {
+  if (count_ == 0) return {};
+  const std::vector<Block>& blocks = blocks_.all();
+  const bool alone = few() || threads.count() == 1;
+  const auto each_block = [&](const auto& visit) {
+    threads.share(blocks.size(), alone, [&](std::size_t b) {
+      if (blocks[b].active) visit(b, bodies_of(blocks[b], since * dt));
     });
   };
-  each_block(kernels_.gather_bodies);
+  each_block([&](std::size_t b, const BodyBlock& bodies) {
+    kernels_.gather_bodies(bodies);
+    list_beside(b, kClose * bodies.held);
+  });
+  // The lists of pairs to look at: of the chunks of the search, and of blocks.
   const std::size_t chunks = search_.chunks();
-  found_asked_.resize(chunks);
-  if (close_.size() < chunks) {
-    close_.resize(chunks);
-    touching_.resize(chunks);
-  }
+  lists_.resize(chunks);
+  std::iota(lists_.begin(), lists_.end(), std::size_t(0));
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    if (blocks[b].active && beside_[b].count > 0) lists_.push_back(chunks + b);
+  found_asked_.resize(chunks + blocks.size());
+  std::fill(moved_.begin(), moved_.end(), std::uint8_t(0));
+  if (close_.size() < chunks) close_.resize(chunks);
+  if (touching_.size() < lists_.size()) touching_.resize(lists_.size());
   parts_.resize(alone ? 1 : std::size_t(threads.count()));
+  const bool one = parts_.size() == 1;
   const BodyFriction friction{friction_.empty() ? nullptr : friction_.data(), friction_alike_};
   // The course's push for as many substeps as have passed.
   const double steps = scene_.time.substeps > 0 ? scene_.time.substeps : scene_.time.frame / dt;
   const int iterations = course_ ? 1 : kIterations;
-  const float shallow = since <= kSoon ? kShallow : 0;
-  for (int i = 0; i < iterations; ++i) {
+  float fastest_squared = 0, deepest = 0;
+  for (int i = 0; i < iterations && !lists_.empty(); ++i) {
+    const float shallow = since <= kSoon || i + 1 >= kFirstIterations ? kShallow : 0;
     for (Part& part : parts_) part.count = 0;
-    const bool one = parts_.size() == 1;
-    threads.share(chunks, alone, [&](std::size_t k) {
-      Touching& touching = touching_[one ? 0 : k];
-      if (i > 0 && found_asked_[k].deepest <= shallow) {
-        if (!one) touching.pairs.count = 0;
-        return;
-      }
-      list_touching(search_.pairs(k), i == 0, close_[k], touching);
+    threads.share(lists_.size(), alone, [&](std::size_t n) {
+      const std::size_t k = lists_[n];
+      Touching& touching = touching_[one ? 0 : n];
+      if (k < chunks)
+        list_touching(search_.pairs(k), i == 0, close_[k], touching);
+      else
+        list_touching({}, false, beside_[k - chunks], touching);
       found_asked_[k] = ask(friction, touching);
       if (one) sum_up(0, touching);
     });
     // Each part of the bodies goes through all that is asked, in the same order.
     threads.share(parts_.size(), alone, [&](std::size_t n) {
       const Part& part = parts_[n];
-      for (std::size_t k = 0; k < chunks && !one; ++k) sum_up(n, touching_[k]);
+      for (std::size_t k = 0; k < lists_.size() && !one; ++k) sum_up(n, touching_[k]);
       kernels_.move_bodies({place_.data(), motion_.data(), friction, sums_.data(), part.count,
-                            part.bodies.data(), float(since / steps), float(1 / dt)});
+                            part.bodies.data(), moved_.data(), float(since / steps),
+                            float(1 / dt)});
+    });
+    // Depths as they are at first, speeds as they are when a list is left.
+    for (std::size_t n = 0; n < lists_.size() && i == 0; ++n)
+      deepest = std::max(deepest, found_asked_[lists_[n]].deepest);
+    std::erase_if(lists_, [&](std::size_t k) {
+      const bool left = i + 1 == iterations || found_asked_[k].deepest <= shallow;
+      if (left) fastest_squared = std::max(fastest_squared, found_asked_[k].fastest_squared);
+      return left;
     });
   }
-  each_block(kernels_.scatter_bodies);
-  float fastest_squared = 0;
-  for (const AskFound& found : found_asked_)
-    fastest_squared = std::max(fastest_squared, found.fastest_squared);
-  return std::sqrt(fastest_squared);
+  each_block([&](std::size_t, const BodyBlock& bodies) { kernels_.scatter_bodies(bodies); });
+  return {std::sqrt(fastest_squared), deepest};
 }
 
 }  // namespace weft::physics
