@@ -113,6 +113,13 @@ class SelfContact {
     std::vector<std::int32_t> bodies;
     int count = 0;
   };
+  // How they are pushed.
+  struct Push {
+    BodyFriction friction;
+    float course_share, inverse_dt;  // MoveBodies
+  };
+  void gather(double since, bool alone, Threads& threads);
+  void push_apart(bool first, const Push& push, bool alone, Threads& threads);
   void list_beside(std::size_t block, float range);
   void list_touching(const PairSearch::Pairs& all, bool anew, PairList& close, Touching& touching);
   AskFound ask(const BodyFriction& friction, Touching& touching);

@@ -15,6 +15,7 @@ namespace {
 constexpr int kIterations = 12, kFirstIterations = 3;
 constexpr int kSoon = 2;
 constexpr float kShallow = 0.02f;
+constexpr std::size_t kFewLists = 8;  // that one thread does faster
 constexpr float kClose = 1.1f;        // distances at which two are held: may touch in this run
 constexpr float kAdvance = 0.5f;      // BodyBlock
 constexpr std::size_t kPadding = 32;  // that kernels may write
@@ -133,67 +134,79 @@ void SelfContact::sum_up(std::size_t part, const Touching& touching) {
                                  first_of_part(part + 1), sums_.data(), p.bodies.data() + p.count});
 }
 
-SelfContact::Met SelfContact::respond(double dt, int since, Threads& threads) {
-  if (count_ == 0) return {};
+// Takes up the bodies as they are now, and which lists of pairs to look at: those of the chunks of the
+// search, and of blocks where any beside each other are close.
+void SelfContact::gather(double since, bool alone, Threads& threads) {
   const std::vector<Block>& blocks = blocks_.all();
-  const bool alone = few() || threads.count() == 1;
-  const auto each_block = [&](const auto& visit) {
-    threads.share(blocks.size(), alone, [&](std::size_t b) {
-      if (blocks[b].active) visit(b, bodies_of(blocks[b], since * dt));
-    });
-  };
-  each_block([&](std::size_t b, const BodyBlock& bodies) {
+  threads.share(blocks.size(), alone, [&](std::size_t b) {
+    if (!blocks[b].active) return;
+    const BodyBlock bodies = bodies_of(blocks[b], since);
     kernels_.gather_bodies(bodies);
     list_beside(b, kClose * bodies.held);
   });
-  // The lists of pairs to look at: of the chunks of the search, and of blocks.
+  std::fill(moved_.begin(), moved_.end(), std::uint8_t(0));
   const std::size_t chunks = search_.chunks();
   lists_.resize(chunks);
   std::iota(lists_.begin(), lists_.end(), std::size_t(0));
   for (std::size_t b = 0; b < blocks.size(); ++b)
     if (blocks[b].active && beside_[b].count > 0) lists_.push_back(chunks + b);
   found_asked_.resize(chunks + blocks.size());
-  std::fill(moved_.begin(), moved_.end(), std::uint8_t(0));
   if (close_.size() < chunks) close_.resize(chunks);
   if (touching_.size() < lists_.size()) touching_.resize(lists_.size());
-  parts_.resize(alone ? 1 : std::size_t(threads.count()));
+}
+
+// Pushes apart what touches of the lists, once; the first time, what is close is chosen too.
+void SelfContact::push_apart(bool first, const Push& push, bool alone, Threads& threads) {
+  const std::size_t chunks = search_.chunks();
   const bool one = parts_.size() == 1;
-  const BodyFriction friction{friction_.empty() ? nullptr : friction_.data(), friction_alike_};
+  for (Part& part : parts_) part.count = 0;
+  threads.share(lists_.size(), alone, [&](std::size_t n) {
+    const std::size_t k = lists_[n];
+    Touching& touching = touching_[one ? 0 : n];
+    if (k < chunks)
+      list_touching(search_.pairs(k), first, close_[k], touching);
+    else
+      list_touching({}, false, beside_[k - chunks], touching);
+    found_asked_[k] = ask(push.friction, touching);
+    if (one) sum_up(0, touching);
+  });
+  // Each part of the bodies goes through all that is asked, in the same order.
+  threads.share(parts_.size(), alone, [&](std::size_t n) {
+    const Part& part = parts_[n];
+    for (std::size_t k = 0; k < lists_.size() && !one; ++k) sum_up(n, touching_[k]);
+    kernels_.move_bodies({place_.data(), motion_.data(), push.friction, sums_.data(), part.count,
+                          part.bodies.data(), moved_.data(), push.course_share, push.inverse_dt});
+  });
+}
+
+SelfContact::Met SelfContact::respond(double dt, int since, Threads& threads) {
+  if (count_ == 0) return {};
+  const bool alone = few() || threads.count() == 1;
+  parts_.resize(alone ? 1 : std::size_t(threads.count()));
+  gather(since * dt, alone, threads);
   // The course's push for as many substeps as have passed.
   const double steps = scene_.time.substeps > 0 ? scene_.time.substeps : scene_.time.frame / dt;
+  const Push push{{friction_.empty() ? nullptr : friction_.data(), friction_alike_},
+                  float(since / steps),
+                  float(1 / dt)};
   const int iterations = course_ ? 1 : kIterations;
   float fastest_squared = 0, deepest = 0;
   for (int i = 0; i < iterations && !lists_.empty(); ++i) {
-    const float shallow = since <= kSoon || i + 1 >= kFirstIterations ? kShallow : 0;
-    for (Part& part : parts_) part.count = 0;
-    threads.share(lists_.size(), alone, [&](std::size_t n) {
-      const std::size_t k = lists_[n];
-      Touching& touching = touching_[one ? 0 : n];
-      if (k < chunks)
-        list_touching(search_.pairs(k), i == 0, close_[k], touching);
-      else
-        list_touching({}, false, beside_[k - chunks], touching);
-      found_asked_[k] = ask(friction, touching);
-      if (one) sum_up(0, touching);
-    });
-    // Each part of the bodies goes through all that is asked, in the same order.
-    threads.share(parts_.size(), alone, [&](std::size_t n) {
-      const Part& part = parts_[n];
-      for (std::size_t k = 0; k < lists_.size() && !one; ++k) sum_up(n, touching_[k]);
-      kernels_.move_bodies({place_.data(), motion_.data(), friction, sums_.data(), part.count,
-                            part.bodies.data(), moved_.data(), float(since / steps),
-                            float(1 / dt)});
-    });
+    push_apart(i == 0, push, alone || lists_.size() < kFewLists, threads);
     // Depths as they are at first, speeds as they are when a list is left.
     for (std::size_t n = 0; n < lists_.size() && i == 0; ++n)
       deepest = std::max(deepest, found_asked_[lists_[n]].deepest);
+    const float shallow = since <= kSoon || i + 1 >= kFirstIterations ? kShallow : 0;
     std::erase_if(lists_, [&](std::size_t k) {
       const bool left = i + 1 == iterations || found_asked_[k].deepest <= shallow;
       if (left) fastest_squared = std::max(fastest_squared, found_asked_[k].fastest_squared);
       return left;
     });
   }
-  each_block([&](std::size_t, const BodyBlock& bodies) { kernels_.scatter_bodies(bodies); });
+  threads.share(blocks_.all().size(), alone, [&](std::size_t b) {
+    const Block& block = blocks_.all()[b];
+    if (block.active) kernels_.scatter_bodies(bodies_of(block, since * dt));
+  });
   return {std::sqrt(fastest_squared), deepest};
 }
 
