@@ -148,7 +148,8 @@ struct PairRoom {
   PairRoom from(int i) const { return {owner + i, neighbour + i}; }  // pair i on
 };
 
-// So many columns and rows further on in a sheet: down > 0, or down = 0 and across > 0.
+// So many columns and rows further on in a sheet: down > 0, or down = 0 and across > 0. Several are in
+// order of `down`.
 struct SheetStep {
   int across, down;
 };
@@ -165,8 +166,8 @@ struct BesidePairs {
   int steps;
   float range_squared;              // m²
   std::int32_t first, name_stride;  // names, of the sheet's first particle and from row to row
-  // Out, row after row and step after step: pairs within the range. Room for block_columns * steps more
-  // than `most`.
+  // Out, row after row, 16 columns after 16 and step after step: pairs within the range. Room for
+  // block_columns * steps more than `most`.
   PairRoom pairs;
   int most;
 };

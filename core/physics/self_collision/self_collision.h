@@ -67,8 +67,8 @@ class SelfContact {
         visit(site(pairs.owner[i]), site(pairs.neighbour[i]));
   }
 
-  // One part of a run by itself, for measuring: the sort of what was searched last, its pairs
-  // within the thickness and a margin, and pushing them apart.
+  // One part of a run by itself, for measuring: the sort of what was searched last; its pairs within the
+  // thickness and a margin, but for those beside each other; and finding these and pushing all apart.
   void sort(double margin, Threads& threads);
   void find(double margin, Threads& threads);
   struct Met {
@@ -150,15 +150,15 @@ class SelfContact {
   std::vector<std::vector<std::uint8_t>> loaded_;  // likewise
   std::vector<std::uint8_t> moved_;                // likewise, of all bodies
   std::vector<AskedSum> sums_;                     // of every body; nothing between two rounds
-  // Of every chunk, the pairs that may touch in this run, and those that do.
-  std::vector<PairList> close_;
-  std::vector<PairList> beside_;  // likewise those beside each other, of every block
-  std::vector<Touching> touching_;
-  std::vector<std::size_t> lists_;  // those of pairs that may touch
-  std::vector<AskFound> found_asked_;
-  std::vector<Part> parts_;  // as many as threads
-  float thickness_ = 0;      // greatest of the sheets [m]
-  bool course_ = false;      // whether any sheet has the course's rule
+  // The pairs that may touch in this run: of every chunk of the search, and of every block those beside
+  // each other.
+  std::vector<PairList> close_, beside_;
+  std::vector<std::size_t> lists_;     // of these, chunks first, those still looked at
+  std::vector<Touching> touching_;     // of each of lists_, or of all in turn
+  std::vector<AskFound> found_asked_;  // of every chunk and block
+  std::vector<Part> parts_;            // as many as threads
+  float thickness_ = 0;                // greatest of the sheets [m]
+  bool course_ = false;                // whether any sheet has the course's rule
   bool valid_ = false;
   bool may_touch_ = false;  // whether any sheets do, as seen the last time
   float skin_ = 0;          // of the thickness
