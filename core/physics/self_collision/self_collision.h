@@ -10,10 +10,10 @@
 //
 // Blocks are looked at, and pairs pushed apart, as often as the motion asks for: never more than a share
 // of the thickness in between, and more often where pairs are found pressed into each other. A pair
-// corrects both its ends, all pairs from the same state (Jacobi), some times over where they are deep;
-// what a particle is asked is summed up in the order of the lists, whatever the threads. What contact
-// takes from a particle's velocity time after time it gives in part beforehand, so that layers that lie
-// on each other do not sink in between two times.
+// corrects both its ends, all pairs from the same state (Jacobi); what a particle is asked is summed up
+// in the order of the lists, whatever the threads. What contact takes from a particle's velocity time
+// after time it gives in part beforehand, so that layers that lie on each other do not sink in between
+// two times.
 #pragma once
 
 #include <memory>

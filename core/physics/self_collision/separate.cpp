@@ -9,10 +9,10 @@
 namespace weft::physics {
 namespace {
 
-// Of pushing apart in one run, as long as pairs of a list touch. After the first few, or where the last
-// run was so few substeps ago that what is left is pushed apart soon: as long as they are deeper in each
-// other than so much of the distance at which they are held.
-constexpr int kIterations = 12, kFirstIterations = 3;
+// Of pushing apart in one run, as long as pairs of a list touch. Where the last run was so few substeps
+// ago, what is left is pushed apart soon: then as long as they are deeper in each other than so much of
+// the distance at which they are held.
+constexpr int kIterations = 3;
 constexpr int kSoon = 2;
 constexpr float kShallow = 0.02f;
 constexpr std::size_t kFewLists = 8;  // that one thread does faster
@@ -190,13 +190,13 @@ SelfContact::Met SelfContact::respond(double dt, int since, Threads& threads) {
                   float(since / steps),
                   float(1 / dt)};
   const int iterations = course_ ? 1 : kIterations;
+  const float shallow = since <= kSoon ? kShallow : 0;
   float fastest_squared = 0, deepest = 0;
   for (int i = 0; i < iterations && !lists_.empty(); ++i) {
     push_apart(i == 0, push, alone || lists_.size() < kFewLists, threads);
     // Depths as they are at first, speeds as they are when a list is left.
     for (std::size_t n = 0; n < lists_.size() && i == 0; ++n)
       deepest = std::max(deepest, found_asked_[lists_[n]].deepest);
-    const float shallow = since <= kSoon || i + 1 >= kFirstIterations ? kShallow : 0;
     std::erase_if(lists_, [&](std::size_t k) {
       const bool left = i + 1 == iterations || found_asked_[k].deepest <= shallow;
       if (left) fastest_squared = std::max(fastest_squared, found_asked_[k].fastest_squared);
