@@ -28,7 +28,7 @@ class Transposing : public testing::TestWithParam<Simd> {
   }
   const KernelTable& kernels() const { return kernel_table(GetParam()); }
 
-  // Calls check(t) for all shapes; room for whole groups of four columns beyond the last.
+  // Calls check(t) for all shapes; room for whole tiles of columns beyond the last.
   template <class Check>
   void for_all_shapes(const Check& check) {
     for (int rows = 1; rows <= kMostRows; ++rows)
@@ -44,7 +44,7 @@ class Transposing : public testing::TestWithParam<Simd> {
   }
   std::vector<float> rows_ = random_floats(kMostRows * kStride, 1);
   std::vector<float> rates_ = random_floats(kMostRows * kStride, 2);
-  std::vector<float> lanes_ = random_floats((kStride + 3) * kPitch, 3);
+  std::vector<float> lanes_ = random_floats(physics::turned_columns(kStride) * kPitch, 3);
 };
 
 TEST_P(Transposing, PutsRowsIntoLanes) {

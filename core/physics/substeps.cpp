@@ -230,8 +230,9 @@ bool Simulation::State::nothing_else_acts() const {
   return !(grab_ || carried() || self_collision || blown() || !scene.colliders.empty());
 }
 
-// Squared lengths in those at rest: much, or so much that has doubled within the frame.
-constexpr float kStretched = 1.25f * 1.25f, kNoticed = 1.01f * 1.01f;
+// Squared lengths in those at rest: much, so much that has doubled within the frame, or so much that is
+// kept up.
+constexpr float kStretched = 1.25f * 1.25f, kNoticed = 1.01f * 1.01f, kLasting = 1.02f * 1.02f;
 
 // Whether line sweeps stretched a sheet by what gravity and pins on paths, where they alone do work,
 // cannot have put into this frame. A line is solved by one Newton step a substep, which overshoots
@@ -255,14 +256,15 @@ bool Simulation::State::overshot() const {
   return false;
 }
 
-// Whether line sweeps keep much stretched sheets moving that drag should have slowed down.
+// Whether line sweeps keep stretched sheets moving that drag should have slowed down.
 bool Simulation::State::keeps_on() {
   const double start = double(frame) * scene.time.frame;
   bool stretched = false;
   Balance all;
   if (nothing_else_acts() && !works(scene, start, start + scene.time.frame))
     for (std::size_t c = 0; c < cloths.size(); ++c)
-      stretched |= !asleep(c) && greatest_stretch(*cloths[c], cloths[c]->lattice().x) > kStretched;
+      stretched |= cloths[c]->cloth().drag > 0 && !asleep(c) &&
+                   greatest_stretch(*cloths[c], cloths[c]->lattice().x) > kLasting;
   for (std::size_t c = 0; c < cloths.size() && stretched; ++c) {
     const Balance one = balance(scene, method, *cloths[c], dt);
     all.inner += one.inner;

@@ -5,7 +5,7 @@
 // of c written as μ_c |e_c| (which frees the equations of every division but the pivot's):
 //
 //   (w_c + w_{c+1} + α̃) |e_c|² μ_c - w_c e_{c-1}·e_c μ_{c-1} - w_{c+1} e_c·e_{c+1} μ_{c+1}
-//       = |e_c| (|e_c| - l + α̃ λ_c) = r_c,      α̃ = 1/(k dt²)
+//       = |e_c|² - |e_c| (l - α̃ λ_c) = r_c,      α̃ = 1/(k dt²)
 //   x_c <- x_c + w_c (μ_c e_c - μ_{c-1} e_{c-1}),  λ_c <- λ_c - μ_c |e_c|
 //
 // the Newton step of the compliant constraints of one line together (Macklin, Müller, Chentanez
@@ -89,9 +89,8 @@ WEFT_INLINE void store3_at(Row3 r, Place s, Wide3 v) {
   store_at(r.z, s, v.z);
 }
 
-// A block of kLanes lines on its way along the sheet. Half of a strip's lines, `kDivided`, draw their
-// roots by the divider, which needs time for the pivots too.
-template <bool kLambda, bool kVelocity, bool kDivided>
+// A block of kLanes lines on its way along the sheet.
+template <bool kLambda, bool kVelocity>
 class Block {
  public:
   Block(const LineStrip& strip, int offset)
@@ -195,14 +194,14 @@ class Block {
     const Wide3 e = far - x_;
     const Wide alpha = load(p.compliance + m * p.compliance_step + offset_);
     const Wide squared = squared_length(e);
-    const Wide length = kDivided ? sqrt(squared) : squared * reciprocal_root(squared);
+    const Wide length = sqrt(squared);
     const Wide coupling = w_ * dot(edge_, e);
     const Wide factor = coupling * reciprocal_;
     const Wide pivot = fnma(factor, coupling, (w_ + w_far + alpha) * squared);
-    Wide violation = length - p.rest;
+    Wide rest = wide(p.rest);
     if constexpr (kLambda)
-      if (!p.fresh) violation = fma(alpha, load_at(p.lambda, here), violation);
-    right_ = fma(factor, right_, length * violation);
+      if (!p.fresh) rest = fnma(alpha, load_at(p.lambda, here), rest);
+    right_ = fma(factor, right_, fnma(length, rest, squared));
     WideInt solved = existing(pivot > kTinyPivot);
     if (p.alive) solved = solved & alive(here);
     reciprocal_ = select(solved, 1.0f / pivot, Wide{});
@@ -255,13 +254,11 @@ class Block {
   Wide3 pull_{};
 };
 
-// One or two blocks of lines side by side. The second half of a strip's lines draws roots by dividing.
-template <bool kLambda, bool kVelocity, int kBlocks, bool kSecondHalf>
+// One or two blocks of lines side by side.
+template <bool kLambda, bool kVelocity, int kBlocks>
 void solve_blocks(const LineStrip& given, int first) {
-  constexpr bool kBDivides = kSecondHalf || (kBlocks == 2 && 2 * kLanes == kStripLines);
   const LineStrip p = given;  // a copy that no store can alias
-  Block<kLambda, kVelocity, kSecondHalf> a(p, first);
-  Block<kLambda, kVelocity, kBDivides> b(p, first + (kBlocks - 1) * kLanes);
+  Block<kLambda, kVelocity> a(p, first), b(p, first + (kBlocks - 1) * kLanes);
   const int constraints = p.particles - 1;
   a.begin();
   if constexpr (kBlocks == 2) b.begin();
@@ -303,13 +300,9 @@ template <bool kLambda, bool kVelocity>
 void solve(const LineStrip& p) {
   const int lines = least(kStripLines, p.columns - p.first);
   for (int first = 0; first < lines;) {
-    const bool two = kLanes >= 8 && lines - first > kLanes, second = first >= kStripLines / 2;
-    if (two)
-      second ? solve_blocks<kLambda, kVelocity, 2, true>(p, first)
-             : solve_blocks<kLambda, kVelocity, 2, false>(p, first);
-    else
-      second ? solve_blocks<kLambda, kVelocity, 1, true>(p, first)
-             : solve_blocks<kLambda, kVelocity, 1, false>(p, first);
+    const bool two = kLanes >= 8 && lines - first > kLanes;
+    two ? solve_blocks<kLambda, kVelocity, 2>(p, first)
+        : solve_blocks<kLambda, kVelocity, 1>(p, first);
     first += two ? 2 * kLanes : kLanes;
   }
 }

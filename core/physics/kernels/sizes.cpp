@@ -39,8 +39,10 @@ float greatest(const float* values, std::ptrdiff_t count) {
   return most.value();
 }
 
-// In double: what a small swing releases is a millionth of the height it has.
+// In double: what a small swing releases is a millionth of the height it has. Gravity mostly points along
+// an axis.
 physics::Tally tally(const physics::TallyRow& r) {
+  const double g[] = {r.g[0], r.g[1], r.g[2]};
   WideDouble motion[kBlocks] = {}, height[kBlocks] = {};
   Greatest most;
   for (int i = 0; i < padded(r.columns); i += 16)
@@ -50,9 +52,11 @@ physics::Tally tally(const physics::TallyRow& r) {
       const WideDouble mass = twice(select(w > 0.0f, 1.0f / w, Wide{}));
       const Wide3 v = load3(r.v, at), x = load3(r.x, at);
       motion[b] = motion[b] + mass * twice(dot(v, v));
-      height[b] =
-          height[b] - mass * (twice(x.x) * r.g[0] + twice(x.y) * r.g[1] + twice(x.z) * r.g[2]);
-      for (const Wide c : {x.x, x.y, x.z}) most.add(b, c);
+      const Wide along[] = {x.x, x.y, x.z};
+      for (int k = 0; k < 3; ++k) {
+        if (g[k] != 0) height[b] = height[b] - mass * (twice(along[k]) * g[k]);
+        most.add(b, along[k]);
+      }
     }
   physics::Tally e{0, 0, most.value()};
   for (int b = 0; b < kBlocks; ++b)

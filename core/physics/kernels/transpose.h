@@ -21,4 +21,10 @@ struct TransposeRows {
   int columns;
 };
 
+// Columns of lanes that rows_to_lanes may write, for so many columns: whole tiles. It reads as many of
+// the rows.
+inline constexpr int turned_columns(int columns) {
+  return (columns + 7) / 8 * 8;
+}
+
 }  // namespace weft::physics

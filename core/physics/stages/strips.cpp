@@ -6,11 +6,7 @@
 namespace weft::physics {
 
 Strips::Strips(Lattice& lattice, const KernelTable& kernels, int scratch)
-    : lattice_(lattice),
-      kernels_(kernels),
-      scratch_(scratch),
-      // Transposing reads and writes whole tiles of four columns.
-      masses_(std::size_t(row_groups()) * (lattice.columns + 3) * kStripLines) {
+    : lattice_(lattice), kernels_(kernels), scratch_(scratch), masses_(masses_at(row_groups())) {
   turn_masses();
 }
 
@@ -27,7 +23,7 @@ std::size_t Strips::bytes() const {
 }
 
 StripMemory Strips::make_memory() const {
-  const int columns = lattice_.columns + 3;
+  const int columns = turned_columns(lattice_.columns);
   return {AlignedArray<float>(std::size_t(std::max(lattice_.rows, lattice_.columns)) * scratch_),
           Rows(columns, kStripLines), Rows(columns, kStripLines)};
 }
@@ -50,7 +46,7 @@ void Strips::turn_masses(int group, int rows) {
   for (int half = 0; half < rows; half += 16) {
     TransposeRows t = turning(half, rows);
     t.rows = lattice_.w(group * kStripLines + half);
-    t.lanes = masses_.data() + std::size_t(group) * (lattice_.columns + 3) * kStripLines + half;
+    t.lanes = masses_.data() + masses_at(group) + half;
     kernels_.rows_to_lanes(t);
   }
 }

@@ -80,9 +80,7 @@ class Strips {
   }
 
   // Inverse masses of a group's rows as lanes, laid out as the tile.
-  const float* masses(int group) const {
-    return masses_.data() + std::size_t(group) * (lattice_.columns + 3) * kStripLines;
-  }
+  const float* masses(int group) const { return masses_.data() + masses_at(group); }
   // They are turned once, again when told so, or every time where they may change.
   void turn_masses();
   void follow_masses() { masses_change_ = true; }
@@ -106,6 +104,9 @@ class Strips {
   StripMemory make_memory() const;
   TransposeRows turning(int half, int rows) const;
   void turn_there(int group, int rows, StripMemory& memory);
+  std::size_t masses_at(int group) const {
+    return std::size_t(group) * turned_columns(lattice_.columns) * kStripLines;
+  }
   void turn_masses(int group, int rows);
   void turn_back(int begin, int rows, StripMemory& memory, float inverse_dt);
 
