@@ -23,6 +23,8 @@ using Clock = std::chrono::steady_clock;
 // The method of ours that is compared besides springs.
 const char* const kLine = "compliant line, order 2";
 
+constexpr int kNearLimit = 48;
+
 struct Solver {
   const char* name;
   std::function<std::unique_ptr<bench::Peer>(const weft::Scene&, int)> make;
@@ -31,8 +33,8 @@ struct Solver {
 
 const std::vector<Solver>& solvers() {
   static const std::vector<Solver> all{
-      // 48 is as near to its stability limit as whole steps of 16 come.
-      {"course-style C++", bench::make_course_peer, {48, 64, 128, 256}},
+      // kNearLimit is as near to its stability limit as whole steps of 16 come.
+      {"course-style C++", bench::make_course_peer, {kNearLimit, 64, 128, 256}},
       {"Bullet 3.24, classical", bench::make_bullet_peer, {8, 32, 128}},
   };
   return all;
@@ -99,9 +101,15 @@ void print_ratios(const Problem& problem, const std::vector<Trial>& trials) {
   }
 }
 
-// Springs as in bench/accuracy, and line sweeps in steps fine enough for errors in between.
+// Per frame, from those of a sheet of 32 x 32.
+int substeps_at(const Problem& problem, int substeps) {
+  return substeps * problem.size / 32;
+}
+
+// Springs as in bench/accuracy and in as few substeps as others can take, and line sweeps in steps fine
+// enough for errors in between.
 std::vector<bench::Setting> our_settings(const Problem& problem, bool quick) {
-  std::vector<bench::Setting> ours;
+  std::vector<bench::Setting> ours{{"spring", {}, substeps_at(problem, kNearLimit)}};
   bool lines = false;
   for (bench::Setting s : bench::settings_for(problem, quick)) {
     if (s.method == "spring" && s.substeps <= 256) ours.push_back(s);
@@ -123,7 +131,7 @@ void run_size(const Problem& problem, bool quick, std::vector<Trial>& trials) {
   for (const Solver& solver : solvers())
     for (int substeps : solver.substeps) {
       Trial t;
-      if (run_peer(problem, solver, substeps * problem.size / 32, r.positions, quick ? 1 : 3, t))
+      if (run_peer(problem, solver, substeps_at(problem, substeps), r.positions, quick ? 1 : 3, t))
         trials.push_back(t);
     }
   bench::mark_front(trials);

@@ -1,6 +1,8 @@
-// The problems (problems.h). Sheets are one square metre; frames are a sixtieth of a second.
+// The problems (problems.h). Sheets are one square metre; frames are a sixtieth of a second where nothing
+// else is said.
 #include "problems.h"
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <stdexcept>
@@ -167,6 +169,7 @@ std::string Setting::text() const {
   t += substeps == 1 ? " substep" : " substeps";
   if (solver.method != weft::Method::spring && solver.iterations > 1)
     t += ", " + std::to_string(solver.iterations) + " sweeps";
+  if (frame > 0) t += " in 1/" + std::to_string(std::lround(1 / frame)) + " s";
   return t;
 }
 
@@ -211,6 +214,8 @@ std::vector<Setting> settings_for(const Problem& problem, bool quick) {
   }
   if (problem.name == "stiff" || problem.name == "board") {
     add(all, kTethered, 3, 1);
+    add(all, kTethered, 4, 1);
+    all.back().frame = 1.0 / 48;
     for (int substeps : ladder) add(all, kTethered, substeps, 1);
   }
   return all;

@@ -36,6 +36,7 @@ struct Setting {
   std::string method;  // what is compared: "compliant line 2nd order"
   weft::Solver solver;
   int substeps = weft::kAutoSubsteps;  // per frame
+  double frame = 0;                    // s; 0: the problem's
 
   // "16 substeps, 4 sweeps"
   std::string text() const;

@@ -78,8 +78,13 @@ void register_stages(bool quick) {
     add_stages("compliant", scene, simd);
     scene.solver.sweep = weft::Sweep::jacobi;
     add_stages("compliant jacobi", scene, simd);
-    scene.solver.sweep = weft::Sweep::line;
-    add_stages("compliant line", scene, simd);
+    for (const int n : {64, 100, 316}) {
+      scene = stepping_scene(n, 32);
+      scene.time.frame = 32 / 480.0;
+      scene.solver.method = weft::Method::compliant;
+      scene.solver.sweep = weft::Sweep::line;
+      add_stages("compliant line, N=" + std::to_string(n), scene, simd);
+    }
   }
 }
 

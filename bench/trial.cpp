@@ -37,8 +37,9 @@ std::string missing(const weft::Simulation& simulation, const Setting& setting) 
   return "";
 }
 
-int frames_of(const Problem& p) {
-  return int(std::lround(p.question.seconds / p.question.scene.time.frame));
+int frames_of(const Problem& p, const Setting& s) {
+  const double frame = s.frame > 0 ? s.frame : p.question.scene.time.frame;
+  return int(std::lround(p.question.seconds / frame));
 }
 
 // What the first repetition tells besides its time.
@@ -91,7 +92,7 @@ Trial run_trial(const Problem& problem, const Setting& setting, weft::Simd simd,
   t.size = problem.size;
   t.setting = setting;
   t.threads = threads;
-  t.frames = frames_of(problem);
+  t.frames = frames_of(problem, setting);
   weft::Scene scene = problem.question.scene;
   // The frame divides the run exactly, so that no rounding of 1/60 s shows as an error.
   scene.time.frame = problem.question.seconds / t.frames;
