@@ -67,8 +67,8 @@ struct Block {
 // While one constraint is squared, those before it are at later stations, so that none waits for
 // another's result. The order of the statements is the schedule.
 //
-// Every other constraint takes its reciprocal root from the divider, the others by multiplications
-// (root.h): so both work at the same time.
+// All constraints but the last take their reciprocal roots from the divider, which keeps up with the
+// multipliers that far; the last takes it by multiplications (root.h).
 //
 // What goes to the next lane of the block's own row is summed up before it is shifted: hence the order
 // of the families.
@@ -78,11 +78,12 @@ struct Block {
 // the padding: sums begin with a zero that is positive, and so never show it.
 inline constexpr PlainFamily kOrder[] = {kRight, kAntidiagonal, kDown, kDiagonal, kRight2, kDown2};
 constexpr bool divided(PlainFamily f) {
-  return f == kRight || f == kDown || f == kRight2;
+  return f != kDown2;
 }
 
-// How many constraints after the first station the others lie: as far as registers last.
-inline constexpr int kStations[] = {0, 1, kLanes == 16 ? 3 : 2, kLanes == 16 ? 4 : 2};
+// How many constraints after the first station the others lie: as measured.
+inline constexpr int kStations[] = {0, kLanes == 16 ? 1 : 2, kLanes == 16 ? 2 : 4,
+                                    kLanes == 16 ? 3 : 5};
 
 template <class Law>
 struct Pipeline {
