@@ -126,6 +126,28 @@ TEST(SelfCollisionPairs, CrossingsAreCountedOncePerEdgeAndTriangle) {
   EXPECT_EQ(physics::count_crossings(x, {{0, 1, 2}, {0, 4, 5}}), 0);  // a shared corner
 }
 
+// Also where one edge is hundreds of times as long as the others.
+TEST(SelfCollisionPairs, CrossingsAreThoseOfEveryEdgeAndTriangle) {
+  constexpr int kSide = 8;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> anywhere(-0.01, 0.01);
+  std::vector<Vec3> x;
+  for (int p = 0; p < kSide * kSide; ++p)
+    x.push_back({0.01 * (p % kSide) + anywhere(random), anywhere(random), 0.01 * (p / kSide)});
+  std::vector<physics::Face> faces;
+  physics::add_faces(kSide, kSide, 0, faces);
+  const std::vector<physics::Edge> edges = physics::edges_of(faces);
+  for (const double pulled : {0.0, 5.0}) {
+    x[0][1] += pulled;
+    std::int64_t crossings = 0;
+    for (const physics::Edge& e : edges)
+      for (const physics::Face& f : faces)
+        crossings += std::int64_t(physics::find_crossings(x, {f}, {e}).size());
+    EXPECT_GT(crossings, 0);
+    EXPECT_EQ(physics::count_crossings(x, faces), crossings) << pulled;
+  }
+}
+
 // Two loose sheets laid upon each other come to rest a thickness apart.
 TEST(SelfCollisionPairs, SheetsRestAThicknessApart) {
   for (const Method method : {Method::spring, Method::compliant}) {

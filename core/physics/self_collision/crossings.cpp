@@ -60,12 +60,17 @@ struct Entry {
   auto operator<=>(const Entry&) const = default;
 };
 
+// A cell along an axis. Whatever the size, cells far away fall together.
+std::int32_t cell_of(double x, double size) {
+  return std::int32_t(std::clamp(std::floor(x / size), -1e9, 1e9));
+}
+
 template <class Visit>
 void for_each_cell(const Box& b, double size, Visit&& visit) {
   std::array<std::int32_t, 3> from, to;
   for (int k = 0; k < 3; ++k) {
-    from[k] = std::int32_t(std::floor(b.low[k] / size));
-    to[k] = std::int32_t(std::floor(b.high[k] / size));
+    from[k] = cell_of(b.low[k], size);
+    to[k] = cell_of(b.high[k], size);
   }
   for (std::int32_t i = from[0]; i <= to[0]; ++i)
     for (std::int32_t j = from[1]; j <= to[1]; ++j)
@@ -100,13 +105,43 @@ void add_surface(const ClothStep& step, std::vector<Vec3>& x, std::vector<Face>&
   x.insert(x.end(), of_cloth.begin(), of_cloth.end());
 }
 
-std::vector<Crossing> find_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces,
-                                     const std::vector<Edge>& edges) {
+namespace {
+
+// In how many cells faces lie, all in all.
+double entries_of(const std::vector<Vec3>& x, const std::vector<Face>& faces, double size) {
+  double entries = 0;
+  for (const Face& f : faces) {
+    const Box b = box_of(x, f);
+    double cells = 1;
+    for (int k = 0; k < 3; ++k) cells *= 1 + cell_of(b.high[k], size) - cell_of(b.low[k], size);
+    entries += cells;
+  }
+  return entries;
+}
+
+// Cells as large as the longest edge; smaller ones where most edges are far shorter, so that a few long
+// ones do not bring whole sheets into one cell.
+double cell_size(const std::vector<Vec3>& x, const std::vector<Face>& faces,
+                 const std::vector<Edge>& edges) {
+  constexpr int kMostHalvings = 20;
+  constexpr double kCellsOfFace = 8;
   double size = 1e-9;
   for (const Edge& e : edges) {
     const Box b = box_of(x, e);
     for (int k = 0; k < 3; ++k) size = std::max(size, b.high[k] - b.low[k]);
   }
+  for (int n = 0; n < kMostHalvings; ++n) {
+    if (entries_of(x, faces, size / 2) > kCellsOfFace * double(faces.size())) break;
+    size /= 2;
+  }
+  return size;
+}
+
+}  // namespace
+
+std::vector<Crossing> find_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces,
+                                     const std::vector<Edge>& edges) {
+  const double size = cell_size(x, faces, edges);
   std::vector<Entry> entries;
   for (std::size_t f = 0; f < faces.size(); ++f)
     for_each_cell(box_of(x, faces[f]), size, [&](const auto& cell) {
