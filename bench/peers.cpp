@@ -23,6 +23,7 @@ using Clock = std::chrono::steady_clock;
 // The method of ours that is compared besides springs.
 const char* const kLine = "compliant line, order 2";
 
+// Per frame at N = 32: as near to the course-style solver's stability limit as whole steps of 16 come.
 constexpr int kNearLimit = 48;
 
 struct Solver {
@@ -33,7 +34,6 @@ struct Solver {
 
 const std::vector<Solver>& solvers() {
   static const std::vector<Solver> all{
-      // kNearLimit is as near to its stability limit as whole steps of 16 come.
       {"course-style C++", bench::make_course_peer, {kNearLimit, 64, 128, 256}},
       {"Bullet 3.24, classical", bench::make_bullet_peer, {8, 32, 128}},
   };

@@ -119,21 +119,19 @@ double entries_of(const std::vector<Vec3>& x, const std::vector<Face>& faces, do
   return entries;
 }
 
-// Cells as large as the longest edge; smaller ones where most edges are far shorter, so that a few long
-// ones do not bring whole sheets into one cell.
+// Of cells as large as the longest edge; smaller ones where most edges are far shorter, so that a few
+// long ones do not bring whole sheets into one cell.
 double cell_size(const std::vector<Vec3>& x, const std::vector<Face>& faces,
                  const std::vector<Edge>& edges) {
-  constexpr int kMostHalvings = 20;
+  constexpr double kLeast = 1e-9;  // m
   constexpr double kCellsOfFace = 8;
-  double size = 1e-9;
+  double size = kLeast;
   for (const Edge& e : edges) {
     const Box b = box_of(x, e);
     for (int k = 0; k < 3; ++k) size = std::max(size, b.high[k] - b.low[k]);
   }
-  for (int n = 0; n < kMostHalvings; ++n) {
-    if (entries_of(x, faces, size / 2) > kCellsOfFace * double(faces.size())) break;
-    size /= 2;
-  }
+  const double most = kCellsOfFace * double(faces.size());
+  while (size > 2 * kLeast && entries_of(x, faces, size / 2) <= most) size /= 2;
   return size;
 }
 
