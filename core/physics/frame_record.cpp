@@ -3,15 +3,36 @@
 
 #include <algorithm>
 
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
 #include "physics/energy.h"
 
 namespace weft::physics {
 namespace {
 
-void copy(ConstRow3 from, Row3 to, int lanes) {
-  std::copy_n(from.x, lanes, to.x);
-  std::copy_n(from.y, lanes, to.y);
-  std::copy_n(from.z, lanes, to.z);
+// Rows of more bytes than any cache keeps are written past it: nobody reads them but after a fault, and
+// they are not fetched first to be overwritten.
+constexpr std::size_t kPastCaches = std::size_t(8) << 20;
+
+void copy_past_caches(const float* from, int lanes, float* to) {
+#if defined(__SSE2__)
+  for (int i = 0; i < lanes; i += 4) _mm_stream_ps(to + i, _mm_load_ps(from + i));
+  _mm_sfence();  // such stores are in no order with what tells other threads of them
+#else
+  std::copy_n(from, lanes, to);
+#endif
+}
+
+void copy(ConstRow3 from, Row3 to, int lanes, bool past_caches) {
+  const float* const source[] = {from.x, from.y, from.z};
+  float* const target[] = {to.x, to.y, to.z};
+  for (int k = 0; k < 3; ++k)
+    if (past_caches)
+      copy_past_caches(source[k], lanes, target[k]);
+    else
+      std::copy_n(source[k], lanes, target[k]);
 }
 
 }  // namespace
@@ -26,8 +47,9 @@ FrameRecord::FrameRecord(Lattice& lattice, const Vec3& gravity, const KernelTabl
 
 void FrameRecord::keep(RowSpan rows) {
   const int lanes = (rows.end - rows.begin) * lattice_.stride;
-  copy(lattice_.x.row(rows.begin), x_.row(rows.begin), lanes);
-  copy(lattice_.v.row(rows.begin), v_.row(rows.begin), lanes);
+  const bool past_caches = x_.bytes() + v_.bytes() > kPastCaches;
+  copy(lattice_.x.row(rows.begin), x_.row(rows.begin), lanes, past_caches);
+  copy(lattice_.v.row(rows.begin), v_.row(rows.begin), lanes, past_caches);
 }
 
 void FrameRecord::look(RowSpan rows) {

@@ -4,35 +4,13 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
 #include <span>
 
+#include "physics/aligned_array.h"
 #include "physics/kernels/kernels.h"
 #include "weft/scene.h"
 
 namespace weft::physics {
-
-// A fixed-size array of T on a 64-byte boundary, zero at first.
-template <class T>
-class AlignedArray {
- public:
-  AlignedArray() = default;
-  explicit AlignedArray(std::size_t size)
-      : data_(size == 0 ? nullptr : new (std::align_val_t{64}) T[size]()), size_(size) {}
-  T* data() { return data_.get(); }
-  const T* data() const { return data_.get(); }
-  std::size_t size() const { return size_; }
-  T& operator[](std::size_t i) { return data_[i]; }
-  const T& operator[](std::size_t i) const { return data_[i]; }
-  std::span<const T> span() const { return {data_.get(), size_}; }
-
- private:
-  struct Delete {
-    void operator()(T* p) const { ::operator delete[](p, std::align_val_t{64}); }
-  };
-  std::unique_ptr<T[], Delete> data_;
-  std::size_t size_ = 0;
-};
 
 // Floats from one row to the next for a given number of columns: a multiple of 16 with 16 lanes of
 // padding at least, and never a multiple of 1 KiB, where neighbouring rows would compete for the

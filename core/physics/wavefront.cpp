@@ -13,6 +13,9 @@ namespace {
 
 // A core's share of the second-level cache that a tile may fill.
 constexpr std::size_t kTileBytes = 384 * 1024;
+constexpr std::size_t kSecondLevelBytes = 1024 * 1024;
+constexpr int kLeastHeight = 8;   // rows
+constexpr int kMostSubsteps = 8;  // of a chunk
 // So many stages that their rows are better kept in the first-level cache: measured with sweeps.
 constexpr std::size_t kManyStages = 5;
 constexpr std::size_t kFirstLevelBytes = 40 * 1024;
@@ -24,6 +27,9 @@ constexpr double kSharedNanoseconds = 4000;  // and sharing out where nobody has
 
 // Substeps of a chunk: shorter ones have threads hand rows to each other too often.
 constexpr int kShortChunk = 2;
+// Each thread follows the one before by what a chunk leans and two tiles: little of a sheet that is this
+// many times as tall as all of that.
+constexpr int kTallSheet = 4;
 
 constexpr int kNone = -1;  // no tile
 
@@ -45,29 +51,34 @@ Wavefront::Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_by
 }
 
 // One thread and a lattice that fits the cache: one tile a substep. Else tiles as tall as the cache
-// allows, or as a task is worth, and as many substeps a chunk as its lean and the frame permit.
+// allows, or as a task is worth, and many substeps a chunk: that its lean leaves the cache costs less
+// than to come by more often.
 void Wavefront::choose_tiles(int count, int threads) {
   const int reach = std::max(reach_, 1);
-  const bool fits = row_bytes_ * rows_ <= kTileBytes;
+  const std::size_t bytes = row_bytes_ * std::size_t(rows_);
   chunk_substeps_ = 1;
   height_ = rows_ + reach;
-  if (threads == 1 && stages_.size() >= kManyStages) {
+  if (threads == 1 && bytes <= kSecondLevelBytes && stages_.size() >= kManyStages) {
     const int rows = int(kFirstLevelBytes / std::max<std::size_t>(row_bytes_, 1));
     height_ = std::min(height_, std::clamp(rows, kManyStagesLeast, kManyStagesMost));
-  } else if (threads > 1 || !fits) {
-    const int cache_rows = std::max<int>(4, int(kTileBytes / std::max<std::size_t>(row_bytes_, 1)));
+  } else if (threads > 1 || bytes > kTileBytes) {
+    const int cache_rows = int(kTileBytes / std::max<std::size_t>(row_bytes_, 1));
     // A tile and its lean share the cache; several tiles per thread keep all threads busy.
-    height_ = std::max(2 * reach, cache_rows / 2);
+    height_ = std::max({2 * reach, cache_rows / 2, kLeastHeight});
     if (threads > 1)
       height_ = std::min(height_, std::max(std::min(rows_ / (4 * threads), kSharedHeight), reach));
     height_ = std::clamp(height_, 1, rows_);
-    chunk_substeps_ = std::clamp(height_ / reach, 1, 8);
+    chunk_substeps_ =
+        bytes > kSecondLevelBytes ? kMostSubsteps : std::clamp(height_ / reach, 1, kMostSubsteps);
     if (threads > 1) {
       const double tile = row_nanoseconds_ * height_;
-      const int worth = std::min(8, int(std::ceil(kTaskNanoseconds / tile)));
+      const int worth = std::min(kMostSubsteps, int(std::ceil(kTaskNanoseconds / tile)));
+      chunk_substeps_ = std::max(chunk_substeps_, worth);
       // At both ends of a frame threads wait for each other, the longer the longer chunks are.
-      chunk_substeps_ =
-          std::min(std::max(chunk_substeps_, worth), std::max(count / (2 * threads), kShortChunk));
+      const int most = std::min(count / threads, kMostSubsteps);
+      tall_ = kTallSheet * threads * (most * reach + 2 * height_) <= rows_;
+      if (!tall_)
+        chunk_substeps_ = std::min(chunk_substeps_, std::max(count / (2 * threads), kShortChunk));
     }
     chunk_substeps_ = std::clamp(count / threads, 1, chunk_substeps_);
   }
@@ -95,7 +106,8 @@ Wavefront::Chunk Wavefront::chunk(int number, int first, int count) const {
 //
 //   first/longest = (span + 1) T / (2 t - (span + 1) T).
 //
-// The chunks between are as long as each other, as many for every thread.
+// The chunks between are as long as each other, as many for every thread. A tall sheet has no others:
+// coming by once more would take longer.
 void Wavefront::choose_chunks(int count, int threads) {
   chunks_.clear();
   most_tiles_ = 0;
@@ -112,7 +124,7 @@ void Wavefront::choose_chunks(int count, int threads) {
     return std::max(1, int(std::lround(chunk_substeps_ * share)));
   };
   int rising = 1;
-  for (; rising < threads && count >= 2 * length(rising) + chunk_substeps_; ++rising) {
+  for (; !tall_ && rising < threads && count >= 2 * length(rising) + chunk_substeps_; ++rising) {
     add(length(rising));
     count -= 2 * length(rising);
   }

@@ -8,8 +8,8 @@
 // needs the tile before it in its chunk, and in the chunk before the tile that lies past its reach;
 // nothing else. Tiles of several chunks are under way at once, without a barrier, and a tile's rows
 // stay in the cache for all its substeps (time skewing: Wonnacott 2000; Strzodka et al. 2011). The
-// first and the last chunks of a frame are shorter: the later threads can begin sooner, and the
-// earlier ones have work for longer.
+// first and the last chunks of a frame are shorter, but of a tall sheet: the later threads can begin
+// sooner, and the earlier ones have work for longer.
 #pragma once
 
 #include <atomic>
@@ -67,6 +67,7 @@ class Wavefront {
   double prepared_dt_ = 0;
   int chunk_substeps_ = 1;  // at most
   int height_ = 1, ring_ = 1, slots_ = 0;
+  bool tall_ = false;        // threads wait for each other but briefly
   std::vector<int> offset_;  // of every stage of every substep of a chunk
   std::vector<Chunk> chunks_;
   int most_tiles_ = 1;  // of a chunk; tile k of chunk c has number c * most_tiles_ + k
