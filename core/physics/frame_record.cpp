@@ -12,8 +12,8 @@
 namespace weft::physics {
 namespace {
 
-// Rows of more bytes than any cache keeps are written past it: nobody reads them but after a fault, and
-// they are not fetched first to be overwritten.
+// Rows of more bytes than this are written past the caches: nobody reads them before the frame's end,
+// and they are not fetched first to be overwritten.
 constexpr std::size_t kPastCaches = std::size_t(8) << 20;
 
 void copy_past_caches(const float* from, int lanes, float* to) {
