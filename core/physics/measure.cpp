@@ -186,7 +186,7 @@ std::vector<Vec3> velocities_now(const Simulation::State& s, std::size_t index) 
   std::vector<Vec3> v = gather(step.lattice(), step.lattice().v);
   if (!is_explicit(s.method)) return v;
   std::vector<Vec3> a;
-  s.accelerations_now(index, a);
+  s.accelerations_now(index, s.lag, a);
   for (std::size_t p = 0; p < v.size(); ++p)
     for (int k = 0; k < 3; ++k) v[p][k] += a[p][k] * s.lag;
   return v;

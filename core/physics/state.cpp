@@ -148,11 +148,13 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
 }
 
 // What a cloth's particles are accelerated by as they lie, bodies that they touch included [m/s²].
-void Simulation::State::accelerations_now(std::size_t cloth, std::vector<Vec3>& a) const {
+// Velocities lie so far behind the positions [s].
+void Simulation::State::accelerations_now(std::size_t cloth, double behind,
+                                          std::vector<Vec3>& a) const {
   const ClothStep& step = *cloths[cloth];
   accelerations(scene, step.cloth(), step.families(), step.lattice(), step.bend_links(),
                 method == Method::spring_friction, a);
-  support(scene, double(frame) * scene.time.frame, dt, step.lattice(), a);
+  support(scene, step.cloth(), double(frame) * scene.time.frame, {dt, behind}, step.lattice(), a);
 }
 
 // v <- v - a lag: velocities of explicit springs are taken to where they lie behind the positions.
@@ -162,7 +164,7 @@ void Simulation::State::stagger(const double* now) {
   std::vector<Vec3> a;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     Lattice& l = cloths[n]->lattice();
-    accelerations_now(n, a);
+    accelerations_now(n, 0, a);
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i)
         for (int c = 0; c < 3; ++c) {

@@ -49,7 +49,7 @@ struct Simulation::State {
   // A collider has been put where cloths may be.
   void meet(std::size_t collider);
   std::size_t record_bytes() const;
-  void accelerations_now(std::size_t cloth, std::vector<Vec3>& a) const;
+  void accelerations_now(std::size_t cloth, double behind, std::vector<Vec3>& a) const;
 
   // As simulated, about the origin; only move_collider(), restore() and go_on_as() change it. And where
   // it stands, unless that is the same.

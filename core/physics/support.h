@@ -9,10 +9,17 @@
 
 namespace weft::physics {
 
-// Of every particle that rests on a collider at `time` [s], or slides along it, accelerations `a`
-// [m/s²] lose what goes into the surface; what goes along it is shortened by friction as if the
-// particle moved that way (Coulomb), or by the collider's share (course). Substeps are of `dt` [s].
-void support(const Scene& scene, double time, double dt, const Lattice& lattice,
-             std::vector<Vec3>& a);
+// Substeps are of `dt` [s]; velocities lie `behind` the positions by so much: half a substep, or 0 where
+// they have been taken to now.
+struct Lag {
+  double dt, behind;  // s
+};
+
+// Of every particle of the cloth that rests on a collider at `time` [s], or slides along it,
+// accelerations `a` [m/s²] lose what goes into the surface, but for what keeps it on a curved one that
+// the mesh resolves; what goes along it is shortened by friction as if the particle moved that way
+// (Coulomb), or by the collider's share (course).
+void support(const Scene& scene, const Cloth& cloth, double time, const Lag& lag,
+             const Lattice& lattice, std::vector<Vec3>& a);
 
 }  // namespace weft::physics

@@ -9,7 +9,7 @@ namespace weft::WEFT_KERNELS {
 namespace {
 
 struct BoxSurface {
-  static constexpr bool kThin = true;
+  static constexpr bool kFlat = false;
   explicit BoxSurface(const physics::ShapeConstants& c)
       : radius(wide(c.radius)), half(wide3(c.half[0], c.half[1], c.half[2])) {
     for (int k = 0; k < 3; ++k)

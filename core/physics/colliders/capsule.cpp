@@ -8,7 +8,7 @@ namespace weft::WEFT_KERNELS {
 namespace {
 
 struct CapsuleSurface {
-  static constexpr bool kThin = true;
+  static constexpr bool kFlat = false;
   explicit CapsuleSurface(const physics::ShapeConstants& c)
       : radius(wide(c.radius)),
         inverse_square(wide(c.inverse_square)),

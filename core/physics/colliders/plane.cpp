@@ -10,7 +10,7 @@ namespace weft::WEFT_KERNELS {
 namespace {
 
 struct PlaneSurface {
-  static constexpr bool kThin = false;
+  static constexpr bool kFlat = true;
   explicit PlaneSurface(const physics::ShapeConstants& c)
       : normal(wide3(c.axis[0], c.axis[1], c.axis[2])) {}
   WEFT_INLINE Surface at(Wide3 p) const { return {dot(p, normal), normal}; }

@@ -7,7 +7,7 @@ namespace weft::WEFT_KERNELS {
 namespace {
 
 struct SphereSurface {
-  static constexpr bool kThin = true;
+  static constexpr bool kFlat = false;
   explicit SphereSurface(const physics::ShapeConstants& c) : radius(wide(c.radius)) {}
   WEFT_INLINE Surface at(Wide3 p) const { return around(p, radius); }
   Wide radius;

@@ -1,8 +1,9 @@
 // Contact of one row with one collider, for any shape. A shape is a struct of constants with
 //
-//   Surface at(Wide3 p) const        signed distance [m] and outward unit normal at p, seen from
-//   its place static constexpr bool kThin      whether a particle can pass through it within a
-//   substep
+//   Surface at(Wide3 p) const       signed distance [m] and outward unit normal at p, seen from its
+//                                   place
+//   static constexpr bool kFlat     whether the normal is the same everywhere: a half-space, which
+//                                   nothing passes through
 //
 // Positions x and velocities v are consistent, so that x - dt v is the position before the substep.
 //
@@ -11,6 +12,10 @@
 // friction: all of it while |t| <= μ_s p, else by μ_d p, never reversed (seed 003). p, the normal
 // impulse over the mass and times dt, is the way lost into the surface. The depth would be the same,
 // but in short substeps it is the rounding of positions.
+// One that slides over a surface that the mesh resolves is pushed along the normal where it was
+// before, and goes on along the chord between the two places (SHAKE: Ryckaert et al. 1977). That is of
+// second order in the substep, and neither takes energy nor gives any; pushed along the normal at the
+// later place it would gain speed.
 // Course: the correction from the position before is scaled by 1 - μ (seeds 001 and 004).
 //
 // A particle that went right through is found by following its path, seen from the collider, in
@@ -44,11 +49,36 @@ WEFT_INLINE WideInt free_lanes(const CollideRow& r, int i) {
   return (load(r.w + i) > 0.0f) & lanes_below(r.columns - i);
 }
 
-WEFT_INLINE void rub(const CollideRow& r, int i, WideInt touching, Wide depth, Wide3 n) {
-  const Wide3 u = wide3(r.ux, r.uy, r.uz);
+// How touching particles are pushed onto the surface: by `depth` along the unit `normal`. `across` is
+// normal to the way on, and as long as its part along `normal` is 1.
+struct Push {
+  Wide depth;
+  Wide3 normal, across;
+};
+
+constexpr float kSlides = 0.01f;       // of its path: what began no farther from the surface slides
+constexpr float kSharpestTurn = 0.5f;  // cosine of the angle between its normals, at least
+
+// Of those that are pushed `straight` at p, at the end of their paths, the ones that slide are pushed
+// as is said above.
+template <class Shape>
+WEFT_INLINE Push along_chords(const CollideRow& r, const Shape& shape, Wide3 p, Wide3 path,
+                              const Push& straight) {
+  const Surface before = shape.at(p - path);
+  const Wide turn = dot(before.normal, straight.normal);
+  const Wide left = max(before.distance - r.offset, Wide{});
+  const WideInt slides =
+      (turn > kSharpestTurn) & (left * left <= dot(path, path) * (kSlides * kSlides));
+  const Wide3 middle = (before.normal + straight.normal) * (1.0f / (1.0f + turn));
+  return {straight.depth / select(slides, turn, wide(1)),
+          select(slides, before.normal, straight.normal), select(slides, middle, straight.across)};
+}
+
+WEFT_INLINE void rub(const CollideRow& r, int i, WideInt touching, const Push& push) {
+  const Wide3 u = wide3(r.ux, r.uy, r.uz), n = push.normal;
   const Wide3 v = load3(r.v, i);
   const Wide3 relative = v - u;
-  const Wide into = dot(relative, n);
+  const Wide into = dot(relative, push.across);
   const Wide3 tangential = relative - n * into;
   const Wide distance = sqrt(max(dot(tangential, tangential), wide(kTinySquare))) * r.dt;
   const Wide pressed = max(into * -r.dt, Wide{});
@@ -56,7 +86,7 @@ WEFT_INLINE void rub(const CollideRow& r, int i, WideInt touching, Wide depth, W
   const Wide keep = select(distance <= r.friction_static * pressed, Wide{}, slide);
   const Wide3 rubbed = tangential * keep;
   const Wide3 x = load3(r.x, i);
-  store3(r.x, i, select(touching, x + n * depth + (rubbed - tangential) * wide(r.dt), x));
+  store3(r.x, i, select(touching, x + n * push.depth + (rubbed - tangential) * wide(r.dt), x));
   store3(r.v, i, select(touching, u + rubbed + n * max(into, Wide{}), v));
 }
 
@@ -122,26 +152,28 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
     fastest = max(fastest, select(free, speed, Wide{}));
     const WideInt below = free & (left < 0.0f);
     WideInt touching = below;
-    Wide depth = -left;
-    Wide3 n = s.normal;
-    if constexpr (Shape::kThin) {
+    Push push{-left, s.normal, s.normal};
+    if constexpr (!Shape::kFlat) {
       // Only a particle that moves away from the surface nearest to it can have come through, and
       // only on a path that is long against the shape.
       const Wide path = speed * (r.dt * r.dt);
       const WideInt leaving =
-          free & (path > shortest) & (left * left < path) & (dot(relative, n) > 0.0f);
+          free & (path > shortest) & (left * left < path) & (dot(relative, s.normal) > 0.0f);
       if (any(leaving)) {
         const Entry e = entry(r, shape, p, relative * wide(r.dt), leaving);
         touching = touching | e.caught;
-        depth = select(e.caught, e.depth, depth);
-        n = select(e.caught, e.normal, n);
+        push = {select(e.caught, e.depth, push.depth), select(e.caught, e.normal, push.normal),
+                select(e.caught, e.normal, push.across)};
       }
     }
     if (!any(touching)) continue;
-    if constexpr (kCourse)
-      course_correct(r, i, touching, load3(r.x, i) + n * depth);
-    else
-      rub(r, i, touching, depth, n);
+    if constexpr (kCourse) {
+      course_correct(r, i, touching, load3(r.x, i) + push.normal * push.depth);
+    } else {
+      if (!Shape::kFlat && r.resolved)
+        push = along_chords(r, shape, p, relative * wide(r.dt), push);
+      rub(r, i, touching, push);
+    }
   }
   return {least(clearance), __builtin_sqrtf(greatest(fastest))};
 }

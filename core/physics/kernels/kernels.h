@@ -215,6 +215,7 @@ struct CollideRow {
   float cx, cy, cz;  // where the shape is at the end of the substep [m]
   float ux, uy, uz;  // velocity of the surface [m/s]
   float offset;      // kept off the surface [m]
+  bool resolved;     // the mesh is fine enough for its features
   float friction_static, friction_dynamic;
   ShapeConstants shape;
 };

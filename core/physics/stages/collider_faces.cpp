@@ -14,7 +14,6 @@
 namespace weft::physics {
 namespace {
 
-constexpr double kSmall = 1.5;    // in diagonals of the mesh: a larger radius needs no triangles
 constexpr int kProjections = 12;  // between triangle and core
 constexpr int kMostPlaces = 16;   // on the way of a fast collider
 constexpr double kSlack = 1e-3;   // of an edge: a triangle may be as deep
@@ -137,16 +136,8 @@ struct Upright {
   }
 };
 
-// m, the longest side of a flat triangle.
-double edge_of(const Grid& grid) {
-  return std::hypot(spacing_u(grid), spacing_v(grid));
-}
-
-// Whether a collider could slip through the cloth between its particles.
 bool caught_by_triangles(const Cloth& cloth, const Collider& collider) {
-  if (collider.friction.model == FrictionModel::course) return false;
-  const double feature = std::visit([](const auto& s) { return feature_of(s); }, collider.shape);
-  return feature + collider.offset <= kSmall * edge_of(cloth.grid);
+  return collider.friction.model == FrictionModel::coulomb && !resolves(cloth, collider);
 }
 
 class ColliderFaces final : public RowStage {
@@ -159,7 +150,7 @@ class ColliderFaces final : public RowStage {
         collider_(parts, collider, true),
         far_(parts, collider_.fastest()),
         upright_(collider.shape),
-        edge_(edge_of(parts.cloth.grid)) {}
+        edge_(longest_edge(parts.cloth.grid)) {}
 
   void reserve_slots(int slots) override {
     bound_ = Rows(slots, parts_.lattice.stride);
@@ -282,7 +273,7 @@ class ColliderFaces final : public RowStage {
 void find_triangles_inside(const Cloth& cloth, const Lattice& l, const Collider& collider,
                            StartInside& found) {
   if (collider.cuts || !caught_by_triangles(cloth, collider)) return;
-  const double edge = edge_of(cloth.grid);
+  const double edge = longest_edge(cloth.grid);
   const Upright upright(collider.shape);
   const Vec3 place = collider.keys.empty()
                          ? std::visit([](const auto& s) { return place_of(s); }, collider.shape)

@@ -63,6 +63,15 @@ StartInside start_inside(const Cloth& cloth, const Lattice& l, const Collider& c
   return found;
 }
 
+double longest_edge(const Grid& grid) {
+  return std::hypot(spacing_u(grid), spacing_v(grid));
+}
+
+bool resolves(const Cloth& cloth, const Collider& collider) {
+  const double feature = std::visit([](const auto& s) { return feature_of(s); }, collider.shape);
+  return feature + collider.offset > kSmallFeature * longest_edge(cloth.grid);
+}
+
 MovingCollider::MovingCollider(const ClothParts& parts, const Collider& collider, bool by_triangles)
     : collider_(collider),
       start_(parts.start_in(collider)),
@@ -72,6 +81,7 @@ MovingCollider::MovingCollider(const ClothParts& parts, const Collider& collider
   r.friction_static = float(collider.friction.statik);
   r.friction_dynamic = float(collider.friction.dynamic);
   r.offset = float(collider.offset);
+  r.resolved = resolves(parts.cloth, collider);
   std::visit(
       [&](const auto& shape) {
         const Vec3 place = place_of(shape);

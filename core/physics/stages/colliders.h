@@ -10,6 +10,14 @@ namespace weft::physics {
 // Frames over which a collider that holds part of a sheet when they first meet grows to its size.
 inline constexpr int kPulledFrames = 10;
 
+// Of a flat triangle of the cloth [m].
+double longest_edge(const Grid& grid);
+
+// Whether the cloth's mesh is fine enough for the collider's features: more than kSmallFeature of those
+// edges. Else it could slip through between the particles.
+inline constexpr double kSmallFeature = 1.5;
+bool resolves(const Cloth& cloth, const Collider& collider);
+
 // A collider in motion, as the kernels take it. What is inside when it meets the cloth would be torn
 // from its neighbours if it were put onto the surface at once: the collider begins as much smaller as
 // the deepest of it lies below the surface.
