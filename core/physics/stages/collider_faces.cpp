@@ -7,6 +7,7 @@
 // others are long levers; none is moved by more than kMostLever times the depth at once.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/path.h"
 #include "physics/stages/colliders.h"
@@ -66,34 +67,50 @@ struct Deepest {
   Nearest nearest;
 };
 
-// The deepest point of a triangle in a shape, by alternating projections between triangle and core;
-// they end early at a plane that holds the two further apart than `offset`. A triangle that cuts
-// the core is first moved out of it, along the way of least overlap.
+// The point of a triangle nearest to the core of a shape, by alternating projections between the two.
+// They end early at a plane that holds the two further apart than `enough`.
+struct Approach {
+  Weights weights{1 / 3., 1 / 3., 1 / 3.};
+  bool apart = false;  // a plane was found between the two
+  bool far = false;    // and it holds them apart by enough
+};
+template <class Shape>
+Approach approach(const Shape& shape, const Corners& c, double enough, double edge) {
+  Approach a;
+  Core core = core_of(shape, c.at(a.weights));
+  for (int n = 0; n < kProjections; ++n) {
+    const Weights before = a.weights;
+    a.weights = nearest_on(c.x, core.nearest);
+    const Vec3 here = c.at(a.weights);
+    core = core_of(shape, here);
+    const Vec3 way = minus(here, core.nearest);
+    const double square = dot(way, way);
+    double least = 1e300;
+    for (const Vec3& x : c.x) least = std::min(least, dot(way, minus(x, here)));
+    const double gap = (square + least) / std::sqrt(std::max(square, 1e-300));
+    a.apart |= gap > 1e-6 * edge;  // more than rounding
+    a.far = a.apart && gap >= enough;
+    const Vec3 change = minus(a.weights, before);
+    if (a.far || dot(change, change) < 1e-12) break;
+  }
+  return a;
+}
+
+// The deepest point of a triangle in a shape. One that cuts the core is first moved out of it, along the
+// way of least overlap.
 template <class Shape>
 Deepest deepest_on(const Shape& shape, Corners c, double offset, double edge) {
-  const Overlap overlap = overlap_of(shape, c.x);
-  if (overlap.depth > 0)
-    for (Vec3& x : c.x) x = plus(x, times(overlap.normal, overlap.depth + 1e-3 * edge));
-  Deepest d{{1 / 3., 1 / 3., 1 / 3.}, {}};
-  Core core = core_of(shape, c.at(d.weights));
-  const double radius = core.radius;
-  for (int n = 0; n < kProjections; ++n) {
-    const Weights before = d.weights;
-    d.weights = nearest_on(c.x, core.nearest);
-    const Vec3 here = c.at(d.weights);
-    core = core_of(shape, here);
-    const Vec3 apart = minus(here, core.nearest);
-    const double square = dot(apart, apart);
-    double least = 1e300;
-    for (const Vec3& x : c.x) least = std::min(least, dot(apart, minus(x, here)));
-    const double gap = (square + least) / std::sqrt(std::max(square, 1e-300));
-    if (overlap.depth <= 0 && gap >= radius + offset) return {d.weights, {offset, {}}};
-    const Vec3 change = minus(d.weights, before);
-    if (dot(change, change) < 1e-12) break;
+  const double radius = core_of(shape, c.x[0]).radius;
+  Approach a = approach(shape, c, radius + offset, edge);
+  if (a.far) return {a.weights, {offset, {}}};
+  if (!a.apart) {
+    if (const Overlap overlap = overlap_of(shape, c.x); overlap.depth > 0) {
+      for (Vec3& x : c.x) x = plus(x, times(overlap.normal, overlap.depth + 1e-3 * edge));
+      a = approach(shape, c, std::numeric_limits<double>::infinity(), edge);
+      return {a.weights, {-overlap.depth - radius, overlap.normal}};
+    }
   }
-  d.nearest = overlap.depth > 0 ? Nearest{-overlap.depth - radius, overlap.normal}
-                                : nearest_of(shape, c.at(d.weights));
-  return d;
+  return {a.weights, nearest_of(shape, c.at(a.weights))};
 }
 
 struct Touch {
