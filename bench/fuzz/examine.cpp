@@ -1,0 +1,152 @@
+#include "examine.h"
+
+#include <filesystem>
+#include <vector>
+
+#include "failure.h"
+#include "hostile.h"
+#include "judges.h"
+#include "random_scene.h"
+#include "weft/read_scene.h"
+
+namespace fuzz {
+
+using namespace weft;
+
+namespace {
+
+constexpr int kFramesRestored = 4;  // that are compared after a snapshot
+
+Options options_of(const Case& c, Simd simd, int threads) {
+  Options options;
+  options.simd = simd;
+  options.threads = threads;
+  options.seed = c.seed;
+  return options;
+}
+
+std::string name_of(const Options& options) {
+  return std::string(simd_name(options.simd)) + " on " + std::to_string(options.threads) +
+         " threads";
+}
+
+void require_equal(const Trace& expected, const Trace& found, const std::string& what) {
+  if (const std::string where = difference(expected, found); !where.empty())
+    throw Failure("difference", what + ": " + where);
+}
+
+// The scene as it comes back from its text.
+Scene read_back(const Scene& scene) {
+  const std::string text = write_scene_text(scene);
+  const SceneFile file = read_scene_text(text);
+  if (!file.faults.empty())
+    throw Failure("scene text", file.faults[0].place + ": " + file.faults[0].what);
+  if (!(file.scene == scene) || !difference(scene, file.scene).empty())
+    throw Failure("scene text", "reads as another scene: " + difference(scene, file.scene));
+  return file.scene;
+}
+
+Trace judged(const Case& c, const Options& options) {
+  Simulation simulation(c.scene, options);
+  Judges judges(simulation);
+  Trace trace = run(c, simulation, nullptr,
+                    [&](const Simulation& s, bool touched) { judges.frame(s, touched); });
+  judges.end(simulation);
+  return trace;
+}
+
+Trace plain(const Case& c, const Options& options) {
+  Simulation simulation(c.scene, options);
+  return run(c, simulation, nullptr, [](const Simulation&, bool) {});
+}
+
+// A run that is recorded, and its replay with other options.
+void replay(const Case& c, const Trace& expected, const std::string& folder) {
+  const std::string path = folder + "/" + std::to_string(c.seed) + ".weft";
+  {
+    Simulation simulation(c.scene, options_of(c, Simd::best, 2));
+    Recorder recorder(path, simulation);
+    require_equal(expected, run(c, simulation, &recorder, [](const Simulation&, bool) {}),
+                  "while recorded");
+    recorder.finish();
+  }
+  const Recording recording = read_recording(path);
+  Options options = options_of(c, Simd::best, 1);
+  options.seed = recording.seed;
+  Simulation simulation(recording.scene, options);
+  for (std::size_t next = 0; next < recording.events.size();) {
+    while (const Input* input = next_input(recording, next, simulation)) apply(*input, simulation);
+    if (next >= recording.events.size()) break;
+    simulation.advance_frame();
+    try {
+      compare_hash(recording, next, simulation);
+    } catch (const RecordingError& error) {
+      throw Failure("replay", error.what());
+    }
+  }
+  std::filesystem::remove(path);
+}
+
+std::vector<std::uint64_t> go_on(Simulation& simulation, const Moment& moment) {
+  simulation.restore(moment);
+  std::vector<std::uint64_t> hashes{hash_of(simulation)};
+  for (int n = 0; n < kFramesRestored; ++n) {
+    simulation.advance_frame();
+    hashes.push_back(hash_of(simulation));
+  }
+  return hashes;
+}
+
+// What follows a snapshot is the same in a new simulation and in the one that it is of.
+void restore(const Case& c) {
+  Simulation first(c.scene, options_of(c, Simd::best, 1));
+  Simulation second(c.scene, options_of(c, Simd::best, 2));
+  for (int n = 0; n < kFramesRestored; ++n) first.advance_frame();
+  const Moment moment = first.moment();
+  if (go_on(first, moment) != go_on(second, moment))
+    throw Failure("restore", "another way follows in another simulation");
+}
+
+std::vector<Simd> available() {
+  std::vector<Simd> all;
+  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512})
+    if (simd_available(simd)) all.push_back(simd);
+  return all;
+}
+
+std::uint64_t sum_of(const Trace& trace) {
+  std::uint64_t sum = 0;
+  for (const std::uint64_t hash : trace.hashes) sum = sum * 0x9e3779b97f4a7c15u + hash;
+  return sum;
+}
+
+}  // namespace
+
+std::uint64_t examine(const Case& c, Variants variants, const std::string& folder) {
+  const std::vector<Simd> all = available();
+  Case read = c;
+  read.scene = read_back(c.scene);
+  if (variants == Variants::one) {
+    const Options options =
+        options_of(c, all[c.seed % all.size()], 1 + int(c.seed / all.size() % 3));
+    const Trace trace = judged(read, options);
+    mistreat(c, options);
+    return sum_of(trace);
+  }
+  const Trace trace = judged(c, options_of(c, Simd::best, 1));
+  int threads = int(c.seed % 3);
+  for (const Simd simd : all) {
+    const Options options = options_of(c, simd, 1 + threads++ % 3);
+    require_equal(trace, plain(read, options), name_of(options));
+  }
+  if (c.inputs != Inputs::all) replay(c, trace, folder);
+  restore(c);
+  mistreat(c, options_of(c, Simd::best, 1));
+  return sum_of(trace);
+}
+
+Case case_of(std::uint64_t seed) {
+  return {seed, random_scene(seed), inputs_of(seed)};
+}
+
+}  // namespace fuzz
