@@ -14,7 +14,8 @@ namespace {
 
 [[noreturn]] void work_and_leave(const std::function<std::string()>& work, int out,
                                  const std::string& errors) {
-  if (std::freopen(errors.c_str(), "w", stderr) == nullptr) _exit(3);
+  const int file = open(errors.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (file < 0 || dup2(file, STDERR_FILENO) < 0) _exit(3);
   const std::string answer = work();
   for (std::size_t done = 0; done < answer.size();) {
     const ssize_t n = write(out, answer.data() + done, answer.size() - done);

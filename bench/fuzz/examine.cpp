@@ -1,5 +1,6 @@
 #include "examine.h"
 
+#include <cstdio>
 #include <filesystem>
 #include <vector>
 
@@ -25,14 +26,40 @@ Options options_of(const Case& c, Simd simd, int threads) {
   return options;
 }
 
+// What several looks at a scene find, so that one fault does not hide another.
+class Findings {
+ public:
+  void look(const std::string& what, const std::function<void()>& work) {
+    std::fprintf(stderr, "at: %s\n", what.c_str());  // for the case that it crashes
+    try {
+      work();
+    } catch (const Failure& failure) {
+      add(failure.what(), what);
+    } catch (const std::exception& error) {
+      add(std::string("exception: ") + error.what(), what);
+    }
+  }
+
+  void tell() const {
+    if (!text_.empty()) throw Failure(text_);
+  }
+
+ private:
+  void add(const std::string& found, const std::string& what) {
+    text_ += (text_.empty() ? "" : "; ") + found + " (" + what + ")";
+  }
+
+  std::string text_;
+};
+
 std::string name_of(const Options& options) {
   return std::string(simd_name(options.simd)) + " on " + std::to_string(options.threads) +
          " threads";
 }
 
-void require_equal(const Trace& expected, const Trace& found, const std::string& what) {
+void require_equal(const Trace& expected, const Trace& found) {
   if (const std::string where = difference(expected, found); !where.empty())
-    throw Failure("difference", what + ": " + where);
+    throw Failure("difference: " + where);
 }
 
 // The scene as it comes back from its text.
@@ -40,9 +67,9 @@ Scene read_back(const Scene& scene) {
   const std::string text = write_scene_text(scene);
   const SceneFile file = read_scene_text(text);
   if (!file.faults.empty())
-    throw Failure("scene text", file.faults[0].place + ": " + file.faults[0].what);
+    throw Failure("scene text: " + file.faults[0].place + ": " + file.faults[0].what);
   if (!(file.scene == scene) || !difference(scene, file.scene).empty())
-    throw Failure("scene text", "reads as another scene: " + difference(scene, file.scene));
+    throw Failure("scene text: reads as another scene: " + difference(scene, file.scene));
   return file.scene;
 }
 
@@ -66,8 +93,7 @@ void replay(const Case& c, const Trace& expected, const std::string& folder) {
   {
     Simulation simulation(c.scene, options_of(c, Simd::best, 2));
     Recorder recorder(path, simulation);
-    require_equal(expected, run(c, simulation, &recorder, [](const Simulation&, bool) {}),
-                  "while recorded");
+    require_equal(expected, run(c, simulation, &recorder, [](const Simulation&, bool) {}));
     recorder.finish();
   }
   const Recording recording = read_recording(path);
@@ -81,7 +107,7 @@ void replay(const Case& c, const Trace& expected, const std::string& folder) {
     try {
       compare_hash(recording, next, simulation);
     } catch (const RecordingError& error) {
-      throw Failure("replay", error.what());
+      throw Failure(std::string("replay: ") + error.what());
     }
   }
   std::filesystem::remove(path);
@@ -104,7 +130,7 @@ void restore(const Case& c) {
   for (int n = 0; n < kFramesRestored; ++n) first.advance_frame();
   const Moment moment = first.moment();
   if (go_on(first, moment) != go_on(second, moment))
-    throw Failure("restore", "another way follows in another simulation");
+    throw Failure("restore: another way follows in another simulation");
 }
 
 std::vector<Simd> available() {
@@ -124,24 +150,28 @@ std::uint64_t sum_of(const Trace& trace) {
 
 std::uint64_t examine(const Case& c, Variants variants, const std::string& folder) {
   const std::vector<Simd> all = available();
+  Findings findings;
   Case read = c;
-  read.scene = read_back(c.scene);
+  findings.look("scene text", [&] { read.scene = read_back(c.scene); });
+  Trace trace;
   if (variants == Variants::one) {
     const Options options =
         options_of(c, all[c.seed % all.size()], 1 + int(c.seed / all.size() % 3));
-    const Trace trace = judged(read, options);
-    mistreat(c, options);
-    return sum_of(trace);
+    findings.look(name_of(options), [&] { trace = judged(read, options); });
+    findings.look("hostile use", [&] { mistreat(c, options); });
+  } else {
+    const Options options = options_of(c, Simd::best, 1);
+    findings.look("judges", [&] { trace = judged(c, options); });
+    int threads = int(c.seed % 3);
+    for (const Simd simd : all) {
+      const Options other = options_of(c, simd, 1 + threads++ % 3);
+      findings.look(name_of(other), [&] { require_equal(trace, plain(read, other)); });
+    }
+    if (c.inputs != Inputs::all) findings.look("replay", [&] { replay(c, trace, folder); });
+    findings.look("restore", [&] { restore(c); });
+    findings.look("hostile use", [&] { mistreat(c, options); });
   }
-  const Trace trace = judged(c, options_of(c, Simd::best, 1));
-  int threads = int(c.seed % 3);
-  for (const Simd simd : all) {
-    const Options options = options_of(c, simd, 1 + threads++ % 3);
-    require_equal(trace, plain(read, options), name_of(options));
-  }
-  if (c.inputs != Inputs::all) replay(c, trace, folder);
-  restore(c);
-  mistreat(c, options_of(c, Simd::best, 1));
+  findings.tell();
   return sum_of(trace);
 }
 

@@ -53,6 +53,13 @@ std::string examined(const fuzz::Case& c, fuzz::Variants variants, const std::st
   }
 }
 
+fuzz::Case case_of_file(const std::string& path) {
+  weft::SceneFile file = weft::read_scene(path);
+  if (!file.faults.empty())
+    throw std::invalid_argument(path + file.faults[0].place + ": " + file.faults[0].what);
+  return {1, std::move(file.scene)};
+}
+
 fuzz::Entry entry_of(const std::string& answer, double seconds) {
   fuzz::Entry e;
   e.ms = 1e3 * seconds;
@@ -66,6 +73,18 @@ fuzz::Entry entry_of(const std::string& answer, double seconds) {
   for (char& c : e.answer)
     if (c == '\n') c = ' ';
   return e;
+}
+
+// What a child that ended early was at, and the sanitizers' summary.
+std::string last_words(const std::string& path) {
+  std::string place, summary;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("at: ")) place = " (" + line.substr(4) + ")";
+    if (line.find("runtime error: ") != std::string::npos || line.starts_with("SUMMARY: "))
+      summary = summary.empty() ? " " + line : summary;
+  }
+  return place + summary;
 }
 
 class Campaign {
@@ -132,6 +151,7 @@ class Campaign {
         continue;
       }
       fuzz::Entry entry = entry_of(*answer, r->child->seconds());
+      if (entry.scene == 0) entry.answer += last_words(file(r->seed, ".txt"));
       compare(r->seed, entry);
       log_.add(r->seed, entry);
       ++fresh_;
@@ -184,7 +204,8 @@ int main(int argc, char** argv) {
   CLI::App app{"fuzz: valid scenes at random, run in every way that must not matter", "fuzz"};
   Settings s;
   bool one = false;
-  std::uint64_t show = 0;
+  std::uint64_t show = 0, here = 0;
+  std::string scene;
   app.add_option("--first", s.first, "seed of the first scene")->capture_default_str();
   app.add_option("--count", s.count, "scenes")->capture_default_str();
   app.add_option("--seconds", s.seconds, "starts no scene after so many seconds");
@@ -198,6 +219,8 @@ int main(int argc, char** argv) {
   app.add_option("--folder", s.folder, "where scenes that fail are written")->capture_default_str();
   app.add_flag("--one", one, "runs each scene once, in one of the ways that must not matter");
   CLI::Option* shown = app.add_option("--show", show, "prints the scene of a seed");
+  CLI::Option* one_here = app.add_option("--here", here, "examines a seed in this process");
+  app.add_option("--scene", scene, "examines a scene file in this process, without inputs");
   CLI11_PARSE(app, argc, argv);
   try {
     if (*shown) {
@@ -205,6 +228,11 @@ int main(int argc, char** argv) {
       return 0;
     }
     s.variants = one ? fuzz::Variants::one : fuzz::Variants::all;
+    if (*one_here || !scene.empty()) {
+      const fuzz::Case c = scene.empty() ? fuzz::case_of(here) : case_of_file(scene);
+      std::puts(examined(c, s.variants, ".").c_str());
+      return 0;
+    }
     return Campaign(s).run();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fuzz: %s\n", error.what());

@@ -102,10 +102,10 @@ bool refused(const char* name, Call&& call) {
   try {
     call();
   } catch (const Error& error) {
-    if (std::string(error.what()).empty()) throw Failure("hostile", "no reason given");
+    if (std::string(error.what()).empty()) throw Failure("hostile: no reason given");
     return true;
   } catch (const std::exception& error) {
-    throw Failure("hostile", std::string(name) + ": " + error.what());
+    throw Failure("hostile: " + std::string(name) + ": " + error.what());
   }
   return false;
 }
@@ -114,7 +114,7 @@ bool refused(const char* name, Call&& call) {
 void expect_sound(Simulation& simulation, bool was_refused, std::uint64_t before,
                   const char* name) {
   if (was_refused && hash_of(simulation) != before)
-    throw Failure("hostile", std::string(name) + " was refused and changed the state");
+    throw Failure("hostile: " + std::string(name) + " was refused and changed the state");
   simulation.advance_frame();
   if (simulation.status().ok) Judges(simulation).end(simulation);
 }

@@ -17,7 +17,7 @@ std::string at(const char* what, std::size_t cloth, int i, int j) {
 }
 
 void require(bool holds, const char* kind, const std::string& text) {
-  if (!holds) throw Failure(std::string("judge ") + kind, text);
+  if (!holds) throw Failure(std::string("judge ") + kind + ": " + text);
 }
 
 void check_values(const ClothView& c, std::size_t number) {

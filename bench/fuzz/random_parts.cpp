@@ -248,7 +248,10 @@ Shape Parts::shape(const Vec3& at, double size) {
 Friction Parts::friction() {
   Friction f;
   if (draw_.chance(0.4)) return f;
-  if (draw_.chance(0.2)) return {FrictionModel::course, 0, draw_.uniform(0, 1)};
+  if (draw_.chance(0.2)) {
+    const double course = draw_.uniform(0, 1);
+    return {FrictionModel::course, course, course};
+  }
   f.statik = draw_.chance(0.9) ? draw_.uniform(0, 1.5) : 10;
   f.dynamic = draw_.chance(0.6) ? f.statik : f.statik * draw_.uniform(0, 1);
   return f;
