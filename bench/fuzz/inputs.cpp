@@ -44,18 +44,17 @@ Input random_input(const Scene& scene, Draw& draw) {
   return input;
 }
 
-// Particles get random velocities, and positions a little off.
-void throw_cloth(Simulation& simulation, double speed, double off, Draw& draw) {
-  std::vector<double> x = simulation.positions(), v = simulation.velocities();
-  for (double& c : x) c += off * draw.uniform(-1, 1);
-  for (double& c : v) c = speed * draw.uniform(-1, 1);
-  simulation.set_state(x, v);
-}
-
 }  // namespace
 
 Inputs inputs_of(std::uint64_t seed) {
   return Draw(seed, kChoiceStream).of({Inputs::none, Inputs::recorded, Inputs::all});
+}
+
+void throw_cloth(Simulation& simulation, double speed, double off, Draw draw) {
+  std::vector<double> x = simulation.positions(), v = simulation.velocities();
+  for (double& c : x) c += off * draw.uniform(-1, 1);
+  for (double& c : v) c = speed * draw.uniform(-1, 1);
+  simulation.set_state(x, v);
 }
 
 Hand::Hand(std::uint64_t seed, Inputs inputs) : seed_(seed), inputs_(inputs) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "draw.h"
 #include "weft/recording.h"
 
 namespace fuzz {
@@ -15,6 +16,10 @@ enum class Inputs {
   all,       // and set_state(), moment(), restore()
 };
 Inputs inputs_of(std::uint64_t seed);
+
+// Particles get random velocities up to `speed` [m/s] in each direction, and places up to `off` [m]
+// from where they are.
+void throw_cloth(weft::Simulation& simulation, double speed, double off, Draw draw);
 
 class Hand {
  public:

@@ -114,13 +114,18 @@ Judges::Judges(const Simulation& simulation) {
   }
   check_view(simulation);
   check_plan(simulation);
+  laws_.emplace(simulation);
 }
 
 void Judges::frame(const Simulation& simulation, bool touched) {
   check_view(simulation);
   check_plan(simulation);
   check_report(simulation, simulation.report(false));
-  if (touched) held_.clear();
+  if (touched) {
+    held_.clear();
+    laws_.reset();
+  }
+  if (laws_ && simulation.status().ok) laws_->frame(simulation);
   const View view = simulation.view();
   for (const Held& h : held_) {
     const ClothView& c = view.cloths[h.cloth];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "failure.h"
+#include "laws.h"
 #include "weft/simulation.h"
 
 namespace fuzz {
@@ -29,6 +30,7 @@ class Judges {
     std::array<float, 3> place;
   };
   std::vector<Held> held_;
+  std::optional<Laws> laws_;  // until the first input
 };
 
 }  // namespace fuzz

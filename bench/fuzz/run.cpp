@@ -10,6 +10,7 @@ using namespace weft;
 namespace {
 
 constexpr std::size_t kMostFrames = 60;
+constexpr std::uint64_t kStartStream = 5'000'000;  // of random numbers
 
 class Hash {
  public:
@@ -61,6 +62,10 @@ std::uint64_t hash_of(const Simulation& simulation) {
   hash.add(simulation.status().text);
   for (const ClothView& c : simulation.view().cloths) add_cloth(c, hash);
   return hash.sum();
+}
+
+void begin(const Case& c, Simulation& simulation) {
+  if (c.speed > 0) throw_cloth(simulation, c.speed, 0, Draw(c.seed, kStartStream));
 }
 
 Trace run(const Case& c, Simulation& simulation, Recorder* recorder, const Watch& watch) {

@@ -12,8 +12,12 @@ struct Case {
   std::uint64_t seed = 0;
   weft::Scene scene;
   Inputs inputs = Inputs::none;
+  double speed = 0;   // m/s, of particles at the start, each another way
   double work = 2e5;  // of all frames: particles times substeps times what one costs, about
 };
+
+// Gives particles their velocities of the start.
+void begin(const Case& c, weft::Simulation& simulation);
 
 // What comes out. Equal for any threads and instruction set.
 struct Trace {
