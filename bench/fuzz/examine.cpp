@@ -1,5 +1,6 @@
 #include "examine.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <vector>
@@ -16,8 +17,8 @@ using namespace weft;
 
 namespace {
 
+constexpr int kFewFrames = 5;
 constexpr std::uint64_t kCaseStream = 6'000'000;
-constexpr int kFramesRestored = 4;  // that are compared after a snapshot
 
 Options options_of(const Case& c, Simd simd, int threads) {
   Options options;
@@ -116,10 +117,10 @@ void replay(const Case& c, const Trace& expected, const std::string& folder) {
   std::filesystem::remove(path);
 }
 
-std::vector<std::uint64_t> go_on(Simulation& simulation, const Moment& moment) {
+std::vector<std::uint64_t> go_on(Simulation& simulation, const Moment& moment, int frames) {
   simulation.restore(moment);
   std::vector<std::uint64_t> hashes{hash_of(simulation)};
-  for (int n = 0; n < kFramesRestored; ++n) {
+  for (int n = 0; n < frames; ++n) {
     simulation.advance_frame();
     hashes.push_back(hash_of(simulation));
   }
@@ -127,12 +128,12 @@ std::vector<std::uint64_t> go_on(Simulation& simulation, const Moment& moment) {
 }
 
 // What follows a snapshot is the same in a new simulation and in the one that it is of.
-void restore(const Case& c) {
+void restore(const Case& c, int frames) {
   Simulation first(c.scene, options_of(c, Simd::best, 1));
   Simulation second(c.scene, options_of(c, Simd::best, 2));
-  for (int n = 0; n < kFramesRestored; ++n) first.advance_frame();
+  for (int n = 0; n < frames; ++n) first.advance_frame();
   const Moment moment = first.moment();
-  if (go_on(first, moment) != go_on(second, moment))
+  if (go_on(first, moment, frames) != go_on(second, moment, frames))
     throw Failure("restore: another way follows in another simulation");
 }
 
@@ -161,7 +162,8 @@ std::uint64_t examine(const Case& c, Variants variants, const std::string& folde
     const Options options =
         options_of(c, all[c.seed % all.size()], 1 + int(c.seed / all.size() % 3));
     findings.look(name_of(options), [&] { trace = judged(read, options); });
-    findings.look("hostile use", [&] { mistreat(c, options); });
+    const int few = std::min(kFewFrames, int(trace.hashes.size()));
+    findings.look("hostile use", [&] { mistreat(c, options, few); });
   } else {
     const Options options = options_of(c, Simd::best, 1);
     findings.look("judges", [&] { trace = judged(c, options); });
@@ -172,8 +174,10 @@ std::uint64_t examine(const Case& c, Variants variants, const std::string& folde
     }
     if (c.inputs != Inputs::all && c.speed == 0)
       findings.look("replay", [&] { replay(c, trace, folder); });
-    findings.look("restore", [&] { restore(c); });
-    findings.look("hostile use", [&] { mistreat(c, options); });
+    // Scenes whose frames are much work get few here, too.
+    const int few = std::min(kFewFrames, int(trace.hashes.size()));
+    findings.look("restore", [&] { restore(c, few); });
+    findings.look("hostile use", [&] { mistreat(c, options, few); });
   }
   findings.tell();
   return sum_of(trace);

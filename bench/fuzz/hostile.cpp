@@ -13,7 +13,6 @@ using namespace weft;
 namespace {
 
 constexpr std::uint64_t kHostileStream = 4'000'000;
-constexpr int kRounds = 6;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -148,12 +147,12 @@ void mistreat_input(Simulation& simulation, Draw& draw) {
 
 }  // namespace
 
-void mistreat(const Case& c, const Options& options) {
+void mistreat(const Case& c, const Options& options, int rounds) {
   Draw draw(c.seed, kHostileStream);
   Simulation simulation(c.scene, options);
   simulation.advance_frame();
   const Moment sound = simulation.moment();
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     const int kind = draw.between(0, 3);
     if (kind == 0) {
       mistreat_state(simulation, draw);

@@ -6,6 +6,6 @@
 
 namespace fuzz {
 
-void mistreat(const Case& c, const weft::Options& options);
+void mistreat(const Case& c, const weft::Options& options, int rounds);
 
 }  // namespace fuzz

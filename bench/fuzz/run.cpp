@@ -42,14 +42,19 @@ void add_cloth(const ClothView& c, Hash& hash) {
 
 // About what a substep of a particle costs, in those of plain springs.
 double cost(const Scene& scene) {
-  double cost =
-      scene.solver.iterations + scene.solver.collision_iterations + double(scene.colliders.size());
+  const Solver& solver = scene.solver;
+  const bool projects = solver.method == Method::positional || solver.method == Method::compliant;
+  double families = 1;
+  double contact = 0;
   for (const Cloth& c : scene.cloths) {
-    if (c.self_collision.mode == SelfCollisionMode::particles) cost = std::max(cost, 8.0);
-    if (c.self_collision.mode == SelfCollisionMode::surface) cost = std::max(cost, 40.0);
-    cost += c.level * scene.solver.iterations;
+    families = std::max(families, 1.0 + c.level);
+    if (c.self_collision.mode == SelfCollisionMode::particles) contact = std::max(contact, 8.0);
+    if (c.self_collision.mode == SelfCollisionMode::surface) contact = std::max(contact, 40.0);
   }
-  return cost;
+  const double sweep = projects ? solver.iterations * (solver.sweep == Sweep::line ? 8 : 2) : 1;
+  double bodies = 0;
+  for (const Collider& c : scene.colliders) bodies += c.cuts ? 20 : 1;
+  return families * sweep + contact + solver.collision_iterations * bodies;
 }
 
 }  // namespace
