@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "failure.h"
@@ -75,13 +76,23 @@ Scene read_back(const Scene& scene) {
   return file.scene;
 }
 
-Trace judged(const Case& c, const Options& options) {
+// A run with judges; what they find first does not end it.
+Trace judged(const Case& c, const Options& options, std::string& found) {
+  const auto judge = [&](auto&& work) {
+    try {
+      if (found.empty()) work();
+    } catch (const Failure& failure) {
+      found = failure.what();
+    }
+  };
   Simulation simulation(c.scene, options);
   begin(c, simulation);
-  Judges judges(simulation);
-  Trace trace = run(c, simulation, nullptr,
-                    [&](const Simulation& s, bool touched) { judges.frame(s, touched); });
-  judges.end(simulation);
+  std::optional<Judges> judges;
+  judge([&] { judges.emplace(simulation); });
+  Trace trace = run(c, simulation, nullptr, [&](const Simulation& s, bool touched) {
+    judge([&] { judges->frame(s, touched); });
+  });
+  judge([&] { judges->end(simulation); });
   return trace;
 }
 
@@ -158,15 +169,16 @@ std::uint64_t examine(const Case& c, Variants variants, const std::string& folde
   Case read = c;
   findings.look("scene text", [&] { read.scene = read_back(c.scene); });
   Trace trace;
+  std::string found;
   if (variants == Variants::one) {
     const Options options =
         options_of(c, all[c.seed % all.size()], 1 + int(c.seed / all.size() % 3));
-    findings.look(name_of(options), [&] { trace = judged(read, options); });
+    findings.look(name_of(options), [&] { trace = judged(read, options, found); });
     const int few = std::min(kFewFrames, int(trace.hashes.size()));
     findings.look("hostile use", [&] { mistreat(c, options, few); });
   } else {
     const Options options = options_of(c, Simd::best, 1);
-    findings.look("judges", [&] { trace = judged(c, options); });
+    findings.look("run", [&] { trace = judged(c, options, found); });
     int threads = int(c.seed % 3);
     for (const Simd simd : all) {
       const Options other = options_of(c, simd, 1 + threads++ % 3);
@@ -179,6 +191,9 @@ std::uint64_t examine(const Case& c, Variants variants, const std::string& folde
     findings.look("restore", [&] { restore(c, few); });
     findings.look("hostile use", [&] { mistreat(c, options, few); });
   }
+  findings.look("judges", [&] {
+    if (!found.empty()) throw Failure(found);
+  });
   findings.tell();
   return sum_of(trace);
 }

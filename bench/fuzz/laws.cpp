@@ -182,6 +182,7 @@ void Laws::check_planes(const Simulation& simulation) const {
 
 // Pins whose path begins where they are lie on it.
 void Laws::check_paths(const Simulation& simulation) const {
+  const Vec3 origin = simulation.view().origin;
   for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto&) {
     for (const Pin& pin : c.pins) {
       if (pin.keys.empty() || simulation.time() < pin.keys[0].time ||
@@ -190,7 +191,9 @@ void Laws::check_paths(const Simulation& simulation) const {
       const Vec3 here = x[std::size_t(pin.j) * std::size_t(c.grid.nx) + std::size_t(pin.i)];
       const Vec3 there = physics::position_at(pin.keys, simulation.time());
       const double off = length({here[0] - there[0], here[1] - there[1], here[2] - there[2]});
-      if (off > kPosition * (1 + length(there)))
+      const double size =
+          length({there[0] - origin[0], there[1] - origin[1], there[2] - origin[2]});
+      if (off > kPosition * (1 + size))
         throw Failure("judge path: a pin " + number(off) + " m off its path, frame " +
                       std::to_string(simulation.frame()));
     }
