@@ -67,4 +67,59 @@ TEST(Arithmetic, ReciprocalRootsAreWithinTheirError) {
   EXPECT_NEAR(reciprocal_root(wide(1e30f))[0], 1e-15f, 1e-22f);
 }
 
+TEST(Arithmetic, MaxAndMinGiveTheSecondWhereOneIsNotANumber) {
+  const Wide nan = wide(std::nanf("")), one = wide(1);
+  EXPECT_EQ(max(nan, one)[0], 1);
+  EXPECT_EQ(min(nan, one)[0], 1);
+  EXPECT_TRUE(std::isnan(max(one, nan)[0]));
+  EXPECT_TRUE(std::isnan(min(one, nan)[0]));
+}
+
+TEST(Arithmetic, WholeNumbersOfAnyFloatAreInRange) {
+  constexpr int kMost = 1 << 30;
+  const float values[] = {0, -0.0f, 1.75f, -1.75f, 3e9f, -3e9f, INFINITY, -INFINITY};
+  const int expected[] = {0, 0, 1, -1, kMost, -kMost, kMost, -kMost};
+  for (std::size_t n = 0; n < std::size(values); ++n)
+    EXPECT_EQ(whole(wide(values[n]))[kLanes - 1], expected[n]) << values[n];
+  EXPECT_EQ(std::abs(whole(wide(std::nanf("")))[0]), kMost);
+}
+
+// Masks that are combined, kept through a loop and chosen by, as the descent on triangles does
+// (collide.h): compilers have got this wrong for one lane.
+inline float descend_wide(float bound, float enough, float start, float least, int count) {
+  Wide b = wide(bound), q = wide(start);
+  WideInt pending = lanes_below(count) & (b < enough);
+  for (int n = 0; any(pending); ++n) {
+    const Wide s = q * 0.5f - 0.1f;
+    b = select(pending, max(s, b), b);
+    pending = pending & (b < enough);
+    if (n == 5 || !any(pending)) break;
+    q = q - max(s, wide(least));
+  }
+  return select((b >= 0.0f) & (q >= 0.0f) & (b + q <= 1.0f), b, q)[0];
+}
+inline float descend_plain(float b, float enough, float q, float least, int count) {
+  bool pending = 0 < count && b < enough;
+  for (int n = 0; pending; ++n) {
+    const float s = q * 0.5f - 0.1f;
+    if (s > b) b = s;
+    pending = b < enough;
+    if (n == 5 || !pending) break;
+    q = q - (s > least ? s : least);
+  }
+  return b >= 0 && q >= 0 && b + q <= 1 ? b : q;
+}
+
+TEST(Arithmetic, MasksHoldThroughLoops) {
+  physics::Random random(5, 1);
+  const auto number = [&] { return float(2 * random.symmetric()); };
+  for (int n = 0; n < 20000; ++n) {
+    const float bound = number(), enough = number(), start = number(), least = number();
+    for (int count = 0; count < 3; ++count)
+      ASSERT_EQ(bits_of(descend_wide(bound, enough, start, least, count)),
+                bits_of(descend_plain(bound, enough, start, least, count)))
+          << bound << " " << enough << " " << start << " " << least << " " << count;
+  }
+}
+
 }  // namespace weft::WEFT_KERNELS

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "sheets.h"
 #include "weft/read_scene.h"
@@ -191,6 +192,87 @@ TEST(Hand, ACollidersMovePushesTheCloth) {
   }
   Simulation simulation(curtain());
   EXPECT_THROW(simulation.move_collider(1, {}), std::out_of_range);
+}
+
+// A moment is a caller's data: whatever is wrong with it is refused, and nothing has changed.
+TEST(Moment, RefusesWhatIsOutOfRange) {
+  Scene scene = curtain();
+  scene.cloths[0].tear_strain = 0.5;
+  Simulation simulation(scene);
+  run(simulation, 3);
+  const Moment sound = simulation.moment();
+  const auto hash = simulation.hash();
+  const double nan = std::nan("");
+  const std::vector<std::function<void(Moment&)>> faults = {
+      [](Moment& m) {
+        m.cloths[0].held.push_back({12, 0});
+      },
+      [](Moment& m) {
+        m.cloths[0].held.push_back({0, 10});
+      },
+      [](Moment& m) {
+        m.cloths[0].held.push_back({-1, 3});
+      },
+      [](Moment& m) {
+        m.cloths[0].held.push_back({1 << 30, 1 << 30});
+      },
+      [](Moment& m) {
+        m.cloths[0].torn.push_back({1, 0, 10, 0});
+      },
+      [](Moment& m) {
+        m.cloths[0].torn.push_back({1, 0, 0, 11});
+      },
+      [](Moment& m) {
+        m.cloths[0].torn.push_back({0, 1, 9, 0});
+      },
+      [](Moment& m) {
+        m.cloths[0].torn.push_back({-1, 1, 0, -1});
+      },
+      [](Moment& m) {
+        m.cloths[0].torn.push_back({1, -1, 0, 0});
+      },
+      [](Moment& m) { m.cloths[0].positions.pop_back(); },
+      [](Moment& m) { m.cloths[0].velocities.clear(); },
+      [&](Moment& m) { m.cloths[0].positions[5] = float(nan); },
+      [](Moment& m) { m.cloths[0].velocities[7] = INFINITY; },
+      [](Moment& m) { m.cloths[0].inside.clear(); },
+      [&](Moment& m) { m.cloths[0].inside[0].particle = nan; },
+      [](Moment& m) { m.cloths[0].inside[0].triangle = -1; },
+      [](Moment& m) { m.cloths.clear(); },
+      [](Moment& m) { m.cloths.push_back(m.cloths[0]); },
+      [](Moment& m) {
+        m.origin = {1e30, 0, 0};
+      },
+      [&](Moment& m) {
+        m.origin = {0, nan, 0};
+      },
+      [](Moment& m) {
+        m.origin = {0, 0, 0.5};
+      },
+      [](Moment& m) { m.time = -1; },
+      [](Moment& m) { m.time = 1e300; },
+      [&](Moment& m) { m.time = nan; },
+      [](Moment& m) { m.paths.clear(); },
+      [&](Moment& m) {
+        m.paths[0] = {{0, {0, nan, 0}}};
+      },
+      [](Moment& m) {
+        m.paths[0] = {{1, {0, 0, 0}}, {1, {0, 0, 0}}};
+      },
+  };
+  for (std::size_t n = 0; n < faults.size(); ++n) {
+    Moment moment = sound;
+    faults[n](moment);
+    EXPECT_THROW(simulation.restore(moment), std::invalid_argument) << n;
+    EXPECT_EQ(simulation.hash(), hash) << n;
+  }
+  Moment moment = sound;
+  moment.cloths[0].held.push_back({11, 9});
+  moment.cloths[0].torn.push_back({0, 1, 8, 11});
+  moment.origin = {100, 0, -3};
+  simulation.restore(moment);
+  run(simulation, 3);
+  EXPECT_EQ(held(simulation), 3);
 }
 
 TEST(Hand, WhatIsHeldIsCarriedAndRests) {

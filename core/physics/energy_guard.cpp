@@ -41,7 +41,7 @@ Rows pushed_out(const Scene& scene, double time, const Lattice& l) {
           [&](const auto& shape) {
             const Nearest n = nearest_of(shape, minus(minus(p, moved), place_of(shape)));
             for (int k = 0; k < 3 && n.distance < c.offset; ++k)
-              x.at(k, j, i) = float(p[k] + (c.offset - n.distance) * n.normal[k]);
+              x.at(k, j, i) = coordinate(p[k] + (c.offset - n.distance) * n.normal[k]);
           },
           c.shape);
     });

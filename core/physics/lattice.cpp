@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "physics/path.h"
 #include "physics/random.h"
 
 namespace weft::physics {
@@ -52,15 +53,15 @@ Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bo
       const double a = i / double(g.nx - 1), b = j / double(g.ny - 1);
       const double off = g.jitter > 0 ? g.jitter * random.symmetric() : 0;
       for (int k = 0; k < 3; ++k)
-        // + 0: no particle starts at -0, so none ever gets there, and adding 0 changes no bits.
-        l.x.at(k, j, i) = float(g.origin[k] + g.u[k] * a + g.v[k] * b + normal[k] * off) + 0.0f;
+        l.x.at(k, j, i) = coordinate(g.origin[k] + g.u[k] * a + g.v[k] * b + normal[k] * off);
       l.w(j)[i] = float(1 / particle_mass(cloth, i, j));
     }
   }
   for (const Pin& pin : cloth.pins) {
     l.w(pin.j)[pin.i] = 0;
-    if (!pin.keys.empty())
-      for (int k = 0; k < 3; ++k) l.x.at(k, pin.j, pin.i) = float(pin.keys.front().position[k]);
+    if (pin.keys.empty()) continue;
+    const Vec3 start = position_at(pin.keys, 0);
+    for (int k = 0; k < 3; ++k) l.x.at(k, pin.j, pin.i) = coordinate(start[k]);
   }
   for (int j = 0; j < g.ny; ++j) l.weigh_row(j);
   return l;

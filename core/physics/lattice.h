@@ -57,6 +57,12 @@ class Rows {
   AlignedArray<float> data_;
 };
 
+// A component of a position as it is stored. Adding zero changes no other value, and makes +0 of -0: lanes
+// beside a constraint have zero added to them or not, as wide as the kernels are.
+inline float coordinate(double x) {
+  return float(x) + 0.0f;
+}
+
 inline void zero(Row3 row, int lanes) {
   for (float* p : {row.x, row.y, row.z}) std::fill_n(p, lanes, 0.0f);
 }

@@ -6,6 +6,8 @@
 #include "physics/measure.h"
 #include "physics/state.h"
 
+// A moment comes from a caller: every number in it is looked at before anything changes.
+
 namespace weft {
 
 using namespace physics;
@@ -47,16 +49,68 @@ Moment Simulation::State::moment() const {
   return m;
 }
 
-void Simulation::State::restore(const Moment& m) {
-  bool fits = m.cloths.size() == cloths.size() && m.paths.size() == scene.colliders.size();
-  for (std::size_t n = 0; fits && n < cloths.size(); ++n) {
-    const Lattice& l = cloths[n]->lattice();
-    const std::size_t values = 3 * std::size_t(l.columns) * l.rows;
-    fits = m.cloths[n].columns == l.columns && m.cloths[n].rows == l.rows &&
-           m.cloths[n].positions.size() == values && m.cloths[n].velocities.size() == values &&
-           m.cloths[n].inside.size() == scene.colliders.size();
+namespace {
+
+constexpr double kMostFrames = 1e15;  // whole numbers are exact in double precision
+constexpr double kFarthest = 1e9;     // m, of an origin; the range of places in a scene
+
+void require(bool sound, const std::string& what) {
+  if (!sound) throw std::invalid_argument("the moment " + what);
+}
+
+template <class Numbers>
+bool all_finite(const Numbers& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](auto v) { return std::isfinite(v); });
+}
+
+void check_cloth(const Moment::ClothMoment& c, const ClothStep& step, std::size_t colliders) {
+  const Lattice& l = step.lattice();
+  const std::size_t values = 3 * std::size_t(l.columns) * l.rows;
+  require(c.columns == l.columns && c.rows == l.rows && c.positions.size() == values &&
+              c.velocities.size() == values && c.inside.size() == colliders,
+          "is of another scene");
+  require(all_finite(c.positions) && all_finite(c.velocities),
+          "holds a position or velocity that is not finite");
+  for (const auto& [i, j] : c.held)
+    require(i >= 0 && j >= 0 && i < l.columns && j < l.rows,
+            "holds the particle [" + std::to_string(i) + ", " + std::to_string(j) +
+                "] (allowed: [0, 0] to [" + std::to_string(l.columns - 1) + ", " +
+                std::to_string(l.rows - 1) + "])");
+  for (const Moment::Torn& t : c.torn)
+    require(t.dj >= 0 && t.j >= 0 && t.a >= 0 && t.j < l.rows - t.dj &&
+                std::abs(t.di) < l.columns && t.a < l.columns - std::abs(t.di),
+            "has a torn constraint outside of the grid");
+  for (const Moment::Inside& i : c.inside)
+    require(std::isfinite(i.time) && i.particle >= 0 && i.triangle >= 0 &&
+                i.particle <= kFarthest && i.triangle <= kFarthest,
+            "holds a depth inside a collider that is out of range (0 to 1e9 m)");
+}
+
+}  // namespace
+
+void Simulation::State::check(const Moment& m) const {
+  require(m.cloths.size() == cloths.size() && m.paths.size() == scene.colliders.size(),
+          "is of another scene");
+  require(m.time >= 0 && m.time / scene.time.frame < kMostFrames, "has a time out of range");
+  for (const double c : m.origin)
+    require(std::abs(c) <= kFarthest && c == std::round(c),
+            "has an origin that is not in whole meters (allowed: -1e9 to 1e9)");
+  for (std::size_t n = 0; n < cloths.size(); ++n)
+    check_cloth(m.cloths[n], *cloths[n], scene.colliders.size());
+  Scene with_paths = where_it_stands();
+  bool same = true;
+  for (std::size_t n = 0; n < m.paths.size(); ++n) {
+    std::vector<Key>& keys = with_paths.colliders[n].keys;
+    same &= keys == m.paths[n];
+    keys = m.paths[n];
   }
-  if (!fits || !(m.time >= 0)) throw std::invalid_argument("the moment is of another scene");
+  if (same) return;
+  const std::vector<Fault> faults = validate(with_paths);
+  if (!faults.empty())
+    throw std::invalid_argument("the moment's paths: " + faults[0].place + ": " + faults[0].what);
+}
+
+void Simulation::State::restore(const Moment& m) {
   std::vector<double> positions, velocities;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     const Moment::ClothMoment& c = m.cloths[n];
@@ -150,6 +204,7 @@ Moment Simulation::moment() const {
 }
 // About the moment's origin, wherever the scene would have its own: cloths stay as fine as they were.
 void Simulation::restore(const Moment& moment) {
+  state_->check(moment);
   if (moment.origin == state_->origin) return state_->restore(moment);
   auto next = std::make_unique<State>(scene(), state_->options, moment.origin);
   next->restore(moment);

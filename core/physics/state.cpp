@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/clamp_to_int.h"
 #include "physics/energy.h"
+#include "physics/path.h"
 #include "physics/stages/colliders.h"
 #include "physics/support.h"
 
@@ -51,6 +53,27 @@ std::string steady_jacobi(Scene& scene) {
   return "one Jacobi sweep of constraints this stiff is not stable in large motions; two run";
 }
 
+// Pins whose paths begin farther than `distance` from their places on the sheet, and the farthest [m].
+struct FarPins {
+  int count = 0;
+  double most = 0;
+};
+FarPins far_pins(const Cloth& cloth, double distance) {
+  const Grid& g = cloth.grid;
+  FarPins far;
+  for (const Pin& pin : cloth.pins) {
+    if (pin.keys.empty()) continue;
+    const Vec3 place = plus(
+        g.origin, plus(times(g.u, pin.i / double(g.nx - 1)), times(g.v, pin.j / double(g.ny - 1))));
+    const Vec3 off = minus(position_at(pin.keys, 0), place);
+    const double length = std::sqrt(dot(off, off));
+    if (length <= distance) continue;
+    ++far.count;
+    far.most = std::max(far.most, length);
+  }
+  return far;
+}
+
 }  // namespace
 
 Simulation::State::State(Scene given, const Options& given_options, const Vec3& about)
@@ -75,7 +98,8 @@ Simulation::State::State(Scene given, const Options& given_options, const Vec3& 
   began_fallen_back_ = plan.fallback;
   began_notes_ = plan.notes;
   began_guard_ = guard_;
-  frame_ms.reserve(std::size_t(std::clamp(scene.time.seconds / scene.time.frame, 1.0, 1e6)) + 1);
+  frame_ms.reserve(std::size_t(clamp_to_int(scene.time.seconds / scene.time.frame, 1, 1000000)) +
+                   1);
 }
 
 void Simulation::State::build_cloths() {
@@ -120,6 +144,11 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
     }
     const Cloth& cloth = scene.cloths[c];
     const double spacing = std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
+    if (const FarPins far = far_pins(cloth, spacing); far.count > 0)
+      notes.push_back(which + ": " + std::to_string(far.count) +
+                      (far.count == 1 ? " pin starts " : " pins start up to ") + number(far.most) +
+                      " m from where the sheet has " + (far.count == 1 ? "it" : "them") +
+                      " (a pin with keys begins where they say); the sheet is stretched there");
     if (cloth.self_collision.mode != SelfCollisionMode::off &&
         cloth.self_collision.thickness > spacing)
       notes.push_back(which + ": the thickness of " + number(cloth.self_collision.thickness) +
@@ -196,7 +225,7 @@ void Simulation::State::set(std::span<const double> positions, const Vec3& from,
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i, ++p)
         for (int c = 0; c < 3; ++c) {
-          l.x.at(c, j, i) = float(positions[3 * p + c] - off[c]);
+          l.x.at(c, j, i) = coordinate(positions[3 * p + c] - off[c]);
           l.v.at(c, j, i) = l.w(j, i) > 0 ? float(velocities[3 * p + c]) : 0;
         }
   }

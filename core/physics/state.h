@@ -45,6 +45,8 @@ struct Simulation::State {
   void move_collider(int collider, const Vec3& target);
   void set_path(std::size_t collider, std::vector<Key> keys);
   Moment moment() const;
+  // Throws std::invalid_argument for a moment that restore() cannot take. (restore() trusts it.)
+  void check(const Moment& moment) const;
   void restore(const Moment& moment);
   // A collider has been put where cloths may be.
   void meet(std::size_t collider);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/clamp_to_int.h"
 #include "physics/measure.h"
 #include "physics/stability.h"
 #include "physics/state.h"
@@ -83,7 +84,7 @@ void Simulation::State::choose_method_and_substeps() {
     const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
     const bool resolved = needed <= kMostSubsteps && kLimitShare * safe >= kLeastSubstep;
     if (count == kAutoSubsteps && resolved) {
-      count = std::max(1, int(needed));
+      count = clamp_to_int(needed, 1, kMostSubsteps);
       notes.push_back("substeps from the stability limit of " + number(limit) + " s");
     } else if (!resolved || scene.time.frame / count > limit) {
       notes.push_back("springs need substeps below " + number(limit) + " s, " + number(needed) +
@@ -202,8 +203,7 @@ bool Simulation::State::flies_away() const {
 
 int Simulation::State::projection_substeps() const {
   if (scene.time.substeps != kAutoSubsteps) return scene.time.substeps;
-  const double count = std::round(scene.time.frame / projection_substep(scene));
-  return int(std::clamp(count, 1.0, double(kMostSubsteps)));
+  return clamp_to_int(std::round(scene.time.frame / projection_substep(scene)), 1, kMostSubsteps);
 }
 
 // Goes on from the state as it is by another method or solver.
@@ -336,7 +336,8 @@ double Simulation::State::stretched_limit() const {
 // for or, where those are too few, a multiple.
 int Simulation::State::substeps_within(double limit) const {
   const int asked = scene.time.substeps;
-  const int needed = std::max(1, int(std::ceil(scene.time.frame / (kLimitShare * limit))));
+  const int needed =
+      clamp_to_int(std::ceil(scene.time.frame / (kLimitShare * limit)), 1, kFinest * kMostSubsteps);
   if (asked == kAutoSubsteps) return finer_ * needed;
   if (scene.time.frame / asked <= limit) return finer_ * asked;
   return finer_ * asked * ((needed + asked - 1) / asked);

@@ -44,7 +44,7 @@ struct NearBoxes {
   float* square;
 };
 
-// Cells along an axis, at most: what lies beyond is in the last. (Their numbers stay within 64 bits.)
+// Cells along an axis, at most. (Their numbers stay within 64 bits.)
 inline constexpr float kMostCells = 1e6f;
 
 // The buckets of particles (cell_grid.h): a + b stride_y + c stride_z for cell (a, b, c), counted from 1
@@ -53,6 +53,7 @@ struct CellKeys {
   ConstRow3 x;
   int begin, end;  // whole groups of 16 lanes, beyond the end too
   float low[3];    // m
+  float last[3];   // the last cell along each axis, counted from 0; what lies beyond is in it
   float inverse;   // of the cells' size [1/m]
   std::int64_t stride_y, stride_z, table;
   bool wraps;

@@ -118,7 +118,7 @@ struct Seeker {
     const Wide3 d = x - p;
     LaneBits pair = where_less(dot(d, d), range) & asked;
     if constexpr (kNamed) {
-      const WideInt apart = other > name ? other - name : name - other;
+      const WideInt apart = select(other > name, other - name, name - other);
       for (int w = 0; w < sheet->windows; ++w)
         pair &= ~where_within(apart, sheet->window[w].low, sheet->window[w].high);
     }
@@ -143,7 +143,7 @@ struct Seeker {
         const WideInt kept = lanes_below(held);
         const int at = i - held;
         x = select(kept, x, load3(s.x, at));
-        names = kept ? names : names_at<kNamed>(s, at);
+        names = select(kept, names, names_at<kNamed>(s, at));
         const int taken = last - i < kLanes - held ? last - i : kLanes - held;
         held += taken;
         i += taken;
@@ -192,9 +192,9 @@ WEFT_INLINE NearFound search(const NearSearch& given) {
   return {s.end, found, 0};
 }
 
-// The cell along an axis; what is no number lands somewhere.
-WEFT_INLINE WideInt cell(Wide x, float low, float inverse) {
-  const Wide along = max(Wide{}, min(wide(physics::kMostCells), (x - low) * inverse));
+// The cell along an axis; what is not a number lands in the last.
+WEFT_INLINE WideInt cell(Wide x, float low, float last, float inverse) {
+  const Wide along = max(min((x - low) * inverse, wide(last)), Wide{});
   return __builtin_convertvector(along, WideInt) + 1;
 }
 
@@ -203,16 +203,14 @@ WEFT_INLINE WideInt cell(Wide x, float low, float inverse) {
 void cell_keys(const CellKeys& given) {
   const CellKeys s = given;
   for (int i = s.begin; i < s.end; i += kLanes) {
-    const WideInt a = cell(load(s.x.x + i), s.low[0], s.inverse);
-    const WideInt b = cell(load(s.x.y + i), s.low[1], s.inverse);
-    const WideInt c = cell(load(s.x.z + i), s.low[2], s.inverse);
+    const WideInt a = cell(load(s.x.x + i), s.low[0], s.last[0], s.inverse);
+    const WideInt b = cell(load(s.x.y + i), s.low[1], s.last[1], s.inverse);
+    const WideInt c = cell(load(s.x.z + i), s.low[2], s.last[2], s.inverse);
     if (s.wraps) {
       for (int l = 0; l < kLanes; ++l)
         s.key[i + l] = std::int32_t((a[l] + b[l] * s.stride_y + c[l] * s.stride_z) % s.table);
     } else {
-      const WideInt key = a + b * std::int32_t(s.stride_y) + c * std::int32_t(s.stride_z);
-      const WideInt last = WideInt{} + std::int32_t(s.table - 1);
-      put_lanes(s.key + i, key < last ? key : last);
+      put_lanes(s.key + i, a + b * std::int32_t(s.stride_y) + c * std::int32_t(s.stride_z));
     }
   }
 }

@@ -17,7 +17,7 @@ class Greatest {
  public:
   void add(int block, Wide values) {
     const WideInt size = (WideInt)values & 0x7fffffff;
-    most_[block] = size > most_[block] ? size : most_[block];
+    most_[block] = select(size > most_[block], size, most_[block]);
   }
   float value() const {
     constexpr int kInfinite = 0x7f800000;

@@ -45,9 +45,23 @@ WEFT_INLINE Wide wide(float s) {
   return wide(s, std::make_integer_sequence<int, kLanes>{});
 }
 
-WEFT_INLINE Wide select(WideInt mask, Wide a, Wide b) {
+// Where a mask is set (all bits), a; elsewhere b. With one lane by plain numbers: g++ 12 computes
+// conditions of one-lane vectors wrongly at -O2 (it takes a signed 0/-1 for a truth value of one bit).
+template <class Lanes>
+WEFT_INLINE Lanes select_lanes(WideInt mask, Lanes a, Lanes b) {
+#if WEFT_LANES == 1
+  return Lanes{mask[0] != 0 ? a[0] : b[0]};
+#else
   return mask ? a : b;
+#endif
 }
+WEFT_INLINE Wide select(WideInt mask, Wide a, Wide b) {
+  return select_lanes(mask, a, b);
+}
+WEFT_INLINE WideInt select(WideInt mask, WideInt a, WideInt b) {
+  return select_lanes(mask, a, b);
+}
+// max and min give b where a or b is not a number.
 // maskz: the plain forms trip a false warning of g++ 12 about uninitialised values.
 #if WEFT_LANES == 16
 WEFT_INLINE Wide max(Wide a, Wide b) {
@@ -81,10 +95,10 @@ WEFT_INLINE Wide sqrt(Wide v) {
 }
 #else
 WEFT_INLINE Wide max(Wide a, Wide b) {
-  return a > b ? a : b;
+  return Wide{a[0] > b[0] ? a[0] : b[0]};
 }
 WEFT_INLINE Wide min(Wide a, Wide b) {
-  return a < b ? a : b;
+  return Wide{a[0] < b[0] ? a[0] : b[0]};
 }
 WEFT_INLINE Wide sqrt(Wide v) {
   return Wide{__builtin_sqrtf(v[0])};
@@ -189,6 +203,12 @@ WEFT_INLINE float least(Wide v) {
 }
 WEFT_INLINE float greatest(Wide v) {
   return -least(-v);
+}
+
+// Rounded towards zero; what lies beyond ±2³⁰, or is not a number, becomes one of the two.
+WEFT_INLINE WideInt whole(Wide v) {
+  constexpr float kMost = 1 << 30;
+  return __builtin_convertvector(max(min(v, wide(kMost)), wide(-kMost)), WideInt);
 }
 
 WEFT_INLINE WideInt lane_numbers() {

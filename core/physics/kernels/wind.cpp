@@ -25,9 +25,8 @@ WEFT_INLINE Wide3 cross(Wide3 a, Wide3 b) {
 
 // A wave of period 1 and height 1 of two parabolas a period: smooth, near to a sine, and exact.
 WEFT_INLINE Wide wave(Wide phase) {
-  const WideInt whole = __builtin_convertvector(phase, WideInt);
-  const Wide part = phase - __builtin_convertvector(whole, Wide);  // -1 … 1
-  const Wide s = select(part > 0.0f, part, part + 1.0f) - 0.5f;    // -0.5 … 0.5
+  const Wide part = phase - __builtin_convertvector(whole(phase), Wide);  // -1 … 1
+  const Wide s = select(part > 0.0f, part, part + 1.0f) - 0.5f;           // -0.5 … 0.5
   return s * (8.0f - 16.0f * abs(s));
 }
 

@@ -5,6 +5,8 @@
 #include <bit>
 #include <utility>
 
+#include "physics/clamp_to_int.h"
+
 namespace weft::physics {
 namespace {
 
@@ -19,7 +21,7 @@ std::int64_t modulo(std::int64_t a, std::int64_t m) {
 
 // Cells along an axis.
 int cells_in(float length, float inverse) {
-  return int(std::max(0.0f, std::min(kMostCells, length * inverse))) + 1;
+  return clamp_to_int(length * inverse, 0, int(kMostCells)) + 1;
 }
 
 std::int64_t largest_table(std::size_t particles) {
@@ -70,6 +72,7 @@ void CellGrid::build(ConstRow3 x, const std::int32_t* names, std::size_t particl
   for (int k = 0; k < 3; ++k) {
     low_[k] = box.low[k];
     cells[k] = cells_in(box.high[k] - box.low[k], inverse_);
+    last_[k] = float(cells[k] - 1);
   }
   choose_strides(cells);
   for (int c = -1; c <= 1; ++c)
@@ -102,6 +105,7 @@ void CellGrid::count(ConstRow3 x, int share) {
                       int(begin),
                       int(end),
                       {low_[0], low_[1], low_[2]},
+                      {last_[0], last_[1], last_[2]},
                       inverse_,
                       stride_y_,
                       stride_z_,

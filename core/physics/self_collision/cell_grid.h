@@ -61,7 +61,7 @@ class CellGrid {
   std::int64_t offset_[9] = {};
   bool wraps_ = false;
   int shift_ = 0;  // of a bucket to its part
-  float low_[3] = {}, inverse_ = 1;
+  float low_[3] = {}, last_[3] = {}, inverse_ = 1;
   std::int32_t dealt_to_[kParts + 1][kShares] = {};  // where a share's particles of a part begin
   std::vector<std::int32_t> key_, dealt_, bucket_, start_;
   AlignedArray<std::int32_t> name_;  // padded

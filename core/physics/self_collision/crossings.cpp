@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/clamp_to_int.h"
 #include "physics/energy.h"
 #include "physics/plan.h"
 
@@ -62,7 +63,7 @@ struct Entry {
 
 // A cell along an axis. Whatever the size, cells far away fall together.
 std::int32_t cell_of(double x, double size) {
-  return std::int32_t(std::clamp(std::floor(x / size), -1e9, 1e9));
+  return clamp_to_int(std::floor(x / size), -1000000000, 1000000000);
 }
 
 template <class Visit>

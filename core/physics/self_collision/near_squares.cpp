@@ -32,6 +32,7 @@ void SquarePairs::reserve(std::size_t pairs) {
 }
 
 void SquarePairs::pad() {
+  reserve(count);
   for (std::vector<std::int32_t>* of : {&owner, &neighbour})
     std::fill_n(of->data() + count, kPadding, 0);
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/clamp_to_int.h"
+
 namespace weft::physics {
 namespace {
 
@@ -29,7 +31,7 @@ Columns near_in_row(const NamedSheet& s, int b) {
   const double half =
       std::sqrt(std::max(0.0, s.range_squared - double(b) * b * height_squared) / s.uu);
   const int most = s.columns - 1;
-  const auto clipped = [&](double a) { return int(std::clamp(a, -double(most), double(most))); };
+  const auto clipped = [&](double a) { return clamp_to_int(a, -most, most); };
   Columns c{clipped(std::floor(-shear * b - half) - 1), clipped(std::ceil(-shear * b + half) + 1)};
   while (c.first <= c.last && !near(c.first)) ++c.first;
   while (c.first <= c.last && !near(c.last)) --c.last;

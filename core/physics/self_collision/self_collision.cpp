@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "physics/clamp_to_int.h"
 #include "physics/plan.h"
 
 namespace weft::physics {
@@ -239,8 +240,8 @@ int SelfContact::run(double dt, int since, double swing, Threads& threads) {
     most_touching_ = std::max(std::min(since, most_touching_) / 2, kLeastSubstepsSunk);
   else
     most_touching_ = std::min(most_touching_ + 1, kMostSubstepsTouching);
-  const double most = std::max(1.0, most_substeps(dt, swing));
-  return int(std::clamp(std::min(now.seconds, touching) / dt, 1.0, most));
+  const int most = clamp_to_int(most_substeps(dt, swing), 1, kMostSubsteps);
+  return clamp_to_int(std::min(now.seconds, touching) / dt, 1, most);
 }
 
 double SelfContact::passed_over() const {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/clamp_to_int.h"
+
 namespace weft::physics {
 namespace {
 
@@ -287,7 +289,7 @@ int SurfaceContact::run(double dt, int since, Threads& threads) {
   const double left = 1 - std::min(1.0f, std::sqrt(motion_.share_squared));
   const double steps =
       kComeAt * left / std::max(std::sqrt(double(motion_.rate_squared)) * dt, 1e-12);
-  return int(std::clamp(steps, 1.0, double(std::max(1, kMostSubsteps - since_))));
+  return clamp_to_int(steps, 1, std::max(1, kMostSubsteps - since_));
 }
 
 std::size_t SurfaceContact::bytes() const {

@@ -384,7 +384,7 @@ void Untangle::put_back() {
     std::size_t n = s.first;
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i, ++n)
-        for (int k = 0; k < 3; ++k) l.x.at(k, j, i) = float(x_[n][k]);
+        for (int k = 0; k < 3; ++k) l.x.at(k, j, i) = coordinate(x_[n][k]);
   }
 }
 

@@ -28,7 +28,7 @@ void Carry::run(int j, const Substep& s) {
   for (const Held& held : by_row_[std::size_t(j)]) {
     if (l.w(j, held.column) > 0) continue;  // let go since
     for (int k = 0; k < 3; ++k) {
-      l.x.at(k, j, held.column) = float(held.start[k] + (s.time - time_) * velocity_[k]);
+      l.x.at(k, j, held.column) = coordinate(held.start[k] + (s.time - time_) * velocity_[k]);
       l.v.at(k, j, held.column) = float(velocity_[k]);
     }
   }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/clamp_to_int.h"
 #include "physics/path.h"
 #include "physics/stages/colliders.h"
 
@@ -232,7 +233,7 @@ class ColliderFaces final : public RowStage {
     Touch touch = std::visit(
         [&](const auto& shape) {
           const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
-          const int places = std::clamp(int(std::ceil(2 * longest / size)), 1, kMostPlaces);
+          const int places = clamp_to_int(std::ceil(2 * longest / size), 1, kMostPlaces);
           // It rests as deep as may be: lifted all the way it would fall back and ring.
           return first_touch(shape, r.offset - kSlack * edge_, c, places, edge_);
         },
@@ -254,7 +255,7 @@ class ColliderFaces final : public RowStage {
     const auto [moved, gained] = rub(r, touch, speed);
     for (int k = 0; k < 3; ++k)
       for (int m = 0; m < 3; ++m) {
-        l.x.at(m, j[k], i[k]) = float(l.x.at(m, j[k], i[k]) + scale * share[k] * moved[m]);
+        l.x.at(m, j[k], i[k]) = coordinate(l.x.at(m, j[k], i[k]) + scale * share[k] * moved[m]);
         l.v.at(m, j[k], i[k]) = float(l.v.at(m, j[k], i[k]) + scale * share[k] * gained[m]);
       }
     return !lever && touch.depth > kDeep * edge_;

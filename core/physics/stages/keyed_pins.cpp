@@ -17,7 +17,7 @@ class KeyedPins final : public RowStage {
       if (l.w(j, pin->i) > 0) continue;  // let go since
       const Vec3 x = position_at(pin->keys, s.time), v = velocity_over(pin->keys, s.time, s.dt);
       for (int k = 0; k < 3; ++k) {
-        l.x.at(k, j, pin->i) = float(x[k]);
+        l.x.at(k, j, pin->i) = coordinate(x[k]);
         l.v.at(k, j, pin->i) = float(v[k]);
       }
     }
