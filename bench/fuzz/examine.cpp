@@ -174,7 +174,7 @@ std::uint64_t examine(const Case& c, Variants variants, const std::string& folde
     const Options options =
         options_of(c, all[c.seed % all.size()], 1 + int(c.seed / all.size() % 3));
     findings.look(name_of(options), [&] { trace = judged(read, options, found); });
-    const int few = std::min(kFewFrames, int(trace.hashes.size()));
+    const int few = std::clamp(int(trace.hashes.size()) - 1, 1, kFewFrames);
     findings.look("hostile use", [&] { mistreat(c, options, few); });
   } else {
     const Options options = options_of(c, Simd::best, 1);
@@ -187,7 +187,7 @@ std::uint64_t examine(const Case& c, Variants variants, const std::string& folde
     if (c.inputs != Inputs::all && c.speed == 0)
       findings.look("replay", [&] { replay(c, trace, folder); });
     // Scenes whose frames are much work get few here, too.
-    const int few = std::min(kFewFrames, int(trace.hashes.size()));
+    const int few = std::clamp(int(trace.hashes.size()) - 1, 1, kFewFrames);
     findings.look("restore", [&] { restore(c, few); });
     findings.look("hostile use", [&] { mistreat(c, options, few); });
   }

@@ -67,7 +67,9 @@ void Hand::act_on_state(Simulation& simulation, int kind) {
   const double speed = draw.chance(0.9) ? draw.decades(1e-3, 10) : draw.decades(10, 1e4);
   if (kind == 0) throw_cloth(simulation, speed, draw.chance(0.5) ? 0 : draw.decades(1e-6, 1), draw);
   if (kind == 1) kept_ = simulation.moment();
-  if (kind == 2 && kept_) simulation.restore(*std::exchange(kept_, std::nullopt));
+  // A snapshot of a scene with other colliders is refused.
+  if (kind == 2 && kept_ && kept_->paths.size() == simulation.scene().colliders.size())
+    simulation.restore(*std::exchange(kept_, std::nullopt));
 }
 
 bool Hand::act(Simulation& simulation, Recorder* recorder) {

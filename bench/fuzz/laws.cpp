@@ -180,14 +180,12 @@ void Laws::check_planes(const Simulation& simulation) const {
   });
 }
 
-// Pins whose path begins where they are lie on it.
+// Pins with keys lie on their path, from the start.
 void Laws::check_paths(const Simulation& simulation) const {
   const Vec3 origin = simulation.view().origin;
   for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto&) {
     for (const Pin& pin : c.pins) {
-      if (pin.keys.empty() || simulation.time() < pin.keys[0].time ||
-          pin.keys[0].position != bench::grid_point(c.grid, pin.i, pin.j) || c.grid.jitter > 0)
-        continue;
+      if (pin.keys.empty()) continue;
       const Vec3 here = x[std::size_t(pin.j) * std::size_t(c.grid.nx) + std::size_t(pin.i)];
       const Vec3 there = physics::position_at(pin.keys, simulation.time());
       const double off = length({here[0] - there[0], here[1] - there[1], here[2] - there[2]});

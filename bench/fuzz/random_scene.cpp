@@ -11,7 +11,7 @@ using namespace weft;
 
 namespace {
 
-constexpr double kFrameWork = 3e5;  // particles times substeps times sweeps, about, of one frame
+constexpr double kFrameWork = 1e6;  // of one frame, at most
 
 // Substeps a frame as springs need them, about: the limit is 2/ω with ω² up to four times all springs
 // of a particle over its mass.
@@ -31,10 +31,7 @@ double estimated_substeps(const Scene& scene) {
 
 // Makes frames shorter where one would be much work.
 void shorten_frames(Scene& scene) {
-  double particles = 0;
-  for (const Cloth& c : scene.cloths) particles += double(c.grid.nx) * c.grid.ny;
-  const double sweeps = scene.solver.iterations + scene.solver.collision_iterations;
-  const double work = particles * sweeps * estimated_substeps(scene);
+  const double work = work_of_substep(scene) * estimated_substeps(scene);
   if (work <= kFrameWork) return;
   if (scene.time.substeps > 0)
     scene.time.substeps = std::max(1, int(scene.time.substeps * kFrameWork / work));
@@ -61,6 +58,24 @@ Scene draw_scene(Draw draw) {
 }
 
 }  // namespace
+
+double work_of_substep(const Scene& scene) {
+  const Solver& solver = scene.solver;
+  const bool projects = solver.method == Method::positional || solver.method == Method::compliant;
+  double families = 1;
+  double contact = 0;
+  for (const Cloth& c : scene.cloths) {
+    families = std::max(families, 1.0 + c.level);
+    if (c.self_collision.mode == SelfCollisionMode::particles) contact = std::max(contact, 8.0);
+    if (c.self_collision.mode == SelfCollisionMode::surface) contact = std::max(contact, 40.0);
+  }
+  const double sweep = projects ? solver.iterations * (solver.sweep == Sweep::line ? 8 : 2) : 1;
+  double bodies = 0;
+  for (const Collider& c : scene.colliders) bodies += c.cuts ? 20 : 1;
+  double particles = 100;  // what a substep costs besides
+  for (const Cloth& c : scene.cloths) particles += double(c.grid.nx) * c.grid.ny;
+  return particles * (families * sweep + contact + solver.collision_iterations * bodies);
+}
 
 Scene random_scene(std::uint64_t seed) {
   for (std::uint64_t stream = 0;; ++stream) {

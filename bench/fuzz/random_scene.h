@@ -5,6 +5,9 @@
 
 namespace fuzz {
 
+// About how much a substep costs: in particles that plain springs are worked out for.
+double work_of_substep(const weft::Scene& scene);
+
 // The scene of a seed. validate() accepts it, and a frame of it is little work.
 weft::Scene random_scene(std::uint64_t seed);
 

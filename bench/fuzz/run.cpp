@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "random_scene.h"
+
 namespace fuzz {
 
 using namespace weft;
@@ -40,23 +42,6 @@ void add_cloth(const ClothView& c, Hash& hash) {
     for (const float component : p) hash.add(component);
 }
 
-// About what a substep of a particle costs, in those of plain springs.
-double cost(const Scene& scene) {
-  const Solver& solver = scene.solver;
-  const bool projects = solver.method == Method::positional || solver.method == Method::compliant;
-  double families = 1;
-  double contact = 0;
-  for (const Cloth& c : scene.cloths) {
-    families = std::max(families, 1.0 + c.level);
-    if (c.self_collision.mode == SelfCollisionMode::particles) contact = std::max(contact, 8.0);
-    if (c.self_collision.mode == SelfCollisionMode::surface) contact = std::max(contact, 40.0);
-  }
-  const double sweep = projects ? solver.iterations * (solver.sweep == Sweep::line ? 8 : 2) : 1;
-  double bodies = 0;
-  for (const Collider& c : scene.colliders) bodies += c.cuts ? 20 : 1;
-  return families * sweep + contact + solver.collision_iterations * bodies;
-}
-
 }  // namespace
 
 std::uint64_t hash_of(const Simulation& simulation) {
@@ -84,10 +69,7 @@ Trace run(const Case& c, Simulation& simulation, Recorder* recorder, const Watch
     trace.hashes.push_back(hash_of(simulation));
     watch(simulation, touched);
     if (!simulation.status().ok) break;
-    double particles = 100;  // what a frame costs besides
-    for (const Cloth& cloth : simulation.scene().cloths)
-      particles += double(cloth.grid.nx) * cloth.grid.ny;
-    work += particles * simulation.substeps() * cost(simulation.scene());
+    work += simulation.substeps() * work_of_substep(simulation.scene());
   }
   trace.status = simulation.status().text;
   return trace;

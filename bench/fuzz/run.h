@@ -13,7 +13,7 @@ struct Case {
   weft::Scene scene;
   Inputs inputs = Inputs::none;
   double speed = 0;   // m/s, of particles at the start, each another way
-  double work = 2e5;  // of all frames: particles times substeps times what one costs, about
+  double work = 2e5;  // of all frames, as work_of_substep() counts it
 };
 
 // Gives particles their velocities of the start.
