@@ -128,14 +128,15 @@ void replay(const Case& c, const Trace& expected, const std::string& folder) {
   std::filesystem::remove(path);
 }
 
-std::vector<std::uint64_t> go_on(Simulation& simulation, const Moment& moment, int frames) {
+Trace go_on(Simulation& simulation, const Moment& moment, int frames) {
   simulation.restore(moment);
-  std::vector<std::uint64_t> hashes{hash_of(simulation)};
+  Trace trace{{hash_of(simulation)}, {}};
   for (int n = 0; n < frames; ++n) {
     simulation.advance_frame();
-    hashes.push_back(hash_of(simulation));
+    trace.hashes.push_back(hash_of(simulation));
   }
-  return hashes;
+  trace.status = simulation.status().text;
+  return trace;
 }
 
 // What follows a snapshot is the same in a new simulation and in the one that it is of.
@@ -144,8 +145,8 @@ void restore(const Case& c, int frames) {
   Simulation second(c.scene, options_of(c, Simd::best, 2));
   for (int n = 0; n < frames; ++n) first.advance_frame();
   const Moment moment = first.moment();
-  if (go_on(first, moment, frames) != go_on(second, moment, frames))
-    throw Failure("restore: another way follows in another simulation");
+  const Trace expected = go_on(first, moment, frames);
+  require_equal(expected, go_on(second, moment, frames));
 }
 
 std::vector<Simd> available() {
