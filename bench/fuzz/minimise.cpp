@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "weft/read_scene.h"
@@ -11,6 +12,8 @@
 namespace fuzz {
 
 namespace {
+
+constexpr std::size_t kLongList = 6;
 
 using Json = nlohmann::ordered_json;
 using Pointer = Json::json_pointer;
@@ -58,7 +61,9 @@ class Minimiser {
     still.inputs = Inputs::none;
     still.speed = 0;
     keep(still);
-    while (pass()) tell_(best_);
+    halve_lists();
+    while (pass()) {
+    }
     return best_;
   }
 
@@ -66,6 +71,7 @@ class Minimiser {
   bool keep(const Case& c) {
     if (kind_of(trial_(c)) != kind_) return false;
     best_ = c;
+    tell_(best_);
     return true;
   }
 
@@ -78,6 +84,27 @@ class Minimiser {
   }
 
   Json document() const { return Json::parse(weft::write_scene_text(best_.scene)); }
+
+  // Leaves halves of long lists out, so that single values are few.
+  void halve_lists() {
+    std::vector<Pointer> places;
+    list_places(document(), Pointer(), places);
+    for (const Pointer& place : places) {
+      bool smaller = true;
+      while (std::exchange(smaller, false) && document().contains(place)) {
+        Json changed = document();
+        Json& list = changed[place];
+        if (!list.is_array() || list.size() < kLongList) break;
+        const auto middle = list.begin() + std::ptrdiff_t(list.size() / 2);
+        const Json late(std::vector<Json>(middle, list.end()));
+        list.erase(middle, list.end());
+        smaller = keep(changed);
+        if (smaller) continue;
+        changed[place] = late;
+        smaller = keep(changed);
+      }
+    }
+  }
 
   // Tries every place once; tells whether anything was left out.
   bool pass() {
