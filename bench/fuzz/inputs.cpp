@@ -65,7 +65,10 @@ Hand::Hand(std::uint64_t seed, Inputs inputs) : seed_(seed), inputs_(inputs) {
 void Hand::act_on_state(Simulation& simulation, int kind) {
   Draw draw(seed_, kStateStream + step_);
   const double speed = draw.chance(0.9) ? draw.decades(1e-3, 10) : draw.decades(10, 1e4);
-  if (kind == 0) throw_cloth(simulation, speed, draw.chance(0.5) ? 0 : draw.decades(1e-6, 1), draw);
+  if (kind == 0) {
+    const double off = draw.chance(0.5) ? 0 : draw.decades(1e-6, 1);
+    throw_cloth(simulation, speed, off, draw);
+  }
   if (kind == 1) kept_ = simulation.moment();
   // A snapshot of a scene with other colliders is refused.
   if (kind == 2 && kept_ && kept_->paths.size() == simulation.scene().colliders.size())
