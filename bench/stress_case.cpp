@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "peer.h"
-#include "physics/bending.h"
-#include "physics/energy.h"
-#include "physics/random.h"
+#include "physics/model/lattice/bending.h"
+#include "physics/model/lattice/energy.h"
+#include "physics/model/random.h"
 #include "weft/simulation.h"
 
 namespace bench {
@@ -130,7 +130,7 @@ class Ledger {
   Ledger(const weft::Scene& scene, bool springs, double dt)
       : scene_(scene),
         cloth_(scene_.cloths[0]),
-        families_(weft::physics::families_of(cloth_)),
+        stencils_(weft::physics::stencils_of(cloth_)),
         springs_(springs),
         dt_(dt) {}
 
@@ -196,11 +196,11 @@ class Ledger {
     const double most = mass_of_all() / double(x.size()) / (6 * dt_ * dt_);
     return weft::physics::bending_energy(cloth_, x) * (springs_ || k <= most ? 1 : most / k);
   }
-  // Σ over the constraints of visit(family, a, b, stiffness felt).
+  // Σ over the constraints of visit(stencil, a, b, stiffness felt).
   template <class Visit>
   double sum_of(Visit&& visit) const {
     double sum = 0;
-    for (const weft::physics::Family& f : families_)
+    for (const weft::physics::Stencil& f : stencils_)
       weft::physics::for_each_constraint(cloth_, f, [&](int a, int b, double k) {
         const auto p = std::size_t(a), q = std::size_t(b);
         sum += visit(f, p, q, felt(p, q, k));
@@ -209,7 +209,7 @@ class Ledger {
   }
   double elastic(const std::vector<Vec3>& x) const {
     const double limit = 1 + cloth_.strain_limit;
-    return sum_of([&](const weft::physics::Family& f, std::size_t a, std::size_t b, double k) {
+    return sum_of([&](const weft::physics::Stencil& f, std::size_t a, std::size_t b, double k) {
       const double length = distance(x[a], x[b]), c = length - f.rest;
       const double over = length - limit * f.rest;
       const bool limited =
@@ -236,14 +236,14 @@ class Ledger {
     double size = 1;
     for (const Vec3& p : x) size = std::max(size, norm(p));
     const double off = kRounding * size;
-    return sum_of([&](const weft::physics::Family&, std::size_t, std::size_t, double k) {
+    return sum_of([&](const weft::physics::Stencil&, std::size_t, std::size_t, double k) {
       return 0.5 * k * off * off;
     });
   }
 
   weft::Scene scene_;
   const weft::Cloth& cloth_;
-  std::vector<weft::physics::Family> families_;
+  std::vector<weft::physics::Stencil> stencils_;
   bool springs_;
   double dt_;
   double put_in_ = 0, highest_ = 0, released_ = 0;  // J
