@@ -230,6 +230,80 @@ TEST(Gltf, HasAMorphTargetForEverySample) {
   expect_two_sheets(model);
 }
 
+// What a .gltf and its .bin say of themselves, read as a program reads them: one run's positions all
+// the way, however its steps were cut short.
+void expect_pair(const Folder& folder, float first) {
+  const auto json = nlohmann::json::parse(folder.read("a.gltf"));
+  const std::string uri = json["buffers"][0]["uri"];
+  const Model model{json, folder.read(uri)};
+  ASSERT_EQ(json["buffers"][0]["byteLength"], model.buffer.size()) << uri;
+  EXPECT_EQ(model.value(1, 0), first) << uri;
+  EXPECT_EQ(json["accessors"][1]["min"][0], first) << uri;
+}
+
+void export_pair(const Folder& folder, float offset) {
+  Sheet sheet(3, 2);
+  sheet.move(offset);
+  const auto animation = open_animation(folder / "a.gltf", view_of({&sheet}));
+  animation->append(view_of({&sheet}));
+  animation->finish();
+}
+
+TEST(Gltf, ReplacesAPair) {
+  const Folder folder;
+  for (const float offset : {1.0F, 2.0F, 3.0F}) {
+    export_pair(folder, offset);
+    expect_pair(folder, offset);
+    EXPECT_TRUE(folder.has("a.bin"));
+    EXPECT_EQ(folder.files(), 2U);
+  }
+}
+
+// After each of the steps from one pair to the next a process may be gone.
+TEST(Gltf, GoesOnFromWhereAKilledExportStopped) {
+  const Folder folder;
+  export_pair(folder, 1);
+  const std::string old_json = folder.read("a.gltf"), old_buffer = folder.read("a.bin");
+  export_pair(folder, 2);
+  const std::string json = folder.read("a.gltf"), buffer = folder.read("a.bin");
+  std::string passing = json;
+  passing.replace(passing.find("a.bin"), 5, "a.weft-new.bin");
+  const std::array<std::array<std::string, 3>, 4> steps{{{old_json, old_buffer, buffer},
+                                                         {passing, old_buffer, buffer},
+                                                         {passing, buffer, buffer},
+                                                         {json, buffer, buffer}}};
+  for (std::size_t n = 0; n < steps.size(); ++n) {
+    folder.write("a.gltf", steps[n][0]);
+    folder.write("a.bin", steps[n][1]);
+    folder.write("a.weft-new.bin", steps[n][2]);
+    expect_pair(folder, n == 0 ? 1.0F : 2.0F);
+    export_pair(folder, 3);
+    expect_pair(folder, 3);
+    EXPECT_EQ(folder.files(), 2U) << n;
+  }
+}
+
+TEST(Gltf, WritesAnyNameOfABufferAsAUri) {
+  const Folder folder;
+  const Sheet sheet(3, 2);
+  const auto animation = open_animation(folder / "a b\xff.gltf", view_of({&sheet}));
+  animation->append(view_of({&sheet}));
+  animation->finish();
+  const auto json = nlohmann::json::parse(folder.read("a b\xff.gltf"));
+  EXPECT_EQ(json["buffers"][0]["uri"], "a%20b%FF.bin");
+  EXPECT_TRUE(folder.has("a b\xff.bin"));
+}
+
+TEST(Gltf, IsOneFileWithAnyCaseOfItsExtension) {
+  const Folder folder;
+  const Sheet sheet(3, 2);
+  const auto animation = open_animation(folder / "a.GLB", view_of({&sheet}));
+  animation->append(view_of({&sheet}));
+  animation->finish();
+  EXPECT_EQ(folder.read("a.GLB").substr(0, 4), "glTF");
+  EXPECT_EQ(folder.files(), 1U);
+}
+
 TEST(Gltf, RefusesWhatDoesNotFit) {
   const Folder folder;
   const Sheet sheet(3, 2);
@@ -257,7 +331,9 @@ TEST(Obj, ShowsWhatIsLeftOfTornCloth) {
   view.cloths[0].seams = seams;
   view.cloths[0].seam_points = points;
   view.cloths[0].seam_particles = owners;
-  open_animation(folder / "run.obj", view)->append(view);
+  const auto animation = open_animation(folder / "run.obj", view);
+  animation->append(view);
+  animation->finish();
   std::istringstream lines(folder.read("run_0000.obj"));
   std::vector<std::string> faces, vertices;
   for (std::string line; std::getline(lines, line);)
@@ -272,13 +348,36 @@ TEST(Obj, IsASequenceOfCompleteFiles) {
   const Folder folder;
   const Sheet sheet(3, 2);
   const auto animation = open_animation(folder / "run.obj", view_of({&sheet}));
-  EXPECT_EQ(folder.files(), 0U);
   for (int sample = 0; sample < 3; ++sample) animation->append(view_of({&sheet}));
+  EXPECT_FALSE(folder.has("run_0000.obj"));
   animation->finish();
   EXPECT_EQ(folder.files(), 3U);
   EXPECT_TRUE(folder.has("run_0000.obj"));
   EXPECT_TRUE(folder.has("run_0002.obj"));
   EXPECT_EQ(animation->written(), (folder / "run_0000.obj") + " … " + (folder / "run_0002.obj"));
+}
+
+TEST(Obj, LeavesTheOldSequenceWhenTheRunIsGivenUp) {
+  const Folder folder;
+  const Sheet sheet(3, 2);
+  folder.write("run_0000.obj", "old");
+  {
+    const auto animation = open_animation(folder / "run.obj", view_of({&sheet}));
+    for (int sample = 0; sample < 3; ++sample) animation->append(view_of({&sheet}));
+  }
+  EXPECT_EQ(folder.read("run_0000.obj"), "old");
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+TEST(Obj, TellsOfFilesThatALongerRunLeft) {
+  const Folder folder;
+  const Sheet sheet(3, 2);
+  folder.write("run_0001.obj", "old");
+  const auto animation = open_animation(folder / "run.obj", view_of({&sheet}));
+  animation->append(view_of({&sheet}));
+  animation->finish();
+  EXPECT_NE(animation->written().find("run_0001.obj and what follows"), std::string::npos)
+      << animation->written();
 }
 
 TEST(Obj, HasOneObjectOfQuadsPerCloth) {
@@ -287,6 +386,7 @@ TEST(Obj, HasOneObjectOfQuadsPerCloth) {
   const Sheet two(2, 2);
   const auto animation = open_animation(folder / "run.obj", view_of({&one, &two}));
   animation->append(view_of({&one, &two}));
+  animation->finish();
   std::istringstream lines(folder.read("run_0000.obj"));
   std::vector<std::string> objects, faces;
   std::size_t vertices = 0;
@@ -303,7 +403,9 @@ TEST(Obj, HasOneObjectOfQuadsPerCloth) {
 TEST(Obj, CoordinatesReadBackToTheSameBits) {
   const Folder folder;
   const Sheet sheet(2, 2);
-  open_animation(folder / "run.obj", view_of({&sheet}))->append(view_of({&sheet}));
+  const auto animation = open_animation(folder / "run.obj", view_of({&sheet}));
+  animation->append(view_of({&sheet}));
+  animation->finish();
   std::istringstream lines(folder.read("run_0000.obj"));
   std::string skipped;
   std::getline(lines, skipped);

@@ -153,6 +153,7 @@ void Recorder::frame(const Simulation& simulation) {
 }
 
 void Recorder::finish() {
+  file_.complete();
   file_.commit();
 }
 
