@@ -41,10 +41,4 @@ void Recordings::after_frame(const Simulation& simulation) {
   }
 }
 
-std::optional<std::string> Recordings::finish() {
-  if (!recorder_) return std::nullopt;
-  recorder_->finish();
-  return recorder_->path();
-}
-
 }  // namespace weft::cli
