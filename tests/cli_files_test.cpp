@@ -61,6 +61,17 @@ TEST(CliFiles, StandardOutputInAFileKeepsAll) {
   EXPECT_NE(outcome.out.find("wrote     /dev/stdout"), std::string::npos) << outcome.out;
 }
 
+TEST(CliFiles, AClosedStandardOutputIsNoOneElsesPlace) {
+  const Folder folder;
+  small_scene(folder);
+  const std::string command = "cd '" + folder.path() +
+                              "' && '" WEFT_PROGRAM
+                              "' run small.json --frames 1 --dump d.f64 --report r.json >&- 2>&-";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 5);
+  EXPECT_EQ(folder.read("d.f64").size(), 48U * 24);
+  EXPECT_EQ(Json::parse(folder.read("r.json"))["frames"], 1);
+}
+
 TEST(CliFiles, NamesOfAnyBytesAreWrittenAndShownInOneLine) {
   const Folder folder;
   small_scene(folder);
