@@ -1,7 +1,4 @@
 // The program `weft`: its commands, and how whatever goes wrong becomes a line and an exit code.
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -10,6 +7,7 @@
 
 #include "commands.h"
 #include "failure.h"
+#include "output/standard_streams.h"
 #include "weft/output.h"
 
 namespace weft::cli {
@@ -108,22 +106,12 @@ int run_program(int argument_count, char** arguments) {
   return exit_code;
 }
 
-// A program that is started without standard output must not have one of its files take that place.
-void occupy_standard_descriptors() {
-  for (int descriptor = ::open("/dev/null", O_RDONLY); descriptor >= 0;
-       descriptor = ::open("/dev/null", O_RDONLY))
-    if (descriptor > STDERR_FILENO) {
-      ::close(descriptor);
-      return;
-    }
-}
-
 }  // namespace
 
 }  // namespace weft::cli
 
 int main(int argument_count, char** arguments) {
-  weft::cli::occupy_standard_descriptors();
+  weft::occupy_standard_streams();
   try {
     return weft::cli::run_program(argument_count, arguments);
   } catch (const std::bad_alloc&) {

@@ -7,6 +7,7 @@
 #include "command_line.h"
 #include "edit/document.h"
 #include "picture/renderer.h"
+#include "run/end_at_exit.h"
 #include "run/session.h"
 #include "window/messages.h"
 
@@ -16,6 +17,11 @@ class Workspace {
  public:
   // Opens the scene of the arguments. Throws Failure.
   explicit Workspace(const Arguments& arguments);
+
+  // Ends the simulation, with all files of it: what went wrong, or "".
+  std::string end();
+  // The file of the recording, "" where none was asked for.
+  const std::string& record() const { return record_; }
 
   // Another scene; a broken one is told, and the present one stays.
   void open(const std::string& path_or_name);
@@ -73,7 +79,9 @@ class Workspace {
 
   Document document_;
   std::vector<ShippedScene> scenes_ = shipped_scenes();
+  std::string record_;
   std::optional<Session> session_;
+  std::optional<EndAtExit> end_at_exit_;
   Setting setting_;
   double now_ = 0, next_watch_ = 0, next_keep_ = 0;
   float aspect_ = 1.5f;
