@@ -124,6 +124,10 @@ TEST(Recording, WhatIsNoneIsRefused) {
   const std::string scene = small_scene(folder);
   EXPECT_EQ(run_weft(folder, "run --replay nowhere.rec").exit_code, 3);
   EXPECT_EQ(run_weft(folder, "run --replay small.json").exit_code, 3);
+  EXPECT_EQ(run_weft(folder, "run --replay .").exit_code, 3);
+  const Outcome endless = run_weft(folder, "run --replay /dev/zero", "timeout 60");
+  EXPECT_EQ(endless.exit_code, 3);
+  EXPECT_NE(endless.err.find("64 MiB"), std::string::npos) << endless.err;
   EXPECT_EQ(run_weft(folder, "run").exit_code, 2);
   ASSERT_EQ(run_weft(folder, "run small.json --frames 2 --record a.rec").exit_code, 0);
   EXPECT_EQ(run_weft(folder, "run hello --replay a.rec").exit_code, 3);

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "folder.h"
+#include "output/printable.h"
 #include "weft/output.h"
 
 namespace weft {
@@ -141,8 +142,13 @@ TEST(OutputFile, RemovesWhatAKilledProcessLeft) {
   EXPECT_EQ(folder.files(), 2U);
   std::filesystem::create_directory(folder / ".weft-mine.tmp");
   folder.write(".weft-mine.tmp/0", "a person's own");
+  std::filesystem::create_directory(folder / "elsewhere");
+  folder.write("elsewhere/0", "not ours");
+  folder.write("elsewhere/lock", "");
+  std::filesystem::create_symlink("elsewhere", folder / ".weft-1.tmp");
   OutputFile(folder / "c.bin").commit();
-  EXPECT_EQ(folder.files(), 3U);  // c.bin, a person's own, and what is alive
+  EXPECT_EQ(folder.read("elsewhere/0"), "not ours");
+  EXPECT_EQ(folder.files(), 5U);  // these two, c.bin, a person's own, and what is alive
   alive.write("alive");
   alive.commit();
   EXPECT_EQ(folder.read("alive.bin"), "alive");
@@ -240,6 +246,15 @@ TEST(OutputFile, TellsWhenTheDiskIsFull) {
   OutputFile file("/dev/full");
   file.write("abc");  // into the buffer
   EXPECT_THROW(file.commit(), WriteError);
+}
+
+TEST(Printable, IsOneLineOfUtf8) {
+  EXPECT_EQ(printable("größe … 𝄞.json"), "größe … 𝄞.json");
+  EXPECT_EQ(printable("a\nb\tc\rd\x1b[31m\x7f"), "a\\nb\\tc\\rd\\x1b[31m\\x7f");
+  // Lone, overlong, cut off, a surrogate, beyond Unicode, a control character of two bytes.
+  EXPECT_EQ(printable("\xff \xc0\xaf \xe2\x80 \xed\xa0\x80 \xf4\x90\x80\x80 \xc2\x85"),
+            "\\xff \\xc0\\xaf \\xe2\\x80 \\xed\\xa0\\x80 \\xf4\\x90\\x80\\x80 \\xc2\\x85");
+  EXPECT_EQ(printable(std::string_view("a\0b", 3)), "a\\x00b");
 }
 
 TEST(Dump, IsLittleEndianDoubles) {

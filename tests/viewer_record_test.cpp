@@ -37,6 +37,25 @@ TEST_F(WindowEnds, ASignalEndsItInOrder) {
   }
 }
 
+// Ctrl-C goes to all processes of the terminal's group.
+TEST_F(WindowEnds, CtrlCKeepsTheFilm) {
+  Screen screen(folder);
+  screen.open("pinned2");
+  screen.key("F11");
+  screen.wait("the film", [](const Json& now) {
+    return now["news"].dump().find("pinned2.mp4") != std::string::npos;
+  });
+  const int start = screen.now()["frame"];
+  screen.wait("frames", [&](const Json& now) { return now["frame"] > start + 25; });
+  const std::string viewer = std::to_string(screen.viewer());
+  std::ifstream children("/proc/" + viewer + "/task/" + viewer + "/children");
+  for (pid_t child = 0; children >> child;)
+    if (::getpgid(child) == ::getpgid(screen.viewer())) ::kill(child, SIGINT);
+  screen.send(SIGINT);
+  EXPECT_EQ(screen.finish(), 128 + SIGINT) << screen.said();
+  EXPECT_EQ(run("ffprobe -v error pinned2.mp4"), 0);
+}
+
 TEST_F(WindowEnds, ALostDisplayLosesNoRecording) {
   Screen screen(folder);
   screen.open("pinned2 --record session");

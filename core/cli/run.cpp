@@ -141,6 +141,9 @@ LoadedScene scene_to_run(const RunArguments& arguments, const std::optional<Reco
   } catch (const WriteError& error) {
     print({{error.path, error.what(), ""}});
     code = kNotWritten;
+  } catch (const std::exception& error) {  // there is nobody else on this thread to tell
+    print({{"internal", error.what(), ""}});
+    code = kStopped;
   }
   remove_temporaries();
   std::_Exit(code);

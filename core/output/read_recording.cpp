@@ -152,6 +152,19 @@ Json parsed(const std::string& line) {
   fail(faults[0].place, what, faults[0].allowed);
 }
 
+// The next line; of one longer than any recording's, only so much that it is known to be.
+bool next_line(std::istream& in, std::string& line) {
+  std::array<char, 1 << 16> some{};
+  for (line.clear(); line.size() <= text::kMaxTextBytes; in.clear()) {
+    in.getline(some.data(), some.size());
+    if (in.bad() || in.gcount() == 0) return !line.empty();
+    const bool ended = in.good();
+    line.append(some.data(), static_cast<std::size_t>(in.gcount() - (ended ? 1 : 0)));
+    if (ended || in.eof()) return true;
+  }
+  return true;
+}
+
 }  // namespace
 
 Recording read_recording(const std::string& path) {
@@ -161,7 +174,7 @@ Recording read_recording(const std::string& path) {
   std::string text;
   std::int64_t number = 0;
   Order order;
-  while (std::getline(in, text)) {
+  while (next_line(in, text)) {
     ++number;
     try {
       const Json json = parsed(text);

@@ -68,6 +68,10 @@ bool is_number(std::string_view name) {
 
 // Removes a staging folder whose owner is gone. Where nothing can be locked, none is known to be.
 void remove_abandoned(const fs::path& path) {
+  struct stat status {};  // never what another person has put in the way
+  if (::lstat(path.c_str(), &status) != 0 || !S_ISDIR(status.st_mode) ||
+      status.st_uid != ::geteuid())
+    return;
   const int lock = ::open((path / "lock").c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
   if (lock < 0) {
     if (errno == ENOENT) ::rmdir(path.c_str());  // the lock goes last: it is empty, or not ours

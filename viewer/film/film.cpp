@@ -61,9 +61,11 @@ Film::Film(const std::string& base, const std::string& besides, int width, int h
   path_ = free_name(base, ".mp4", besides);
   // ffmpeg would find out too late what cannot be written, and tell the terminal only.
   attempt([&] { file_.emplace(path_); });
+  // Ctrl-C at the terminal is for this program, which then ends the film: ffmpeg does not hear it.
   const std::string command =
-      "ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " + std::to_string(width) + "x" +
-      std::to_string(height) + " -r " + std::to_string(static_cast<int>(kRate)) +
+      "exec $(command -v setsid) ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " +
+      std::to_string(width) + "x" + std::to_string(height) + " -r " +
+      std::to_string(static_cast<int>(kRate)) +
       " -i - -c:v libx264 -preset veryfast -crf 20 -pix_fmt yuv420p -f mp4 " +
       for_shell(file_->temporary());
   pipe_.reset(::popen(command.c_str(), "w"));
