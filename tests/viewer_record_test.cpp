@@ -13,6 +13,15 @@ using Json = nlohmann::json;
 
 class WindowEnds : public Window {
  protected:
+  // Begins a film and waits for some frames of it.
+  static void film(const Screen& screen) {
+    screen.key("F11");
+    screen.wait("the film", [](const Json& now) {
+      return now["news"].dump().find("pinned2.mp4") != std::string::npos;
+    });
+    const int start = screen.now()["frame"];
+    screen.wait("frames", [&](const Json& now) { return now["frame"] > start + 8; });
+  }
   // The recording is whole and replays, and nothing else is left in the folder.
   void expect_recording() const {
     ASSERT_TRUE(folder.has("session"));
@@ -41,12 +50,7 @@ TEST_F(WindowEnds, ASignalEndsItInOrder) {
 TEST_F(WindowEnds, CtrlCKeepsTheFilm) {
   Screen screen(folder);
   screen.open("pinned2");
-  screen.key("F11");
-  screen.wait("the film", [](const Json& now) {
-    return now["news"].dump().find("pinned2.mp4") != std::string::npos;
-  });
-  const int start = screen.now()["frame"];
-  screen.wait("frames", [&](const Json& now) { return now["frame"] > start + 25; });
+  film(screen);
   const std::string viewer = std::to_string(screen.viewer());
   std::ifstream children("/proc/" + viewer + "/task/" + viewer + "/children");
   for (pid_t child = 0; children >> child;)
@@ -56,14 +60,28 @@ TEST_F(WindowEnds, CtrlCKeepsTheFilm) {
   EXPECT_EQ(run("ffprobe -v error pinned2.mp4"), 0);
 }
 
-TEST_F(WindowEnds, ALostDisplayLosesNoRecording) {
+TEST_F(WindowEnds, ALostDisplayLosesNeitherRecordingNorFilm) {
   Screen screen(folder);
   screen.open("pinned2 --record session");
-  screen.wait("frames", [](const Json& now) { return now["frame"] > 25; });
+  film(screen);
   screen.end_server();
   EXPECT_EQ(screen.finish(), 6) << screen.said();
   EXPECT_NE(screen.said().find("the display is gone"), std::string::npos) << screen.said();
   expect_recording();
+  EXPECT_EQ(run("ffprobe -v error pinned2.mp4"), 0);
+}
+
+// A film that fails when the window has closed is told where there is no window to tell it.
+TEST_F(WindowEnds, AFilmThatFailsAtTheEndIsAnError) {
+  std::filesystem::create_directory(folder / "bin");
+  folder.write("bin/ffmpeg", "#!/bin/sh\n/bin/cat >/dev/null\nexit 1\n");
+  std::filesystem::permissions(folder / "bin/ffmpeg", std::filesystem::perms::owner_all);
+  Screen screen(folder);
+  screen.open("pinned2", "PATH='" + (folder / "bin") + "'");
+  film(screen);
+  EXPECT_EQ(screen.quit(), 5);
+  EXPECT_NE(screen.said().find("pinned2.mp4: the film could not be written"), std::string::npos)
+      << screen.said();
 }
 
 TEST_F(WindowEnds, QuitLeavesNothing) {

@@ -77,9 +77,20 @@ void App::run() {
     if (measure_ > 0 && measured(begun)) window_.close();
     if (interrupted() != 0) window_.close();
   }
-  if (film_) end_film();
-  if (const std::string problem = workspace_.end(); !problem.empty())
-    throw Failure(kCannotWrite, problem);
+  if (const std::string problem = end(); !problem.empty()) throw Failure(kCannotWrite, problem);
+}
+
+// All files that are not finished are; nobody looks at the window any more: what went wrong, or "".
+std::string App::end() {
+  std::string problem;
+  try {
+    if (film_) film_->finish();
+  } catch (const Failure& failure) {
+    problem = failure.what();
+  }
+  film_.reset();
+  const std::string other = workspace_.end();
+  return problem + (problem.empty() || other.empty() ? "" : "\n") + other;
 }
 
 // The first second, in which shaders are compiled, does not count.

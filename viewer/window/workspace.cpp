@@ -35,7 +35,6 @@ Workspace::Workspace(const Arguments& arguments)
   options.seed = arguments.seed;
   refuse_clashes(arguments, document_.path());
   session_.emplace(document_.scene(), options, arguments.paused, !arguments.log.empty());
-  end_at_exit_.emplace(*session_);
   simulated_ = kept_ = document_.revision();
   tell_kept();
   aim(arguments, camera);
@@ -46,7 +45,6 @@ Workspace::Workspace(const Arguments& arguments)
 }
 
 std::string Workspace::end() {
-  end_at_exit_.reset();
   return session_->end();
 }
 

@@ -7,7 +7,6 @@
 #include "command_line.h"
 #include "edit/document.h"
 #include "picture/renderer.h"
-#include "run/end_at_exit.h"
 #include "run/session.h"
 #include "window/messages.h"
 
@@ -81,7 +80,6 @@ class Workspace {
   std::vector<ShippedScene> scenes_ = shipped_scenes();
   std::string record_;
   std::optional<Session> session_;
-  std::optional<EndAtExit> end_at_exit_;
   Setting setting_;
   double now_ = 0, next_watch_ = 0, next_keep_ = 0;
   float aspect_ = 1.5f;

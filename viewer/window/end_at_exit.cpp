@@ -1,20 +1,22 @@
 // Called by exit().
-#include "run/end_at_exit.h"
+#include "window/end_at_exit.h"
 
 #include <cstdio>
 #include <cstdlib>
 
 #include "failure.h"
+#include "weft/output.h"
 
 namespace weft::viewer {
 
 namespace {
 
-Session* last = nullptr;
+std::function<std::string()> end_all;
 
-void end_last() {
-  if (last == nullptr) return;
-  const std::string problem = last->end();
+void end_in_order() {
+  if (!end_all) return;
+  const std::string problem = end_all();
+  remove_temporaries();
   std::fputs("weft-viewer: error: the display is gone\n", stderr);
   if (!problem.empty()) std::fprintf(stderr, "weft-viewer: error: %s\n", problem.c_str());
   std::_Exit(kNoGraphics);
@@ -22,13 +24,13 @@ void end_last() {
 
 }  // namespace
 
-EndAtExit::EndAtExit(Session& session) {
-  last = &session;
-  std::atexit(end_last);
+EndAtExit::EndAtExit(std::function<std::string()> end) {
+  end_all = std::move(end);
+  std::atexit(end_in_order);
 }
 
 EndAtExit::~EndAtExit() {
-  last = nullptr;
+  end_all = nullptr;
 }
 
 }  // namespace weft::viewer
