@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "failure.h"
+#include "output/printable.h"
 #include "scene_argument.h"
 
 namespace weft::cli {
@@ -17,7 +18,7 @@ int check(const SceneArgument& argument) {
   for (const Cloth& cloth : loaded.scene.cloths) {
     particles += static_cast<std::int64_t>(cloth.grid.nx) * cloth.grid.ny;
   }
-  std::cout << loaded.path << ": ok, " << particles << " particles\n";
+  std::cout << printable(loaded.path) << ": ok, " << particles << " particles\n";
   return kDone;
 }
 

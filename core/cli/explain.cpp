@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "failure.h"
+#include "output/printable.h"
 #include "scene_argument.h"
 
 namespace weft::cli {
@@ -15,7 +16,7 @@ int explain(const SceneArgument& argument) {
   Options options;
   options.threads = 1;
   const Simulation simulation = simulate(loaded, options);
-  std::cout << (loaded.scene.name.empty() ? loaded.path : loaded.scene.name) << ": "
+  std::cout << printable(loaded.scene.name.empty() ? loaded.path : loaded.scene.name) << ": "
             << to_text(simulation.plan());
   return kDone;
 }
