@@ -33,4 +33,11 @@ TEST(Printable, BytesThatAreNotTextAreEscaped) {
   EXPECT_EQ(weft::printable("\xe2\x82z"), "\\xe2\\x82z");
 }
 
+TEST(Printable, TellsWhatIsText) {
+  for (const char* text : {"", "swing", "Tüll 布 🧵", "a\nb"})
+    EXPECT_TRUE(weft::is_utf8(text)) << text;
+  for (const char* text : {"\xff", "a\xc3", "\xc0\xaf", "\xed\xa0\x80"})
+    EXPECT_FALSE(weft::is_utf8(text)) << text;
+}
+
 }  // namespace

@@ -34,6 +34,9 @@ const Json& course_schema_json();
 // All that the schema has against the value, in the order of the document.
 void check(const Json& schema, const Json& value, Check& result);
 
+// Makes null what is unsound, so that nobody reads it. The other values stay where they are.
+void drop_unsound(const Check& result, Json& document);
+
 // The schema of one member or element; null when the schema knows none. `value` chooses among
 // alternatives and may be null.
 const Json* descend(const Json& schema, const Json* value, std::string_view token);

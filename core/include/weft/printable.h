@@ -11,4 +11,7 @@ namespace weft {
 // \xff. All other text is unchanged, backslashes included. At most four times as long.
 std::string printable(std::string_view text);
 
+// Whether all of the text is UTF-8: no overlong forms, surrogates or cut-off characters.
+bool is_utf8(std::string_view text);
+
 }  // namespace weft
