@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "failure.h"
 #include "weft/output.h"
+#include "weft/printable.h"
 
 namespace weft::cli {
 
@@ -109,9 +110,12 @@ int main(int argument_count, char** arguments) {
   try {
     return weft::cli::run_program(argument_count, arguments);
   } catch (const std::bad_alloc&) {
-    std::fputs("weft: error: memory: this scene needs more than there is\n", stderr);
+    std::fputs(
+        "weft: error: memory: the system gives no more (`weft check SCENE` says what a run "
+        "needs)\n",
+        stderr);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "weft: error: internal: %s\n", error.what());
+    std::fprintf(stderr, "weft: error: internal: %s\n", weft::printable(error.what()).c_str());
   }
   return weft::cli::kStopped;
 }
