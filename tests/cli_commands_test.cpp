@@ -37,8 +37,7 @@ TEST(CliCommands, CheckSaysOk) {
   small_scene(folder);
   const Outcome outcome = run_weft(folder, "check small.json");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(outcome.out.starts_with("small.json: ok, 48 particles\nneeds about "))
-      << outcome.out;
+  EXPECT_TRUE(outcome.out.starts_with("small.json: ok, 48 particles\nneeds about ")) << outcome.out;
   EXPECT_EQ(run_weft(folder, "check pinned2").exit_code, 0);
 }
 

@@ -46,7 +46,7 @@ std::string escaped(std::uint32_t code) {
   if (code == '\t') return "\\t";
   if (code == '\r') return "\\r";
   char text[16];
-  std::snprintf(text, sizeof text, "\\u{%x}", unsigned(code));
+  std::snprintf(text, sizeof text, code < 0x80 ? "\\x%02x" : "\\u{%x}", unsigned(code));
   return text;
 }
 

@@ -7,8 +7,8 @@
 namespace weft {
 
 // The text on one line of valid UTF-8: control characters, line separators and marks that reverse
-// the direction of writing become \n, \t, \r, \u{85} and so on; bytes that are not UTF-8 become
-// \xff. All other text is unchanged, backslashes included. At most four times as long.
+// the direction of writing become \n, \t, \r, \x1b, \u{2028} and so on; bytes that are not UTF-8
+// become \xff. All other text is unchanged, backslashes included. At most four times as long.
 std::string printable(std::string_view text);
 
 // Whether all of the text is UTF-8: no overlong forms, surrogates or cut-off characters.
