@@ -90,7 +90,8 @@ Way way_of(const Scene& scene) {
   Way way{piece.scene().solver, piece.substeps()};
   if (piece.plan().fallback && is_spring(way.solver.method)) way.solver.method = Method::compliant;
   if (!is_spring(way.solver.method) && scene.time.substeps == kAutoSubsteps)
-    way.substeps = std::max(1, int(std::round(scene.time.frame / projection_substep(scene))));
+    way.substeps =
+        int(std::clamp(std::round(scene.time.frame / projection_substep(scene)), 1.0, 1e5));
   return way;
 }
 

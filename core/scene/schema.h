@@ -1,7 +1,8 @@
 // The schemas of docs/ at work: checking a document against one, and looking values up in one.
 // Understood is the part of JSON Schema 2020-12 that they use: type, const, enum, minimum, maximum,
 // items, prefixItems, minItems, maxItems, maxLength, properties, required, additionalProperties
-// false, oneOf, default, description, $ref to $defs, and our x-unit.
+// false, oneOf, default, description, $ref to $defs, and our x-unit. Our x-limits are told only:
+// json_text.h has them.
 #pragma once
 
 #include <string>
