@@ -10,7 +10,8 @@ namespace weft::cli {
 
 namespace {
 
-constexpr double kLongRun = 120;  // s
+constexpr double kLongRun = 120;          // s
+constexpr double kMostBytes = 32 * 1024;  // that a particle takes, in rows of two of them
 
 }  // namespace
 
@@ -32,7 +33,11 @@ std::string needs_words(const Estimate& needed) {
 }
 
 void require_memory(const Scene& scene, const std::string& place) {
-  const double needed = estimate(scene).bytes, free = free_memory();
+  double particles = 0;
+  for (const Cloth& cloth : scene.cloths) particles += double(cloth.grid.nx) * cloth.grid.ny;
+  const double free = free_memory();
+  if (particles * kMostBytes < free) return;  // whatever else the scene asks for
+  const double needed = estimate(scene).bytes;
   if (needed / kMemoryWithin <= free) return;
   throw Failure{kStopped,
                 {{place, "the scene needs about " + bytes_words(needed) + " of memory",
