@@ -10,8 +10,8 @@
 #include <optional>
 
 #include "folder.h"
-#include "output/printable.h"
 #include "weft/output.h"
+#include "weft/printable.h"
 
 namespace weft {
 namespace {

@@ -3,8 +3,6 @@
 
 #include <iostream>
 
-#include "output/printable.h"
-
 namespace weft::cli {
 
 void print(const std::vector<Fault>& faults) {

@@ -3,7 +3,7 @@
 
 #include "failure.h"
 #include "output/interrupt.h"
-#include "output/printable.h"
+#include "weft/printable.h"
 
 namespace weft::cli {
 

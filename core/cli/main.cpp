@@ -115,7 +115,10 @@ int main(int argument_count, char** arguments) {
   try {
     return weft::cli::run_program(argument_count, arguments);
   } catch (const std::bad_alloc&) {
-    std::fputs("weft: error: memory: this scene needs more than there is\n", stderr);
+    std::fputs(
+        "weft: error: memory: the system gives no more (`weft check SCENE` says what a run "
+        "needs)\n",
+        stderr);
   } catch (const std::exception& error) {
     weft::cli::print({{"internal", error.what(), ""}});
   }

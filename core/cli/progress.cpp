@@ -10,7 +10,7 @@
 #include <iostream>
 
 #include "failure.h"
-#include "output/printable.h"
+#include "weft/printable.h"
 
 namespace weft::cli {
 

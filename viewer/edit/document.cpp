@@ -3,10 +3,10 @@
 
 #include <cstdlib>
 
-#include "output/printable.h"
 #include "scene/document.h"
 #include "scene/schema.h"
 #include "weft/output.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "failure.h"
-#include "output/printable.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "failure.h"
-#include "output/printable.h"
 #include "weft/output.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 

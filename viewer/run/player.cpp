@@ -5,8 +5,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "output/printable.h"
 #include "picture/cpu_time.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 

@@ -14,9 +14,9 @@
 
 #include "failure.h"
 #include "output/interrupt.h"
-#include "output/printable.h"
 #include "panel/theme.h"
 #include "picture/cpu_time.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 

@@ -7,7 +7,7 @@
 #include "failure.h"
 #include "film/film.h"
 #include "headless.h"
-#include "output/printable.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 

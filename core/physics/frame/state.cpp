@@ -92,6 +92,10 @@ Simulation::State::State(Scene given, const Options& given_options, const Vec3& 
   }
   build_cloths();
   choose_method_and_substeps();
+  if (threads.count() < threads.asked())
+    plan.notes.push_back("the system starts no more than " + std::to_string(threads.count()) +
+                         " of " + std::to_string(threads.asked()) +
+                         " threads (a limit on processes or memory); the result is the same");
   began_as_ = method;
   began_with_ = scene.solver;
   began_at_ = substeps;

@@ -2,7 +2,7 @@
 //
 //   x_i <- x_i + w_i Σ ± Δλ e/|e|,  Δλ = (|e| - l + α̃ λ)/((w_a + w_b)/ω + α̃),  λ <- λ - Δλ
 //
-// with ω the relaxation (stages/sweeps.cpp), e = x_b - x_a, α̃ = 1/(k dt²).
+// with ω the relaxation (model/lattice/sweeps.cpp), e = x_b - x_a, α̃ = 1/(k dt²).
 #include "physics/kernels/plain_rows.h"
 #include "physics/kernels/projection.h"
 

@@ -3,10 +3,32 @@
 
 #include <oneapi/tbb/info.h>
 
+#include <chrono>
+#include <latch>
+#include <system_error>
 #include <thread>
+#include <vector>
 
 namespace weft::physics {
 namespace {
+
+// Of so many threads, how many the system gives at once beside those that there are: they are started
+// and ended. oneTBB starts its threads from each other and ends the process where one cannot be had
+// (a limit on processes or on memory), so this is found out before.
+int startable(int wanted) {
+  std::vector<std::thread> started;
+  started.reserve(std::size_t(wanted));
+  std::latch all(1);
+  try {
+    while (int(started.size()) < wanted) started.emplace_back([&] { all.wait(); });
+  } catch (const std::system_error&) {
+  }
+  all.count_down();
+  for (std::thread& thread : started) thread.join();
+  // The system counts a thread for a moment after it has ended.
+  if (int(started.size()) < wanted) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  return int(started.size());
+}
 
 // A pile's word: the round's number, the end of its shares, and the next one to be taken.
 constexpr int kShareBits = 16;
@@ -30,7 +52,8 @@ void Patience::wait() {
 }
 
 Threads::Threads(int count)
-    : count_(count > 0 ? count : oneapi::tbb::info::default_concurrency()),
+    : asked_(count > 0 ? count : oneapi::tbb::info::default_concurrency()),
+      count_(asked_ > 1 ? 1 + startable(asked_ - 1) : 1),
       allowed_(count_ > oneapi::tbb::info::default_concurrency()
                    ? std::make_unique<oneapi::tbb::global_control>(
                          oneapi::tbb::global_control::max_allowed_parallelism,

@@ -26,9 +26,11 @@ class Patience {
 
 class Threads {
  public:
-  // `count` threads in all, the caller's included; 0 = one per core.
+  // `count` threads in all, the caller's included; 0 = one per core. Fewer where the system gives
+  // fewer.
   explicit Threads(int count);
   int count() const { return count_; }
+  int asked() const { return asked_; }
   // Of the calling thread within share(), 0 … count()-1.
   static int index() { return oneapi::tbb::this_task_arena::current_thread_index(); }
 
@@ -92,7 +94,7 @@ class Threads {
   bool take_any();
   void help();
 
-  int count_;
+  int asked_, count_;
   // oneTBB keeps to one worker per core unless told otherwise.
   std::unique_ptr<oneapi::tbb::global_control> allowed_;
   oneapi::tbb::task_arena arena_;
