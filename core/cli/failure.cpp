@@ -3,6 +3,8 @@
 
 #include <iostream>
 
+#include "weft/printable.h"
+
 namespace weft::cli {
 
 void print(const std::vector<Fault>& faults) {

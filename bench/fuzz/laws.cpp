@@ -1,0 +1,201 @@
+#include "laws.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "failure.h"
+#include "physics/model/path.h"
+#include "weft/shape.h"
+
+namespace fuzz {
+
+using namespace weft;
+
+namespace {
+
+constexpr double kBound = 15;         // times the energy put in (bench/stress_case.h)
+constexpr double kMomentum = 1e-3;    // of Σ m|v|
+constexpr double kPosition = 1e-6;    // of coordinates, what single precision makes of them
+constexpr double kUnderPlane = 0.01;  // spacings
+
+std::vector<Vec3> as_points(const std::vector<double>& flat, std::size_t first, std::size_t count) {
+  std::vector<Vec3> points(count);
+  for (std::size_t p = 0; p < count; ++p)
+    for (std::size_t k = 0; k < 3; ++k) points[p][k] = flat[3 * (first + p) + k];
+  return points;
+}
+
+// Calls visit(cloth, positions, velocities) for each cloth.
+template <class Visit>
+void for_each_cloth(const Simulation& simulation, Visit&& visit) {
+  const std::vector<double> x = simulation.positions(), v = simulation.velocities();
+  std::size_t first = 0;
+  for (const Cloth& c : simulation.scene().cloths) {
+    const std::size_t count = std::size_t(c.grid.nx) * std::size_t(c.grid.ny);
+    visit(c, as_points(x, first, count), as_points(v, first, count));
+    first += count;
+  }
+}
+
+double length(const Vec3& a) {
+  return std::hypot(a[0], a[1], a[2]);
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+bool has_wind(const Scene& scene) {
+  return scene.wind.drag > 0 || scene.wind.lift > 0;
+}
+
+bool collides_with_itself(const Scene& scene) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const Cloth& c) {
+    return c.self_collision.mode != SelfCollisionMode::off;
+  });
+}
+
+// Whether anything moves along keys.
+bool driven(const Scene& scene) {
+  const auto moves = [](const auto& thing) { return !thing.keys.empty(); };
+  return std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
+         std::any_of(scene.cloths.begin(), scene.cloths.end(), [&](const Cloth& c) {
+           return std::any_of(c.pins.begin(), c.pins.end(), moves);
+         });
+}
+
+// Particles keep the offset from every collider, now.
+bool outside_of_all(const Simulation& simulation) {
+  bool outside = true;
+  for_each_cloth(simulation, [&](const Cloth&, const auto& x, const auto&) {
+    for (const Collider& c : simulation.scene().colliders)
+      for (const Vec3& p : x) outside &= signed_distance(c, simulation.time(), p) >= c.offset;
+  });
+  return outside;
+}
+
+// Nothing but the sheet's own forces acts.
+bool left_alone(const Scene& scene) {
+  return scene.gravity == Vec3{} && scene.colliders.empty() && !has_wind(scene) &&
+         std::all_of(scene.cloths.begin(), scene.cloths.end(),
+                     [](const Cloth& c) { return c.drag == 0 && c.pins.empty(); });
+}
+
+bool only_planes(const Scene& scene) {
+  return !scene.colliders.empty() &&
+         std::all_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) {
+           return std::holds_alternative<Plane>(c.shape) && c.keys.empty() && !c.cuts;
+         });
+}
+
+bool pinned_anywhere(const Scene& scene) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(),
+                     [](const Cloth& c) { return !c.pins.empty(); });
+}
+
+}  // namespace
+
+Laws::Laws(const Simulation& simulation) : springs_(bench::runs_springs(simulation)) {
+  const Scene& scene = simulation.scene();
+  const bool outside = outside_of_all(simulation);
+  if (!driven(scene) && !has_wind(scene) && !collides_with_itself(scene) && outside)
+    open_ledgers(simulation);
+  momentum_kept_ = left_alone(scene) && !collides_with_itself(scene) && scene.solver.sleep == 0;
+  momentum_ = simulation.report(false).momentum;
+  above_planes_ = only_planes(scene) && scene.colliders.size() == 1 && outside &&
+                  !pinned_anywhere(scene) && !collides_with_itself(scene);
+}
+
+void Laws::open_ledgers(const Simulation& simulation) {
+  for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto& v) {
+    Scene alone = simulation.scene();
+    alone.cloths = {c};
+    ledgers_.emplace_back(alone, springs_, simulation.dt()).open(x, v);
+  });
+}
+
+void Laws::frame(const Simulation& simulation) {
+  substeps_ += simulation.substeps();
+  check_energy(simulation);
+  check_momentum(simulation);
+  check_planes(simulation);
+  check_paths(simulation);
+}
+
+void Laws::check_energy(const Simulation& simulation) {
+  if (springs_ && !bench::runs_springs(simulation)) {
+    springs_ = false;
+    for (bench::Ledger& ledger : ledgers_) ledger.project_every(simulation.dt());
+  }
+  if (ledgers_.empty()) return;
+  auto ledger = ledgers_.begin();
+  for_each_cloth(simulation, [&](const Cloth&, const auto& x, const auto& v) {
+    const double share = ledger++->share(x, v);
+    if (!(share <= kBound))
+      throw Failure("judge energy: " + number(share) + " times what was put in, frame " +
+                    std::to_string(simulation.frame()));
+  });
+}
+
+void Laws::check_momentum(const Simulation& simulation) {
+  if (!momentum_kept_) return;
+  double flow = 0, mass = 0, size = 0, particles = 0;
+  for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto& v) {
+    const View view = simulation.view();
+    for (std::size_t p = 0; p < x.size(); ++p) {
+      const double m = particle_mass(c, int(p) % c.grid.nx, int(p) / c.grid.nx);
+      flow += m * length(v[p]);
+      mass += m;
+      for (std::size_t k = 0; k < 3; ++k) size = std::max(size, std::abs(x[p][k] - view.origin[k]));
+    }
+    particles += double(x.size());
+  });
+  flow_ = std::max(flow_, flow);
+  // Projecting methods take velocities from positions that round a few times a substep, at random.
+  const double noise = mass * kPosition * size / simulation.dt() * std::sqrt(substeps_ / particles);
+  const Vec3 now = simulation.report(false).momentum;
+  const double off = length({now[0] - momentum_[0], now[1] - momentum_[1], now[2] - momentum_[2]});
+  if (!(off <= kMomentum * flow_ + noise))
+    throw Failure("judge momentum: off by " + number(off) + " kg m/s of " + number(flow_) +
+                  " and noise " + number(noise) + ", frame " + std::to_string(simulation.frame()));
+}
+
+void Laws::check_planes(const Simulation& simulation) const {
+  if (!above_planes_) return;
+  const Collider& plane = simulation.scene().colliders[0];
+  const View view = simulation.view();
+  for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto&) {
+    const double spacing = std::min(spacing_u(c.grid), spacing_v(c.grid));
+    for (const Vec3& p : x) {
+      double size = 1;
+      for (std::size_t k = 0; k < 3; ++k) size = std::max(size, std::abs(p[k] - view.origin[k]));
+      const double depth = plane.offset - signed_distance(plane, simulation.time(), p);
+      if (depth > kUnderPlane * spacing + kPosition * size)
+        throw Failure("judge plane: " + number(depth) + " m below, frame " +
+                      std::to_string(simulation.frame()));
+    }
+  });
+}
+
+// Pins with keys lie on their path, from the start.
+void Laws::check_paths(const Simulation& simulation) const {
+  const Vec3 origin = simulation.view().origin;
+  for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto&) {
+    for (const Pin& pin : c.pins) {
+      if (pin.keys.empty()) continue;
+      const Vec3 here = x[std::size_t(pin.j) * std::size_t(c.grid.nx) + std::size_t(pin.i)];
+      const Vec3 there = physics::position_at(pin.keys, simulation.time());
+      const double off = length({here[0] - there[0], here[1] - there[1], here[2] - there[2]});
+      const double size =
+          length({there[0] - origin[0], there[1] - origin[1], there[2] - origin[2]});
+      if (off > kPosition * (1 + size))
+        throw Failure("judge path: a pin " + number(off) + " m off its path, frame " +
+                      std::to_string(simulation.frame()));
+    }
+  });
+}
+
+}  // namespace fuzz

@@ -1,0 +1,46 @@
+// The parts of random scenes.
+#pragma once
+
+#include "draw.h"
+
+namespace fuzz {
+
+// Draws the parts of one scene. A scene is plain or rich in features, so that some have one alone and
+// others have many together.
+class Parts {
+ public:
+  explicit Parts(Draw& draw);
+
+  weft::Time time();
+  weft::Solver solver();
+  weft::Cloth cloth(const weft::Solver& solver, const weft::Time& time);
+  // A cloth that lies a few thicknesses from another, or through it.
+  weft::Cloth layer(const weft::Cloth& below);
+  // Near the cloth.
+  weft::Collider collider(const weft::Cloth& cloth, const weft::Time& time);
+  weft::Wind wind();
+  weft::Vec3 gravity();
+
+  // Some optional feature, more often in rich scenes.
+  bool some(double share) { return draw_.chance(share * richness_); }
+  std::vector<weft::Pin> pins(const weft::Grid& grid, const weft::Time& time);
+  double stiffness();
+
+ private:
+  weft::Grid grid();
+  void points(weft::Grid& grid);
+  void sides(weft::Grid& grid);
+  void masses(weft::Cloth& cloth);
+  void limits(weft::Cloth& cloth);
+  weft::SelfCollision self_collision(const weft::Grid& grid);
+  weft::Shape shape(const weft::Vec3& at, double size);
+  weft::Friction friction();
+  std::vector<weft::Key> path(const weft::Vec3& start, double size, double frame);
+
+  Draw& draw_;
+  double richness_;
+  double spacing_;      // m, of the grids
+  weft::Vec3 place_{};  // m, where the scene lies
+};
+
+}  // namespace fuzz

@@ -1,0 +1,133 @@
+#include "random_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "random_parts.h"
+
+namespace fuzz {
+
+using namespace weft;
+
+namespace {
+
+constexpr double kFrameWork = 1e6, kSubstepWork = 3e5;  // of one, at most
+
+// Substeps a frame as springs need them, about: the limit is 2/ω with ω² up to four times all springs
+// of a particle over its mass.
+double estimated_substeps(const Scene& scene) {
+  if (scene.time.substeps > 0) return scene.time.substeps;
+  double most = scene.time.frame * 960;
+  for (const Cloth& c : scene.cloths) {
+    double lightest = particle_mass(c, 0, 0);
+    for (const double m : c.masses) lightest = std::min(lightest, m);
+    const double springs =
+        c.level > 0 ? 8 * c.level * c.stiffness.structural
+                    : 4 * (c.stiffness.structural + c.stiffness.shear + c.stiffness.bend);
+    most = std::max(most, scene.time.frame * std::sqrt(springs / lightest));
+  }
+  return std::min(most, scene.time.frame * 1e6);
+}
+
+// Makes frames shorter where one would be much work.
+void shorten_frames(Scene& scene) {
+  const double work = work_of_substep(scene) * estimated_substeps(scene);
+  if (work <= kFrameWork) return;
+  if (scene.time.substeps > 0)
+    scene.time.substeps = std::max(1, int(scene.time.substeps * kFrameWork / work));
+  else
+    scene.time.frame = std::max(1e-5, scene.time.frame * kFrameWork / work);
+}
+
+Scene draw_scene(Draw draw) {
+  Parts parts(draw);
+  Scene scene;
+  scene.time = parts.time();
+  scene.solver = parts.solver();
+  scene.gravity = parts.gravity();
+  scene.wind = parts.wind();
+  scene.cloths.push_back(parts.cloth(scene.solver, scene.time));
+  const double many = draw.uniform(0, 1);
+  for (int more = many < 0.7 ? 0 : many < 0.93 ? 1 : draw.between(2, 5); more > 0; --more)
+    scene.cloths.push_back(draw.chance(0.6) ? parts.layer(scene.cloths.back())
+                                            : parts.cloth(scene.solver, scene.time));
+  for (int n = draw.chance(0.5) ? 0 : draw.between(1, 3); n > 0; --n)
+    scene.colliders.push_back(parts.collider(scene.cloths[0], scene.time));
+  shorten_frames(scene);
+  return scene;
+}
+
+}  // namespace
+
+double work_of_substep(const Scene& scene) {
+  const Solver& solver = scene.solver;
+  const bool projects = solver.method == Method::positional || solver.method == Method::compliant;
+  double families = 1;
+  double contact = 0;
+  for (const Cloth& c : scene.cloths) {
+    families = std::max(families, 1.0 + c.level);
+    const double spacing = std::min(spacing_u(c.grid), spacing_v(c.grid));
+    const double crowd = std::max(1.0, std::pow(c.self_collision.thickness / spacing, 2));
+    if (c.self_collision.mode == SelfCollisionMode::particles)
+      contact = std::max(contact, 8 * crowd);
+    if (c.self_collision.mode == SelfCollisionMode::surface)
+      contact = std::max(contact, 40 * crowd);
+  }
+  const double sweep = projects ? solver.iterations * (solver.sweep == Sweep::line ? 8 : 2) : 1;
+  double bodies = 0;
+  for (const Collider& c : scene.colliders) bodies += c.cuts ? 20 : 1;
+  double particles = 100;  // what a substep costs besides
+  for (const Cloth& c : scene.cloths) particles += double(c.grid.nx) * c.grid.ny;
+  return particles * (families * sweep + contact + solver.collision_iterations * bodies);
+}
+
+Scene random_scene(std::uint64_t seed) {
+  for (std::uint64_t stream = 0;; ++stream) {
+    Scene scene = draw_scene(Draw(seed, stream));
+    if (validate(scene).empty() && work_of_substep(scene) < kSubstepWork) return scene;
+  }
+}
+
+Scene changed_scene(const Scene& scene, Draw& draw) {
+  Parts parts(draw);
+  Scene next = scene;
+  Cloth& cloth = next.cloths[std::size_t(draw.between(0, int(next.cloths.size()) - 1))];
+  switch (draw.between(0, 6)) {
+    case 0:
+      next.gravity = parts.gravity();
+      break;
+    case 1:
+      next.solver = parts.solver();
+      break;
+    case 2:
+      cloth.stiffness = {parts.stiffness(), parts.stiffness(), parts.stiffness()};
+      break;
+    case 3:
+      cloth.pins = parts.pins(cloth.grid, next.time);
+      break;
+    case 4:
+      next.colliders.push_back(parts.collider(cloth, next.time));
+      break;
+    case 5:
+      if (!next.colliders.empty()) next.colliders.pop_back();
+      break;
+    default:
+      next.wind = parts.wind();
+      break;
+  }
+  shorten_frames(next);
+  return validate(next).empty() ? next : scene;
+}
+
+Vec3 point_near(const Scene& scene, Draw& draw) {
+  const Grid& g = scene.cloths[std::size_t(draw.between(0, int(scene.cloths.size()) - 1))].grid;
+  const double i = draw.uniform(-0.1, 1.1), j = draw.uniform(-0.1, 1.1);
+  Vec3 p;
+  for (std::size_t k = 0; k < 3; ++k) p[k] = g.origin[k] + i * g.u[k] + j * g.v[k];
+  const double size = std::hypot(g.u[0], g.u[1], g.u[2]);
+  const Vec3 off = draw.vector(size * draw.decades(0.01, 2));
+  for (std::size_t k = 0; k < 3; ++k) p[k] += off[k];
+  return p;
+}
+
+}  // namespace fuzz
