@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/bending.h"
-#include "physics/energy.h"
+#include "physics/model/lattice/bending.h"
+#include "physics/model/lattice/energy.h"
 
 namespace bench {
 namespace {
@@ -59,7 +59,7 @@ bool runs_springs(const weft::Simulation& simulation) {
 Ledger::Ledger(const weft::Scene& scene, bool springs, double dt)
     : scene_(scene),
       cloth_(scene_.cloths[0]),
-      families_(weft::physics::families_of(cloth_)),
+      stencils_(weft::physics::stencils_of(cloth_)),
       springs_(springs),
       dt_(dt) {}
 
@@ -120,11 +120,11 @@ double Ledger::felt(std::size_t a, std::size_t b, double k) const {
   return rigid(a, b) * std::min(1.0, 2 * cloth_.positional_k * scene_.solver.iterations);
 }
 
-// Σ over the constraints of visit(family, a, b, stiffness felt).
+// Σ over the constraints of visit(stencil, a, b, stiffness felt).
 template <class Visit>
 double Ledger::sum_of(Visit&& visit) const {
   double sum = 0;
-  for (const weft::physics::Family& f : families_)
+  for (const weft::physics::Stencil& f : stencils_)
     weft::physics::for_each_constraint(cloth_, f, [&](int a, int b, double k) {
       const auto p = std::size_t(a), q = std::size_t(b);
       sum += visit(f, p, q, felt(p, q, k));
@@ -143,7 +143,7 @@ double Ledger::bent(const std::vector<Vec3>& x) const {
 
 double Ledger::elastic(const std::vector<Vec3>& x) const {
   const double limit = 1 + cloth_.strain_limit;
-  return sum_of([&](const weft::physics::Family& f, std::size_t a, std::size_t b, double k) {
+  return sum_of([&](const weft::physics::Stencil& f, std::size_t a, std::size_t b, double k) {
     const double length = distance(x[a], x[b]), c = length - f.rest;
     const double over = length - limit * f.rest;
     const bool limited = cloth_.strain_limit > 0 && over > 0 && f.kind != weft::physics::Kind::bend;
@@ -171,7 +171,7 @@ double Ledger::noise(const std::vector<Vec3>& x) const {
   double size = 1;
   for (const Vec3& p : x) size = std::max(size, norm(p));
   const double off = kRounding * size;
-  return sum_of([&](const weft::physics::Family&, std::size_t, std::size_t, double k) {
+  return sum_of([&](const weft::physics::Stencil&, std::size_t, std::size_t, double k) {
     return 0.5 * k * off * off;
   });
 }

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "physics/family.h"
+#include "physics/model/lattice/stencil.h"
 #include "weft/simulation.h"
 
 namespace bench {
@@ -51,7 +51,7 @@ class Ledger {
 
   weft::Scene scene_;
   const weft::Cloth& cloth_;
-  std::vector<weft::physics::Family> families_;
+  std::vector<weft::physics::Stencil> stencils_;
   bool springs_;
   double dt_;
   double put_in_ = 0, highest_ = 0, released_ = 0;  // J

@@ -6,7 +6,7 @@
 
 #include "energy_ledger.h"
 #include "peer.h"
-#include "physics/random.h"
+#include "physics/model/random.h"
 #include "weft/simulation.h"
 
 namespace bench {

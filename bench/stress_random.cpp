@@ -1,7 +1,7 @@
 // Random stress cases (stress_case.h).
 #include <cmath>
 
-#include "physics/random.h"
+#include "physics/model/random.h"
 #include "stress_case.h"
 
 namespace bench {

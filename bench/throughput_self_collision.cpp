@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "physics/plan.h"
-#include "physics/self_collision/self_collision.h"
+#include "physics/contact/self/self_contact.h"
+#include "physics/frame/cloth_step.h"
 #include "throughput.h"
 
 namespace bench {
@@ -30,7 +30,7 @@ struct Sheet {
     cloths.push_back(std::make_unique<ClothStep>(scene, 0, weft::Method::spring, 1, kernels));
     if (folded) fold(cloths[0]->lattice());
     x.copy_from(cloths[0]->lattice());
-    self = SelfContact::make(scene, cloths, kernels);
+    self = SelfContact::make(scene, parts_of(cloths), kernels);
     self->search(margin(), threads);
   }
 

@@ -2,8 +2,8 @@
 // items are particles or constraints. Built on the library's own headers.
 #include <memory>
 
-#include "physics/plan.h"
-#include "physics/threads.h"
+#include "physics/frame/cloth_step.h"
+#include "physics/step/threads.h"
 #include "throughput.h"
 
 namespace bench {

@@ -59,7 +59,7 @@ double rest_length(const weft::Grid& g, int di, int dj) {
 std::vector<Springs> springs_of(const weft::Cloth& cloth) {
   std::vector<Springs> all;
   const weft::Grid& g = cloth.grid;
-  const auto family = [&](int di, int dj, double k) {
+  const auto stencil = [&](int di, int dj, double k) {
     if (k <= 0 || std::abs(di) >= g.nx || dj >= g.ny) return;
     Springs s{std::max(0, -di),    std::max(0, di),        dj,
               g.nx - std::abs(di), rest_length(g, di, dj), {}};
@@ -69,13 +69,13 @@ std::vector<Springs> springs_of(const weft::Cloth& cloth) {
   };
   if (cloth.level == 0) {
     for (const auto& [di, dj] : {std::pair{1, 0}, {0, 1}})
-      family(di, dj, cloth.stiffness.structural);
-    for (const auto& [di, dj] : {std::pair{1, 1}, {-1, 1}}) family(di, dj, cloth.stiffness.shear);
-    for (const auto& [di, dj] : {std::pair{2, 0}, {0, 2}}) family(di, dj, cloth.stiffness.bend);
+      stencil(di, dj, cloth.stiffness.structural);
+    for (const auto& [di, dj] : {std::pair{1, 1}, {-1, 1}}) stencil(di, dj, cloth.stiffness.shear);
+    for (const auto& [di, dj] : {std::pair{2, 0}, {0, 2}}) stencil(di, dj, cloth.stiffness.bend);
   }
   for (int n = 1; n <= cloth.level; ++n)
     for (const auto& [di, dj] : {std::pair{n, 0}, {0, n}, {n, n}, {-n, n}})
-      family(di, dj, cloth.stiffness.structural);
+      stencil(di, dj, cloth.stiffness.structural);
   return all;
 }
 

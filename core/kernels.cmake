@@ -1,10 +1,10 @@
 # Every kernel source is built once for each instruction set; the step plan picks one at run time
 # (physics/kernels/kernels.h). The scalar build keeps the compiler from vectorising on its own, so
-# that it is an honest reference. A collider's file holds its kernel and the rest of it; shapes.cpp is
-# no kernel.
+# that it is an honest reference. A collider's file holds its kernel and the rest of it; shapes.cpp and
+# simd.cpp hold no kernels.
 file(GLOB kernel_sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/physics/kernels/*.cpp
-  ${CMAKE_CURRENT_SOURCE_DIR}/physics/colliders/*.cpp)
-list(FILTER kernel_sources EXCLUDE REGEX "/shapes.cpp$")
+  ${CMAKE_CURRENT_SOURCE_DIR}/physics/contact/colliders/*.cpp)
+list(FILTER kernel_sources EXCLUDE REGEX "/(shapes|simd).cpp$")
 set(flags_scalar -DWEFT_LANES=1 -fno-tree-vectorize)
 set(flags_sse2 -DWEFT_LANES=4)
 set(flags_avx2 -DWEFT_LANES=8 -mavx2 -mfma)

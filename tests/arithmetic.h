@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "physics/kernels/root.h"
-#include "physics/random.h"
+#include "physics/model/random.h"
 
 namespace weft::WEFT_KERNELS {
 

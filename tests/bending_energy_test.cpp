@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "physics/bending.h"
-#include "physics/energy.h"
-#include "physics/random.h"
+#include "physics/model/lattice/bending.h"
+#include "physics/model/lattice/energy.h"
+#include "physics/model/random.h"
 #include "weft/simulation.h"
 
 namespace weft::physics {
@@ -89,7 +89,7 @@ TEST(Bending, OneSubstepOfTheSpringMethodFeelsTheForce) {
       for (std::size_t n = 0; n < p.size(); ++n)
         p[n] = {flat[3 * n], flat[3 * n + 1], flat[3 * n + 2]};
       std::vector<Vec3> f =
-          spring_forces(scene.cloths[0], families_of(scene.cloths[0]), p, nullptr);
+          spring_forces(scene.cloths[0], stencils_of(scene.cloths[0]), p, nullptr);
       add_bending_forces(
           scene.cloths[0], [&](int n, int k) { return p[n][k]; }, f);
       for (Vec3& a : f)

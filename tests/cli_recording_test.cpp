@@ -1,5 +1,7 @@
 // Recordings: a run told again gives the same bits, and a difference is named by its frame.
+#include <sstream>
 #include <tuple>
+#include <vector>
 
 #include "program.h"
 
@@ -28,7 +30,79 @@ TEST(Recording, ADifferenceIsNamedByItsFrame) {
   folder.write("a.rec", text);
   const Outcome outcome = run_weft(folder, "run --replay a.rec");
   EXPECT_EQ(outcome.exit_code, 4);
-  EXPECT_NE(outcome.err.find("frame 4 "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("frame 4 differs"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("record it anew"), std::string::npos) << outcome.err;
+  // Two hashes, which differ.
+  const std::size_t first = outcome.err.find("its hash is ") + 12;
+  const std::size_t second = outcome.err.find("in the recording ") + 17;
+  EXPECT_NE(outcome.err.substr(first, 16), outcome.err.substr(second, 16)) << outcome.err;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+// What is wrong in a line is told with the line, the place in it, and no word of a parser.
+TEST(Recording, FaultsAreNamedByLineAndPlace) {
+  const Folder folder;
+  small_scene(folder);
+  ASSERT_EQ(run_weft(folder, "run small.json --frames 3 --record a.rec").exit_code, 0);
+  const std::vector<std::string> lines = lines_of(folder.read("a.rec"));
+  ASSERT_EQ(lines.size(), 4U);
+  const std::string deep(100'000, '[');
+  const std::string header = lines[0];
+  const auto with_drag = [&](const std::string& value) {
+    std::string text = header;
+    const std::size_t at = text.find("\"grid\":");
+    return text.insert(at, "\"drag\":" + value + ",");
+  };
+  for (const auto& [number, line, why] :
+       std::vector<std::tuple<std::size_t, std::string, std::string>>{
+           {1, deep, "nested deeper than 32"},
+           {2, deep, "nested deeper than 32"},
+           {1, "[]", "no recording"},
+           {1, "", "column 1: "},
+           {1, R"({"weft_recording": 2})", "no recording"},
+           {1, R"({"weft_recording": "1"})", "/weft_recording: "},
+           {1, R"({"weft_recording": 1, "seed": -1})", "/seed: -1 is out of place"},
+           {1, R"({"weft_recording": 1, "seed": 1})", "\"scene\" is missing"},
+           {1, R"({"weft_recording": 1, "seed": 1, "scene": 5})", "/scene: 5 is out of place"},
+           {1, with_drag("-1"), "/scene/cloths/0/drag: "},
+           {2, R"({"frame": 1, "hash": "xyz"})", "/hash: \"xyz\" is no hash"},
+           {2, R"({"frame": 1, "hash": 7})", "/hash: 7 is no hash"},
+           {2, R"({"frame": "1"})", "/frame: \"1\" is out of place"},
+           {2, R"({"frame": 1e99})", "/frame: "},
+           {2, R"([1, 2])", "[1, 2] is out of place"},
+           {2, R"({"frame": 0, "jump": {}})", "neither a hash nor an input"},
+           {2, R"({"frame": 0, "pin": {"particle": [0, 1]}})", "/pin/particle: [0, 1] is out of"},
+           {2, R"({"frame": 0, "pin": {"particle": [0, 1, -1]}})", "/pin/particle/2: -1"},
+           {2, R"({"frame": 0, "pin": 3})", "/pin: 3 is out of place"},
+           {2, R"({"frame": 0, "carry": {"cloth": 0, "velocity": "up"}})", "/carry/velocity: "},
+           {2, R"({"frame": 0, "cut": {"from": [0,0,0], "to": [0,0,"x"]}})", "/cut/to/2: "},
+           {3, lines[1], "/frame: 1 is out of order"},
+           {3, lines[3], "/frame: 3 is out of order"},
+           {4, lines[3].substr(0, 20), "column "}}) {
+    std::string text;
+    for (std::size_t n = 1; n <= lines.size(); ++n)
+      text += (n == number ? line : lines[n - 1]) + "\n";
+    folder.write("b.rec", text);
+    const Outcome outcome = run_weft(folder, "run --replay b.rec");
+    EXPECT_EQ(outcome.exit_code, 3) << line.substr(0, 99);
+    EXPECT_TRUE(outcome.err.starts_with("weft: error: --replay: b.rec:" + std::to_string(number)))
+        << outcome.err;
+    EXPECT_NE(outcome.err.find(why), std::string::npos) << why << "\n" << outcome.err;
+    EXPECT_EQ(outcome.err.find("json.exception"), std::string::npos) << outcome.err;
+  }
+  // A particle that the cloth does not have is found where it is asked for.
+  folder.write("b.rec", lines[0] + "\n" + R"({"frame": 0, "pin": {"particle": [0, 99, 0]}})" +
+                            "\n" + lines[1] + "\n");
+  const Outcome outcome = run_weft(folder, "run --replay b.rec");
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_NE(outcome.err.find("before frame 1: cloth 0 has no particle"), std::string::npos)
+      << outcome.err;
 }
 
 TEST(Recording, AnotherSceneSeedOrLengthIsRefused) {
@@ -50,6 +124,10 @@ TEST(Recording, WhatIsNoneIsRefused) {
   const std::string scene = small_scene(folder);
   EXPECT_EQ(run_weft(folder, "run --replay nowhere.rec").exit_code, 3);
   EXPECT_EQ(run_weft(folder, "run --replay small.json").exit_code, 3);
+  EXPECT_EQ(run_weft(folder, "run --replay .").exit_code, 3);
+  const Outcome endless = run_weft(folder, "run --replay /dev/zero", "timeout 60");
+  EXPECT_EQ(endless.exit_code, 3);
+  EXPECT_NE(endless.err.find("64 MiB"), std::string::npos) << endless.err;
   EXPECT_EQ(run_weft(folder, "run").exit_code, 2);
   ASSERT_EQ(run_weft(folder, "run small.json --frames 2 --record a.rec").exit_code, 0);
   EXPECT_EQ(run_weft(folder, "run hello --replay a.rec").exit_code, 3);

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "contact_scenes.h"
-#include "physics/colliders/shapes.h"
+#include "physics/contact/colliders/shapes.h"
 
 namespace weft {
 namespace {

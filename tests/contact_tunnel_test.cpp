@@ -1,6 +1,6 @@
 // Nothing slips through: particles through thin colliders, small colliders through the mesh.
 #include "contact_scenes.h"
-#include "physics/colliders/shapes.h"
+#include "physics/contact/colliders/shapes.h"
 
 namespace weft {
 namespace {

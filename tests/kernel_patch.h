@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "physics/kernels/kernels.h"
-#include "physics/lattice.h"
-#include "physics/random.h"
+#include "physics/model/lattice/lattice.h"
+#include "physics/model/random.h"
 
 namespace weft::physics {
 
@@ -38,7 +38,7 @@ struct Patch {
         lambda(std::size_t(kRows) * stride),
         scratch(kGuard + 3 * std::size_t(stride)),
         lanes(2 * std::size_t(stride)),
-        alive(std::size_t(kPlainFamilies * kRows) * stride) {
+        alive(std::size_t(kPlainStencils * kRows) * stride) {
     Random random(5, std::uint64_t(columns));
     for (int j = 0; j < kRows; ++j)
       for (int i = 0; i < stride; ++i) {
@@ -57,8 +57,8 @@ struct Patch {
       for (int i = 0; i < stride; ++i)
         lambda[std::size_t(j) * stride + i] = i < columns ? float(random.symmetric()) : padding;
     // One constraint in four is torn.
-    const int reach[kPlainFamilies] = {1, 0, 1, 1, 2, 0};
-    for (int f = 0; f < kPlainFamilies; ++f)
+    const int reach[kPlainStencils] = {1, 0, 1, 1, 2, 0};
+    for (int f = 0; f < kPlainStencils; ++f)
       for (int j = 0; j < kRows; ++j)
         for (int i = 0; i < columns - reach[f]; ++i)
           alive[std::size_t(f * kRows + j) * stride + i] = random.unit() < 0.25 ? 0 : -1;
@@ -126,7 +126,7 @@ void call_carrying(const KernelTable& k, Kernel kernel, Rows& r, Patch& p) {
 }
 
 inline void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
-  for (int f = 0; f < kPlainFamilies; ++f)
+  for (int f = 0; f < kPlainStencils; ++f)
     r.alive[f] = torn ? p.alive.data() + std::size_t(f * kRows) * p.stride : nullptr;
   r.begin = begin;
   r.end = end;
@@ -138,13 +138,13 @@ inline void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
   r.w = p.weights(0);
 }
 
-// Rows begin … end-1 of the patch with the six families of a plain cloth; given overlong, springs past
+// Rows begin … end-1 of the patch with the six stencils of a plain cloth; given overlong, springs past
 // tear_length are told of.
 inline void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int begin, int end,
                         float tear_length = 0, std::uint8_t* overlong = nullptr, float alike = 0) {
   std::vector<SpringConstants> springs;
   for (int j = 0; j < kRows; ++j) {
-    const std::pair<int, SpringConstants> of_each[kPlainFamilies] = {
+    const std::pair<int, SpringConstants> of_each[kPlainStencils] = {
         {0, {70, 63, 0.4f}}, {1, {71, 60, 0.4f}}, {1, {40, 57, 0.4f}},
         {1, {41, 56, 0.4f}}, {0, {20, 41, 0.4f}}, {2, {20, 39, 0.4f}}};
     for (const auto& [dj, c] : of_each) {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "physics/energy.h"
-#include "physics/random.h"
-#include "physics/stages/stages.h"
-#include "physics/threads.h"
+#include "physics/model/lattice/energy.h"
+#include "physics/model/lattice/stages.h"
+#include "physics/model/random.h"
+#include "physics/step/threads.h"
 
 namespace weft::physics {
 namespace {
@@ -19,12 +19,12 @@ constexpr double kDt = 1e-3;
 
 struct Sheet {
   Scene scene;
-  std::vector<Family> families;
+  std::vector<Stencil> stencils;
   Lattice lattice;
 };
 
-// A crumpled sheet with one family, pinned in a few places.
-Sheet crumpled(int nx, int ny, Family family, double gradient = 0) {
+// A crumpled sheet with one stencil, pinned in a few places.
+Sheet crumpled(int nx, int ny, Stencil stencil, double gradient = 0) {
   Sheet s;
   s.scene.solver.method = Method::compliant;
   Cloth cloth;
@@ -34,8 +34,8 @@ Sheet crumpled(int nx, int ny, Family family, double gradient = 0) {
   cloth.pins = {{0, 0, {}}, {nx - 1, 0, {}}, {nx / 2, ny / 2, {}}};
   s.scene.cloths.push_back(cloth);
   const double hu = 1.0 / (nx - 1), hv = 1.0 / (ny - 1);
-  family.rest = std::hypot(family.di * hu, family.dj * hv);
-  s.families = {family};
+  stencil.rest = std::hypot(stencil.di * hu, stencil.dj * hv);
+  s.stencils = {stencil};
   s.lattice = make_lattice(cloth, 0, 1, true);
   Random random(5, 1);
   for (int k = 0; k < 3; ++k)
@@ -45,14 +45,13 @@ Sheet crumpled(int nx, int ny, Family family, double gradient = 0) {
 }
 
 void sweep(Sheet& s, Simd simd, const LineOptions& options, int threads = 1) {
-  const std::vector<StartInside> no_colliders;
-  const ClothParts parts{s.scene,    s.scene.cloths[0],  s.scene.solver.method, s.lattice,
-                         s.families, kernel_table(simd), no_colliders};
+  const ClothParts parts{s.scene,   s.scene.cloths[0], s.scene.solver.method,
+                         s.lattice, s.stencils,        kernel_table(simd)};
   Threads pool(threads);
   make_line(parts, options)->run_alone(s.lattice.rows, {kDt, kDt, 0}, pool);
 }
 
-// The Newton step of all constraints of the family at once: A μ = C by Gaussian elimination.
+// The Newton step of all constraints of the stencil at once: A μ = C by Gaussian elimination.
 std::vector<Vec3> dense_step(const Sheet& s) {
   const Cloth& cloth = s.scene.cloths[0];
   std::vector<Vec3> x = gather(s.lattice, s.lattice.x);
@@ -62,13 +61,13 @@ std::vector<Vec3> dense_step(const Sheet& s) {
     Vec3 n;
   };
   std::vector<Constraint> all;
-  for_each_constraint(cloth, s.families[0], [&](int a, int b, double k) {
+  for_each_constraint(cloth, s.stencils[0], [&](int a, int b, double k) {
     Constraint c{a, b, 1 / (k * kDt * kDt), 0, {}};
     double squared = 0;
     for (int d = 0; d < 3; ++d) squared += (x[b][d] - x[a][d]) * (x[b][d] - x[a][d]);
     const double length = std::sqrt(squared);
     for (int d = 0; d < 3; ++d) c.n[d] = (x[b][d] - x[a][d]) / length;
-    c.violation = length - s.families[0].rest;
+    c.violation = length - s.stencils[0].rest;
     all.push_back(c);
   });
   const auto w = [&](int p) { return double(s.lattice.w(p / cloth.grid.nx, p % cloth.grid.nx)); };
@@ -126,12 +125,12 @@ TEST(LineSweep, GivesTheSameBitsAtEveryWidthAndThreadCount) {
   for (const Offset o : kOffsets)
     for (const int iterations : {1, 3})
       for (const int n : {17, 70}) {
-        const Family family{o.di, o.dj, Kind::structural, 0, 2000, 0};
-        Sheet scalar = crumpled(n, n + 9, family, 0.3);
+        const Stencil stencil{o.di, o.dj, Kind::structural, 0, 2000, 0};
+        Sheet scalar = crumpled(n, n + 9, stencil, 0.3);
         sweep(scalar, Simd::scalar, {true, iterations, 1});
         for (const Simd simd : {Simd::sse2, Simd::avx2, Simd::avx512}) {
           if (!simd_available(simd)) continue;
-          Sheet wide = crumpled(n, n + 9, family, 0.3);
+          Sheet wide = crumpled(n, n + 9, stencil, 0.3);
           sweep(wide, simd, {true, iterations, 1}, 3);
           for (int j = 0; j < n + 9; ++j)
             for (int k = 0; k < 3; ++k)
@@ -144,7 +143,7 @@ TEST(LineSweep, GivesTheSameBitsAtEveryWidthAndThreadCount) {
 
 TEST(LineSweep, SweepsWithMultipliersConvergeToTheCompliantSolution) {
   // A chain at rest under its weight: with many sweeps one large substep is an implicit Euler step,
-  // whatever the number of families; its elongation settles at m g n(n+1)/2k.
+  // whatever the number of stencils; its elongation settles at m g n(n+1)/2k.
   Scene scene;
   scene.solver.method = Method::compliant;
   scene.solver.sweep = Sweep::line;

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "physics/energy_guard.h"
+#include "physics/frame/energy_guard.h"
 
 namespace weft::physics {
 namespace {

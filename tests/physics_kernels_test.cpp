@@ -30,8 +30,8 @@ AdvanceRow advance_row(Patch& p) {
           p.f.row(0), p.previous.row(0), advance(),  100.0f};
 }
 
-FamilyRow family_row(Patch& p, int di, int dj) {
-  FamilyRow r{};
+StencilRow stencil_row(Patch& p, int di, int dj) {
+  StencilRow r{};
   r.count = p.columns - std::abs(di);
   r.near = std::max(0, -di);
   r.far = std::max(0, di);
@@ -71,7 +71,7 @@ void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, b
   std::vector<JacobiConstants> constraints;
   JacobiRows r{};
   for (int j = 0; j < kRows; ++j)
-    for (int f = 0; f < kPlainFamilies; ++f) {
+    for (int f = 0; f < kPlainStencils; ++f) {
       r.rest[f] = 0.9f + 0.1f * float(f);
       const int dj = f == 5 ? 2 : f == 0 || f == 4 ? 0 : 1;
       const float kappa = 1 / (2 * 0.8f * 3 + compliance);
@@ -128,12 +128,12 @@ void add_springs(std::vector<Case>& cases) {
   for (const auto& [di, dj] : kOffsets) {
     const std::string at = " (" + std::to_string(di) + "," + std::to_string(dj) + ")";
     const auto springs = [di = di, dj = dj](auto kernel) {
-      return [=](const KernelTable& k, Patch& p) { (k.*kernel)(family_row(p, di, dj)); };
+      return [=](const KernelTable& k, Patch& p) { (k.*kernel)(stencil_row(p, di, dj)); };
     };
     const int least = std::abs(di) + 1;
-    cases.push_back({"spring_family" + at, least, springs(&KernelTable::spring_family)});
+    cases.push_back({"spring_stencil" + at, least, springs(&KernelTable::spring_stencil)});
     cases.push_back(
-        {"damped_spring_family" + at, least, springs(&KernelTable::damped_spring_family)});
+        {"damped_spring_stencil" + at, least, springs(&KernelTable::damped_spring_stencil)});
   }
 }
 
@@ -194,7 +194,7 @@ void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Featur
   }
   for (int a = 0; dj == 0 && a < r.count; ++a) p.lanes[std::size_t(a / di % 2 * p.stride + a)] = -1;
   r.lanes = p.lanes.data();
-  if (jacobi) return k.jacobi_family(r, 0, p.f.row(0), p.f.row(dj));
+  if (jacobi) return k.jacobi_stencil(r, 0, p.f.row(0), p.f.row(dj));
   // Along rows all of them: two may be worked through together.
   k.project({&r, 1, 0, dj == 0 ? kRows : 1, 0});
 }

@@ -2,8 +2,8 @@
 // things fall alike, the leapfrog is of second order.
 #include <gtest/gtest.h>
 
-#include "physics/energy.h"
-#include "physics/random.h"
+#include "physics/model/lattice/energy.h"
+#include "physics/model/random.h"
 #include "sheets.h"
 
 namespace weft {
@@ -33,18 +33,18 @@ TEST(Forces, AreTheSlopeOfTheEnergy) {
     cloth.stiffness = {1000, 700, 200};
     cloth.level = level;
     cloth.stiffness_gradient = 0.3;
-    const auto families = physics::families_of(cloth);
+    const auto stencils = physics::stencils_of(cloth);
     std::vector<Vec3> x = random_positions(cloth, 0.05);
-    const auto force = physics::spring_forces(cloth, families, x, nullptr);
+    const auto force = physics::spring_forces(cloth, stencils, x, nullptr);
     // Central differences: error h² E''' ~ 1e-10 · 1e3/0.1², rounding 1e-16 E/h.
     constexpr double h = 1e-5;
     for (std::size_t p = 0; p < x.size(); ++p)
       for (std::size_t c = 0; c < 3; ++c) {
         const double kept = x[p][c];
         x[p][c] = kept + h;
-        const double above = physics::elastic_energy(cloth, families, x);
+        const double above = physics::elastic_energy(cloth, stencils, x);
         x[p][c] = kept - h;
-        const double below = physics::elastic_energy(cloth, families, x);
+        const double below = physics::elastic_energy(cloth, stencils, x);
         x[p][c] = kept;
         EXPECT_NEAR(force[p][c], -(above - below) / (2 * h), 2e-5) << level << ' ' << p;
       }

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "oracle.h"
-#include "physics/random.h"
+#include "physics/model/random.h"
 
 namespace weft {
 namespace {

@@ -72,6 +72,34 @@ TEST(Moment, TheSameWayFollowsTwice) {
   EXPECT_EQ(a.hash(), b.hash());
 }
 
+// What self-collision remembers of the way so far is no part of a moment: it starts anew in a simulation
+// that goes back as in one that has just begun.
+TEST(Moment, TheSameWayFollowsTwiceWithSelfCollision) {
+  for (const char* text :
+       {R"({"weft": 1, "cloths": [{"grid": {"points": [3, 10], "origin": [0.1, 0, 0],
+            "u": [0.08, 0, 0], "v": [0, 0, 0.1]}, "stiffness": {"shear": 0},
+            "self_collision": {"mode": "particles"}}],
+            "colliders": [{"box": {"center": [0.128, 0, 0.09]}}]})",
+        R"({"weft": 1, "time": {"substeps": 4}, "cloths": [{"grid": {"points": [18, 15]},
+            "self_collision": {"mode": "surface"},
+            "pins": [{"at": [0, 0], "keys": [[0, 0, 1, 0], [0.02, 0, 0, 0]]}]},
+            {"grid": {"points": [18, 14]}}]})"}) {
+    const Scene scene = read_scene_text(text).scene;
+    for (int frames = 1; frames < 6; ++frames) {
+      Simulation a(scene), b(scene);
+      run(a, frames);
+      const Moment moment = a.moment();
+      a.restore(moment);
+      b.restore(moment);
+      for (int n = 0; n < 4; ++n) {
+        run(a, 1);
+        run(b, 1);
+        ASSERT_EQ(a.hash(), b.hash()) << text << ": " << frames << " and " << n + 1 << " frames";
+      }
+    }
+  }
+}
+
 // A sheet that is pulled far, where its substeps follow its stretch.
 TEST(Moment, LettingGoOfWhatIsFreeChangesNothing) {
   const Scene scene = read_scene("tug").scene;

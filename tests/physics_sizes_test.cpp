@@ -7,10 +7,10 @@
 #include <limits>
 #include <utility>
 
-#include "physics/family.h"
 #include "physics/kernels/kernels.h"
-#include "physics/lattice.h"
-#include "physics/random.h"
+#include "physics/model/lattice/lattice.h"
+#include "physics/model/lattice/stencil.h"
+#include "physics/model/random.h"
 
 namespace weft::physics {
 namespace {
@@ -42,7 +42,7 @@ TEST_P(Sizes, TallyARow) {
   Rows x(1, 112), v(1, 112);
   AlignedArray<float> w(112);
   Random random(7, 3);
-  TallyRow r{};
+  EnergyRow r{};
   r.x = x.row(0);
   r.v = v.row(0);
   r.w = w.data();
@@ -65,8 +65,8 @@ TEST_P(Sizes, TallyARow) {
       }
     }
     r.columns = columns;
-    const Tally got = kernel_table(GetParam()).tally(r);
-    const Tally scalar = kernel_table(Simd::scalar).tally(r);
+    const EnergySum got = kernel_table(GetParam()).energy_sum(r);
+    const EnergySum scalar = kernel_table(Simd::scalar).energy_sum(r);
     EXPECT_EQ(got.kinetic, scalar.kinetic);
     EXPECT_EQ(got.potential, scalar.potential);
     EXPECT_NEAR(got.kinetic, kinetic, 2e-7 * kinetic);

@@ -11,8 +11,8 @@ namespace {
 
 // Whether row j of the patch has a spring that is not torn and longer than `length`.
 bool has_longer(const Patch& p, int j, double length) {
-  const int offsets[kPlainFamilies][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}, {0, 2}};
-  for (int f = 0; f < kPlainFamilies; ++f) {
+  const int offsets[kPlainStencils][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {2, 0}, {0, 2}};
+  for (int f = 0; f < kPlainStencils; ++f) {
     const auto [di, dj] = offsets[f];
     for (int a = 0; a + std::abs(di) < p.columns && j + dj < kRows; ++a) {
       const int near = a + std::max(0, -di), far = near + di;

@@ -7,11 +7,11 @@
 #include <limits>
 #include <string>
 
-#include "physics/energy.h"
-#include "physics/plan.h"
-#include "physics/random.h"
-#include "physics/stability.h"
-#include "physics/threads.h"
+#include "physics/frame/cloth_step.h"
+#include "physics/model/lattice/energy.h"
+#include "physics/model/lattice/stability.h"
+#include "physics/model/random.h"
+#include "physics/step/threads.h"
 #include "weft/simulation.h"
 
 namespace weft::physics {
@@ -60,7 +60,7 @@ Spectrum dense_spectrum(const Cloth& cloth, const Lattice& l) {
   const auto size = Eigen::Index(3 * x.size());
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size), damping = stiffness;
   const auto root_w = [&](int p) { return std::sqrt(double(l.w(p / l.columns, p % l.columns))); };
-  for (const Family& f : families_of(cloth))
+  for (const Stencil& f : stencils_of(cloth))
     for_each_constraint(cloth, f, [&](int a, int b, double k) {
       Eigen::Vector3d e;
       for (int c = 0; c < 3; ++c)
@@ -112,11 +112,11 @@ TEST(StabilityLimit, EstimateIsCloseAndNeverAbove) {
     const Lattice l = lattice_of(c, cloth);
     const bool damped = c.damping > 0;
     const Spectrum estimate =
-        estimate_spectrum(cloth, families_of(cloth), l, damped, kernel_table(Simd::best));
+        estimate_spectrum(cloth, stencils_of(cloth), l, damped, kernel_table(Simd::best));
     for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
       if (!simd_available(simd)) continue;
       const Spectrum same =
-          estimate_spectrum(cloth, families_of(cloth), l, damped, kernel_table(simd));
+          estimate_spectrum(cloth, stencils_of(cloth), l, damped, kernel_table(simd));
       EXPECT_EQ(same.omega_squared, estimate.omega_squared) << c.name << ", " << simd_name(simd);
       EXPECT_EQ(same.damping, estimate.damping) << c.name << ", " << simd_name(simd);
     }
@@ -141,12 +141,12 @@ double growth(const Case& c, double share) {
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i)
       for (int k = 0; k < 3; k += 2) l.x.at(k, j, i) += float(1e-4 * random.symmetric());
-  const auto energy = [&] { return elastic_energy(step.cloth(), step.families(), gather(l, l.x)); };
+  const auto energy = [&] { return elastic_energy(step.cloth(), step.stencils(), gather(l, l.x)); };
   const double before = energy();
   Threads one(1);
   double most = 0;
   for (int n = 0; n < 40; ++n) {
-    step.passes().run({0, dt, 100, dt}, one);
+    step.schedule().run({0, dt, 100, dt}, one);
     const double now = energy();
     if (!std::isfinite(now)) return std::numeric_limits<double>::infinity();
     most = std::max(most, now);

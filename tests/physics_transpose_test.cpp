@@ -7,7 +7,7 @@
 
 #include "physics/kernels/kernels.h"
 #include "physics/kernels/transpose.h"
-#include "physics/random.h"
+#include "physics/model/random.h"
 
 namespace weft::physics {
 namespace {

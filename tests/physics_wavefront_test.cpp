@@ -9,10 +9,10 @@
 #include <deque>
 #include <thread>
 
-#include "physics/frame_record.h"
-#include "physics/random.h"
-#include "physics/threads.h"
-#include "physics/wavefront.h"
+#include "physics/frame/rollback_buffer.h"
+#include "physics/model/random.h"
+#include "physics/step/threads.h"
+#include "physics/step/wavefront.h"
 
 namespace weft::physics {
 namespace {
@@ -126,7 +126,7 @@ std::vector<std::uint64_t> one_after_the_other(const Layout& layout) {
 
 std::vector<std::uint64_t> by_wavefront(const Layout& layout, int thread_count) {
   Mixed rows(layout.rows);
-  FrameRecord record(rows.lattice, {0, -1, 0}, kernel_table(Simd::scalar));
+  RollbackBuffer record(rows.lattice, {0, -1, 0}, kernel_table(Simd::scalar));
   std::deque<MixingStage> stages;
   std::vector<RowStage*> pointers;
   for (const int reach : layout.reaches)
@@ -146,8 +146,8 @@ std::vector<std::uint64_t> by_wavefront(const Layout& layout, int thread_count) 
       greatest = std::max(greatest, rows.shown(j));
       kinetic += 0.5 * rows.shown(j) * rows.shown(j);
     }
-    EXPECT_EQ(record.tally().greatest, greatest);
-    EXPECT_EQ(record.tally().kinetic, kinetic);
+    EXPECT_EQ(record.energy_sum().greatest, greatest);
+    EXPECT_EQ(record.energy_sum().kinetic, kinetic);
   }
   for (const MixingStage& stage : stages) {
     EXPECT_FALSE(stage.out_of_order());

@@ -48,13 +48,13 @@ constexpr Broken kBroken[] = {
     {"{}",
      R"(: this is neither a Weft scene nor a course scene (an object with "weft": 1 and cloths, or with cloth, sphere and plane))"},
     {R"({"weft": 1})",
-     ": cloths is missing (a list of at least 1)"},
+     ": cloths is missing (a list of 1 to 1000 items)"},
     {R"({"weft": 2, "cloths": [{}]})",
      "/weft: weft is 2 (1)"},
     {R"({"weft": 1, "cloths": []})",
-     "/cloths: cloths has no items (a list of at least 1)"},
+     "/cloths: cloths has no items (a list of 1 to 1000 items)"},
     {R"({"weft": 1, "cloths": {}})",
-     "/cloths: cloths is an object (a list of at least 1)"},
+     "/cloths: cloths is an object (a list of 1 to 1000 items)"},
     {R"({"cloths": [{}]})",
      ": weft is missing (1)"},
     {R"({"weft": 1, "gravty": [0,0,0], "cloths": [{}]})",
@@ -130,13 +130,13 @@ constexpr Broken kBroken[] = {
     {R"({"weft": 1, "cloths": [{"positional_k": 0.7}]})",
      "/cloths/0/positional_k: positional_k is 0.7 (0 to 0.5)"},
     {R"({"weft": 1, "cloths": [{"level": 3}]})",
-     "/cloths/0/level: level is 3 (at most 1 on this grid)"},
+     "/cloths/0/level: level is 3 (0 to 1 on this grid)"},
     {R"({"weft": 1, "cloths": [{"level": null}]})",
      "/cloths/0/level: level is null (an integer, 0 to 8)"},
     {R"({"weft": 1, "cloths": [{"tear_strain": "never"}]})",
      R"(/cloths/0/tear_strain: tear_strain is "never" (a number, 0 to 100))"},
     {R"({"weft": 1, "cloths": [{"self_collision": {"mode": "particles", "thickness": 0.9}, "grid": {"points": [9, 9]}}]})",
-     "/cloths/0/self_collision/thickness: thickness is 0.9 (at most 0.5 m, 4 times the spacing of the grid)"},
+     "/cloths/0/self_collision/thickness: thickness is 0.9 (1e-5 to 0.5 m, 4 times the spacing of the grid)"},
     {R"({"weft": 1, "cloths": [{"self_collision": {"mode": "on"}}]})",
      R"(/cloths/0/self_collision/mode: mode is "on" (off, particles or surface))"},
     {R"({"weft": 1, "cloths": [{"pins": [[0, 2]]}]})",
@@ -158,9 +158,9 @@ constexpr Broken kBroken[] = {
 /cloths/0/pins/1/1: pins[1][1] is 1.5 (an integer, 0 to 4095)
 /cloths/0/pins/2: the pin [7, 7] is outside of the grid ([0, 0] to [1, 1]))"},
     {R"({"weft": 1, "time": {"frame": 1, "substeps": 2}, "cloths": [{"drag": 3}]})",
-     "/cloths/0/drag: drag takes 1.5 of the velocity in one substep (at most 1: less drag or more substeps)"},
+     "/cloths/0/drag: drag takes 1.5 of the velocity in one substep (0 to 1: less drag or more substeps)"},
     {R"({"weft": 1, "cloths": [{"grid": {"points": [4096, 4096]}}, {}]})",
-     "/cloths: the cloths have 16777220 particles (at most 16777216 in all)"},
+     "/cloths: the cloths have 16777220 particles (4 to 16777216 in all)"},
     {R"({"weft": 1, "cloths": [{}], "colliders": [{"friction": 0.1}]})",
      "/colliders/0: colliders[0] has no shape (exactly one of sphere, plane, capsule, box)"},
     {R"({"weft": 1, "cloths": [{}], "colliders": [{"sphere": {}, "box": {}}]})",
@@ -176,13 +176,13 @@ constexpr Broken kBroken[] = {
     {R"({"weft": 1, "cloths": [{}], "colliders": [{"capsule": {"a": [0,1,0]}}]})",
      "/colliders/0/capsule: a and b are the same point (an axis at least 1e-6 m long, or a sphere)"},
     {R"({"weft": 1, "cloths": [{}], "colliders": [{"box": {"rounding": 0.2}}]})",
-     "/colliders/0/box/rounding: rounding is 0.2 (at most 0.1 m, the smallest half side)"},
+     "/colliders/0/box/rounding: rounding is 0.2 (0 to 0.1 m, the smallest half side)"},
     {R"({"weft": 1, "cloths": [{}], "colliders": [{"box": {"half": [0.1, -0.1, 0.1]}}]})",
      "/colliders/0/box/half/1: half[1] is -0.1 (1e-6 to 10000 m)"},
     {R"({"weft": 1, "cloths": [{}], "colliders": [{"sphere": {}, "friction": -0.1}]})",
      "/colliders/0/friction: friction is -0.1 (0 to 10)"},
     {R"({"weft": 1, "cloths": [{}], "colliders": [{"sphere": {}, "friction": {"dynamic": 0.4}}]})",
-     "/colliders/0/friction: dynamic friction 0.4 is above static friction 0 (dynamic at most static)"},
+     "/colliders/0/friction: dynamic friction 0.4 is above static friction 0 (0 to 0, at most static)"},
     {R"({"weft": 1, "cloths": [{}], "colliders": [{"sphere": {}, "friction": {"course": 2}}]})",
      "/colliders/0/friction/course: course is 2 (0 to 1)"},
     {R"({"weft": 1, "cloths": [{}], "colliders": [{"sphere": {}, "friction": {"course": 0.5, "static": 1}}]})",
@@ -215,7 +215,7 @@ constexpr Broken kBroken[] = {
      R"(/sphere/centre: unknown key "centre" (the nearest known key is "origin"))"},
     {R"({"cloth": {}, "weft": 1})",
      R"(/cloth: unknown key "cloth" (the nearest known key is "cloths")
-: cloths is missing (a list of at least 1))"},
+: cloths is missing (a list of 1 to 1000 items))"},
     {R"({"cloth": {"num_width_points": 1}, "ball": {}})",
      R"(/cloth/num_width_points: num_width_points is 1 (2 to 4096)
 /ball: unknown key "ball" (the nearest known key is "name"))"},
@@ -352,7 +352,7 @@ TEST(Validate, NamesWhatIsOutsideOfAnEnum) {
 }
 
 TEST(Validate, NamesAnEmptySceneAndAnEmptyGrid) {
-  EXPECT_EQ(told(weft::validate({})), "/cloths: cloths has no items (a list of at least 1)");
+  EXPECT_EQ(told(weft::validate({})), "/cloths: cloths has no items (a list of 1 to 1000 items)");
   weft::Scene scene;
   scene.cloths.emplace_back().grid.nx = 1;
   scene.cloths[0].pins.push_back({5, -1, {}});

@@ -8,11 +8,11 @@
 #include <memory>
 #include <vector>
 
-#include "physics/lattice.h"
-#include "physics/random.h"
-#include "physics/self_collision/crossings.h"
-#include "physics/self_collision/surface.h"
-#include "physics/threads.h"
+#include "physics/contact/self/crossings.h"
+#include "physics/contact/self/surface_contact.h"
+#include "physics/model/lattice/lattice.h"
+#include "physics/model/random.h"
+#include "physics/step/threads.h"
 #include "weft/scene.h"
 
 namespace weft::physics {

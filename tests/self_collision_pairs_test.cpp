@@ -6,9 +6,9 @@
 
 #include "contact_scenes.h"
 #include "machines.h"
-#include "physics/plan.h"
-#include "physics/self_collision/crossings.h"
-#include "physics/self_collision/self_collision.h"
+#include "physics/contact/self/crossings.h"
+#include "physics/contact/self/self_contact.h"
+#include "physics/frame/cloth_step.h"
 
 namespace weft {
 namespace {
@@ -70,7 +70,8 @@ void expect_all_pairs(const Scene& scene, double size, Simd simd) {
       for (int i = 0; i < l.columns; ++i)
         for (int k = 0; k < 3; ++k) l.x.at(k, j, i) = within(random) * (k == 1 ? 0.3f : 1.0f);
   }
-  const auto self = physics::SelfContact::make(scene, cloths, physics::kernel_table(simd));
+  const auto self =
+      physics::SelfContact::make(scene, physics::parts_of(cloths), physics::kernel_table(simd));
   physics::Threads threads(2);
   self->search(0.01, threads);
   std::set<Pair> pairs;

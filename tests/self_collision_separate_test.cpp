@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "physics/kernels/contact.h"
-#include "physics/random.h"
+#include "physics/model/random.h"
 
 namespace weft::physics {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "physics/kernels/surface.h"
-#include "physics/random.h"
+#include "physics/model/random.h"
 
 namespace weft::physics {
 namespace {

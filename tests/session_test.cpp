@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "folder.h"
-#include "physics/random.h"
+#include "physics/model/random.h"
 #include "weft/read_scene.h"
 
 namespace weft::viewer {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "physics/random.h"
-#include "physics/topology.h"
+#include "physics/model/lattice/tearing.h"
+#include "physics/model/random.h"
 
 namespace weft::physics {
 namespace {
@@ -27,22 +27,22 @@ struct Sheet {
     cloth.grid.nx = cloth.grid.ny = kSide;
     if (!shear) cloth.stiffness.shear = 0;
     lattice = std::make_unique<Lattice>(make_lattice(cloth, 0, 0, false));
-    families = families_of(cloth);
-    topology = std::make_unique<Topology>(*lattice, families, false);
+    stencils = stencils_of(cloth);
+    tearing = std::make_unique<Tearing>(*lattice, stencils, false);
   }
   // Every constraint, and whether it is there.
-  void each(const std::function<void(const Family&, Site, Site, bool)>& visit) const {
-    for (const Family& f : families)
+  void each(const std::function<void(const Stencil&, Site, Site, bool)>& visit) const {
+    for (const Stencil& f : stencils)
       for (int j = 0; j + f.dj < kSide; ++j)
         for (int a = 0; a < f.per_row(kSide); ++a)
           visit(f, {a + f.near(), j}, {a + f.far(), j + f.dj}, f.alive(j, a));
   }
   void tear(const std::function<bool(Site, Site)>& torn) {
-    std::vector<Topology::Torn> list;
-    each([&](const Family& f, Site a, Site b, bool) {
+    std::vector<Tearing::Torn> list;
+    each([&](const Stencil& f, Site a, Site b, bool) {
       if (torn(a, b)) list.push_back({f.di, f.dj, a.second, a.first - f.near()});
     });
-    topology->set_torn(list);
+    tearing->set_torn(list);
   }
   void part(const Side& side) {
     tear([&](Site a, Site b) {
@@ -54,7 +54,7 @@ struct Sheet {
   std::vector<Site> joined_to(Site start, Site without, int reach = 99) const {
     std::vector<Site> found{start};
     for (std::size_t n = 0; n < found.size(); ++n)
-      each([&](const Family& f, Site a, Site b, bool alive) {
+      each([&](const Stencil& f, Site a, Site b, bool alive) {
         if (!alive || f.kind == Kind::bend) return;
         if (b == found[n]) std::swap(a, b);
         if (a != found[n] || b == without) return;
@@ -71,10 +71,10 @@ struct Sheet {
   // By the triangles themselves: the pieces about a particle that share whole triangles with it.
   int pieces_about(Site p) const {
     std::vector<std::array<Site, 2>> beside;  // the other corners of its triangles
-    for (const auto& t : topology->triangles()) {
+    for (const auto& t : tearing->triangles()) {
       const auto corner = [&](int k) {
         const int at = int(t[std::size_t(k % 3)]);
-        return Site{at % topology->stride(), at / topology->stride()};
+        return Site{at % tearing->stride(), at / tearing->stride()};
       };
       for (int k = 0; k < 3; ++k)
         if (corner(k) == p) beside.push_back({corner(k + 1), corner(k + 2)});
@@ -93,8 +93,8 @@ struct Sheet {
 
   Cloth cloth;
   std::unique_ptr<Lattice> lattice;
-  std::vector<Family> families;
-  std::unique_ptr<Topology> topology;
+  std::vector<Stencil> stencils;
+  std::unique_ptr<Tearing> tearing;
 };
 
 // A tear that comes down on the right of (3,3) and goes on on its left.
@@ -141,7 +141,7 @@ TEST(Hinge, NoneIsLeftWhateverTears) {
     const double share = 0.1 + 0.4 * random.unit();
     std::map<std::pair<Site, Site>, bool> torn;
     std::int64_t given = 0;
-    sheet.each([&](const Family& f, Site a, Site b, bool) {
+    sheet.each([&](const Stencil& f, Site a, Site b, bool) {
       const bool gone = f.kind != Kind::bend && random.unit() < share;
       torn[{a, b}] = gone;
       given += gone;
@@ -149,7 +149,7 @@ TEST(Hinge, NoneIsLeftWhateverTears) {
     sheet.tear([&](Site a, Site b) { return torn[{a, b}]; });
     std::int64_t gone = 0;
     sheet.each(
-        [&](const Family& f, Site, Site, bool alive) { gone += f.kind != Kind::bend && !alive; });
+        [&](const Stencil& f, Site, Site, bool alive) { gone += f.kind != Kind::bend && !alive; });
     hinges += gone > given;
     for (int j = 0; j < kSide; ++j)
       for (int i = 0; i < kSide; ++i) EXPECT_LE(sheet.pieces_about({i, j}), 1) << i << ", " << j;
@@ -162,7 +162,7 @@ TEST(Hinge, AWholeSheetHasNone) {
     Sheet sheet(shear);
     sheet.tear([](Site a, Site) { return a == Site{0, 0}; });  // one corner is off
     std::int64_t gone = 0, of_corner = 0;
-    sheet.each([&](const Family& f, Site a, Site, bool alive) {
+    sheet.each([&](const Stencil& f, Site a, Site, bool alive) {
       if (f.kind == Kind::bend) return;
       gone += !alive;
       of_corner += a == Site{0, 0};

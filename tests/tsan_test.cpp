@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-#include "physics/threads.h"
+#include "physics/step/threads.h"
 #include "weft/simulation.h"
 
 namespace weft {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "physics/energy.h"
+#include "physics/model/lattice/energy.h"
 #include "sheets.h"
 #include "truth.h"
 #include "weft/read_scene.h"
@@ -283,7 +283,7 @@ TEST(Finding, LargestForceIsAtThePins) {
     std::vector<Vec3> x;
     for (int j = 0; j < cloth.grid.ny; ++j)
       for (int i = 0; i < nx; ++i) x.push_back(position(simulation, i, j));
-    return physics::spring_forces(cloth, physics::families_of(cloth), x, nullptr);
+    return physics::spring_forces(cloth, physics::stencils_of(cloth), x, nullptr);
   };
   const auto compare = [&](const std::string& what) {
     std::vector<Vec3> f = forces();

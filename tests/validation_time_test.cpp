@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "physics/energy.h"
+#include "physics/model/lattice/energy.h"
 #include "sheets.h"
 #include "truth.h"
 
@@ -121,13 +121,13 @@ struct Conserved {
 };
 
 // What leapfrog keeps exactly of a linear motion: E - dt²/8 Σ m |a|².
-double own_energy(const Simulation& simulation, const std::vector<physics::Family>& families) {
+double own_energy(const Simulation& simulation, const std::vector<physics::Stencil>& stencils) {
   const Cloth& cloth = simulation.scene().cloths[0];
   const std::vector<double> flat = simulation.positions();
   std::vector<Vec3> x(flat.size() / 3);
   for (std::size_t n = 0; n < flat.size(); ++n) x[n / 3][n % 3] = flat[n];
   double sum = 0;
-  for (const Vec3& f : physics::spring_forces(cloth, families, x, nullptr))
+  for (const Vec3& f : physics::spring_forces(cloth, stencils, x, nullptr))
     sum += (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) / cloth.particle_mass;
   return simulation.report().energy.total - simulation.dt() * simulation.dt() / 8 * sum;
 }
@@ -152,9 +152,9 @@ Conserved run_free(int n, double share, double speed) {
   for (std::size_t c = 0; c < x.size(); c += 3)
     flow += cloth.particle_mass * std::hypot(v[c], v[c + 1], v[c + 2]);
   simulation.set_state(x, v);
-  const auto families = physics::families_of(cloth);
+  const auto stencils = physics::stencils_of(cloth);
   const Report start = simulation.report();
-  const double own = own_energy(simulation, families);
+  const double own = own_energy(simulation, stencils);
   const int frames = 100000 / simulation.substeps();
   Conserved c{};
   double halves[2] = {0, 0};
@@ -164,7 +164,7 @@ Conserved run_free(int n, double share, double speed) {
     const double error = now.energy.total / start.energy.total - 1;
     c.energy = std::max(c.energy, std::abs(error));
     halves[2 * frame / frames] += 2 * error / frames;
-    c.own_energy = std::max(c.own_energy, std::abs(own_energy(simulation, families) / own - 1));
+    c.own_energy = std::max(c.own_energy, std::abs(own_energy(simulation, stencils) / own - 1));
     for (std::size_t k = 0; k < 3; ++k) {
       c.momentum = std::max(c.momentum, std::abs(now.momentum[k] - start.momentum[k]) / flow);
       c.angular =

@@ -96,6 +96,9 @@ std::optional<int> parse_arguments(int count, char** words, Arguments& arguments
   std::string size;
   std::vector<std::string> sets;
   add_options(program, arguments, size, sets);
+  program.footer(
+      "\nSIGINT, SIGTERM and SIGHUP close the window after the present frame; recording, film and\n"
+      "export are written, and where the display is lost, too. A second signal ends it at once.");
   try {
     program.parse(count, words);
     if (arguments.headless && arguments.out.empty())

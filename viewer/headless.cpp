@@ -4,8 +4,10 @@
 #include <iostream>
 #include <numbers>
 
+#include "clashes.h"
 #include "edit/document.h"
 #include "failure.h"
+#include "output/interrupt.h"
 #include "picture/surfaceless.h"
 
 namespace weft::viewer {
@@ -32,6 +34,7 @@ void aim(const Arguments& arguments, Camera& camera) {
 
 void render_picture(const Arguments& arguments) {
   const SceneFile file = load_scene(arguments);
+  refuse_clashes(arguments, file.path);
   const SurfacelessContext context;
   Options options;
   options.threads = arguments.threads;
@@ -44,8 +47,9 @@ void render_picture(const Arguments& arguments) {
   snapshot.scene =
       std::make_shared<const Scene>(moved(file.scene, {-origin[0], -origin[1], -origin[2]}));
   const Setting setting = setting_of(snapshot);
-  while (simulation.frame() < arguments.frames && simulation.status().ok)
+  while (simulation.frame() < arguments.frames && simulation.status().ok && interrupted() == 0)
     simulation.advance_frame();
+  if (interrupted() != 0) return;  // a picture of another frame is not what was asked for
   copy_view(simulation.view(), simulation.scene(), snapshot);
   snapshot.frame = simulation.frame();
 

@@ -1,10 +1,13 @@
 // The program weft-viewer: a window, or one picture without any display.
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
 #include "command_line.h"
 #include "failure.h"
 #include "headless.h"
+#include "output/interrupt.h"
+#include "output/standard_streams.h"
 #include "window/app.h"
 
 namespace weft::viewer {
@@ -18,7 +21,7 @@ int run(int count, char** words) {
     render_picture(arguments);
   else
     App(arguments).run();
-  return kDone;
+  return interrupted() == 0 ? kDone : 128 + interrupted();
 }
 
 }  // namespace
@@ -26,6 +29,9 @@ int run(int count, char** words) {
 }  // namespace weft::viewer
 
 int main(int count, char** words) {
+  weft::occupy_standard_streams();
+  weft::catch_interrupts();
+  std::signal(SIGPIPE, SIG_IGN);  // a display or an ffmpeg that is gone is told by write()
   try {
     return weft::viewer::run(count, words);
   } catch (const weft::viewer::Failure& failure) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "physics/random.h"
+#include "physics/model/random.h"
 #include "weft/scene.h"
 
 namespace fuzz {

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "failure.h"
-#include "physics/path.h"
+#include "physics/model/path.h"
 #include "weft/shape.h"
 
 namespace fuzz {

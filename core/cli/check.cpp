@@ -1,11 +1,12 @@
-// `weft check SCENE`: reads and validates only.
-#include <cstdint>
+// `weft check SCENE`: reads and validates only, and says what a run would need.
 #include <iostream>
 #include <memory>
 
 #include "commands.h"
 #include "failure.h"
+#include "needs.h"
 #include "scene_argument.h"
+#include "weft/printable.h"
 
 namespace weft::cli {
 
@@ -13,19 +14,17 @@ namespace {
 
 int check(const SceneArgument& argument) {
   const LoadedScene loaded = load(argument);
-  std::int64_t particles = 0;
-  for (const Cloth& cloth : loaded.scene.cloths) {
-    particles += static_cast<std::int64_t>(cloth.grid.nx) * cloth.grid.ny;
-  }
-  std::cout << loaded.path << ": ok, " << particles << " particles\n";
+  const Estimate needed = estimate(loaded.scene);
+  std::cout << printable(loaded.path) << ": ok, " << needed.particles << " particles\n"
+            << needs_words(needed);
   return kDone;
 }
 
 }  // namespace
 
 void add_check(CLI::App& program, int& exit_code) {
-  CLI::App* command =
-      program.add_subcommand("check", "Read and validate a scene; list every fault");
+  CLI::App* command = program.add_subcommand(
+      "check", "Read and validate a scene; list every fault, or what a run needs");
   const auto argument = std::make_shared<SceneArgument>();
   add_scene_argument(*command, *argument);
   command->callback([argument, &exit_code] { exit_code = check(*argument); });

@@ -1,10 +1,12 @@
-// `weft explain SCENE`: the step plan, with what was left out and why.
+// `weft explain SCENE`: the step plan, with what was left out and why, and what a run needs.
 #include <iostream>
 #include <memory>
 
 #include "commands.h"
 #include "failure.h"
+#include "needs.h"
 #include "scene_argument.h"
+#include "weft/printable.h"
 
 namespace weft::cli {
 
@@ -15,8 +17,8 @@ int explain(const SceneArgument& argument) {
   Options options;
   options.threads = 1;
   const Simulation simulation = simulate(loaded, options);
-  std::cout << (loaded.scene.name.empty() ? loaded.path : loaded.scene.name) << ": "
-            << to_text(simulation.plan());
+  std::cout << printable(loaded.scene.name.empty() ? loaded.path : loaded.scene.name) << ": "
+            << to_text(simulation.plan()) << needs_words(estimate(loaded.scene));
   return kDone;
 }
 

@@ -3,12 +3,14 @@
 
 #include <iostream>
 
+#include "weft/printable.h"
+
 namespace weft::cli {
 
 void print(const std::vector<Fault>& faults) {
   for (const Fault& fault : faults) {
-    std::cerr << "weft: error: " << fault.place << ": " << fault.what;
-    if (!fault.allowed.empty()) std::cerr << " (" << fault.allowed << ")";
+    std::cerr << "weft: error: " << printable(fault.place) << ": " << printable(fault.what);
+    if (!fault.allowed.empty()) std::cerr << " (" << printable(fault.allowed) << ")";
     std::cerr << "\n";
   }
 }

@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "failure.h"
+#include "output/standard_streams.h"
 #include "weft/output.h"
 
 namespace weft::cli {
@@ -22,7 +23,11 @@ First steps:
   weft run my.json --set /solver/iterations=20 --report my_report.json
 
 Exit codes: 0 done, 2 the command line is wrong, 3 the scene is wrong,
-4 the simulation stopped itself, 5 a file could not be written.)";
+4 the simulation stopped itself, 5 a file could not be written, 128 + n signal n ended it.
+
+Files appear whole or not at all, at the end of a run. Ctrl-C, SIGTERM and SIGHUP end a run after
+the present frame, with all files; where the frame takes more than two seconds more, within it,
+with the animation and the recording of the frames before. A second Ctrl-C ends it at once.)";
 
 void add_commands(CLI::App& program, int& exit_code) {
   add_run(program, exit_code);
@@ -106,12 +111,16 @@ int run_program(int argument_count, char** arguments) {
 }  // namespace weft::cli
 
 int main(int argument_count, char** arguments) {
+  weft::occupy_standard_streams();
   try {
     return weft::cli::run_program(argument_count, arguments);
   } catch (const std::bad_alloc&) {
-    std::fputs("weft: error: memory: this scene needs more than there is\n", stderr);
+    std::fputs(
+        "weft: error: memory: the system gives no more (`weft check SCENE` says what a run "
+        "needs)\n",
+        stderr);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "weft: error: internal: %s\n", error.what());
+    weft::cli::print({{"internal", error.what(), ""}});
   }
   return weft::cli::kStopped;
 }

@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "failure.h"
+#include "weft/printable.h"
 
 namespace weft::cli {
 
@@ -59,7 +60,7 @@ std::string summary(const Report& report, const std::vector<std::string>& notes,
   const auto& wall = report.wall_ms;
   const auto& energy = report.energy;
   const auto& penetration = report.penetration;
-  std::string text = "scene     " + report.scene + "\n";
+  std::string text = "scene     " + printable(report.scene) + "\n";
   text += format("cloth     %" PRId64 " particles, %" PRId64 " structural + %" PRId64
                  " shear + %" PRId64 " bend constraints\n",
                  report.particles, constraints.structural, constraints.shear, constraints.bend);

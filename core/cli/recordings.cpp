@@ -26,8 +26,9 @@ void Recordings::before_frame(Simulation& simulation) {
       apply(*input, simulation);
       if (recorder_) recorder_->input(frame, *input);
     }
-  } catch (const std::exception& error) {
-    throw Failure{kStopped, {{"--replay", error.what(), ""}}};
+  } catch (const std::exception& error) {  // an input that this scene has no place for
+    const std::string where = "before frame " + std::to_string(simulation.frame() + 1) + ": ";
+    throw Failure{kStopped, {{"--replay", where + error.what(), "a file that --record wrote"}}};
   }
 }
 
@@ -39,12 +40,6 @@ void Recordings::after_frame(const Simulation& simulation) {
   } catch (const RecordingError& error) {
     throw Failure{kStopped, {{"--replay", error.what(), ""}}};
   }
-}
-
-std::optional<std::string> Recordings::finish() {
-  if (!recorder_) return std::nullopt;
-  recorder_->finish();
-  return recorder_->path();
 }
 
 }  // namespace weft::cli

@@ -23,8 +23,8 @@ class Recordings {
   void before_frame(Simulation& simulation);
   // Writes the frame's hash, and compares it; throws a Failure at the first that differs.
   void after_frame(const Simulation& simulation);
-  // The file written, if any.
-  std::optional<std::string> finish();
+  // What is being written, or null.
+  Recorder* recorder() { return recorder_.get(); }
 
  private:
   std::string path_;

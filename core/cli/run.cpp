@@ -9,10 +9,12 @@
 
 #include "commands.h"
 #include "failure.h"
-#include "interrupt.h"
+#include "files.h"
+#include "output/interrupt.h"
 #include "progress.h"
 #include "recordings.h"
 #include "scene_argument.h"
+#include "takeover.h"
 #include "tolerance.h"
 #include "weft/output.h"
 
@@ -28,8 +30,7 @@ struct RunArguments {
   int threads = 0;
   std::string simd = "best";
   std::optional<std::uint64_t> seed;
-  std::string report, dump, animation;  // paths; "" = not asked for
-  std::string record, replay;           // the same
+  FileNames files;
 };
 
 // A check of an option's text: the whole of it is a number from `least` to `most`.
@@ -79,59 +80,6 @@ Simd parse_simd(const std::string& name) {
                 {{"--simd", "this machine does not run " + name, list(available)}}};
 }
 
-// The files of a run, opened before it starts so that a path that cannot be written costs nothing.
-class Files {
- public:
-  Files(const RunArguments& arguments, const Simulation& simulation, std::int64_t frames) {
-    refuse_same({arguments.report, arguments.dump, arguments.animation, arguments.record,
-                 arguments.replay});
-    if (!arguments.animation.empty()) {
-      animation_ = open_animation(arguments.animation, simulation.view(), frames + 1);
-    }
-    if (!arguments.dump.empty()) dump_.emplace(arguments.dump);
-    if (!arguments.report.empty()) report_.emplace(arguments.report);
-    frame(simulation);  // the start is the animation's first sample
-  }
-
-  void frame(const Simulation& simulation) {
-    if (animation_) animation_->append(simulation.view());
-  }
-
-  // A simulation that stopped itself has no final positions: it leaves no dump.
-  void finish(const Simulation& simulation, const Report& report,
-              const std::optional<std::string>& recording) {
-    if (animation_) {
-      animation_->finish();
-      written_.push_back(animation_->written());
-    }
-    if (dump_ && simulation.status().ok) commit(*dump_, dump_bytes(simulation.positions()));
-    if (report_) commit(*report_, to_json(report));
-    if (recording) written_.push_back(*recording);
-  }
-
-  const std::vector<std::string>& written() const { return written_; }
-
- private:
-  static void refuse_same(std::vector<std::string> paths) {
-    std::erase(paths, "");
-    std::ranges::sort(paths);
-    const auto twice = std::ranges::adjacent_find(paths);
-    if (twice != paths.end()) {
-      throw Failure{kBadCommandLine, {{*twice, "two outputs would go to this file", ""}}};
-    }
-  }
-
-  void commit(OutputFile& file, const std::string& bytes) {
-    file.write(bytes);
-    file.commit();
-    written_.push_back(file.path());
-  }
-
-  std::unique_ptr<Animation> animation_;
-  std::optional<OutputFile> dump_, report_;
-  std::vector<std::string> written_;
-};
-
 std::int64_t frame_count(const RunArguments& arguments, const Time& time,
                          const std::optional<Recording>& replayed) {
   if (arguments.frames) return *arguments.frames;
@@ -164,7 +112,7 @@ LoadedScene scene_to_run(const RunArguments& arguments, const std::optional<Reco
     return load(arguments.scene);
   }
   const auto differs = [&](int code, const std::string& why) {
-    return Failure{code, {{arguments.replay, why, ""}}};
+    return Failure{code, {{arguments.files.replay, why, ""}}};
   };
   if (!arguments.scene.scene.empty())
     if (const std::string place = difference(replayed->scene, load(arguments.scene).scene);
@@ -175,19 +123,69 @@ LoadedScene scene_to_run(const RunArguments& arguments, const std::optional<Reco
     throw differs(kBadCommandLine, "it was recorded with seed " + std::to_string(replayed->seed));
   if (frame_count(arguments, replayed->scene.time, replayed) > replayed->frames())
     throw differs(kBadCommandLine, "it has only " + std::to_string(replayed->frames()) + " frames");
-  return {replayed->scene, arguments.replay};
+  return {replayed->scene, arguments.files.replay};
+}
+
+// Ends a run within a frame; the recording and the animation hold the frames before it.
+[[noreturn]] void end_within_frame(Files& files, std::int64_t done, std::int64_t frames) {
+  int code = 128 + interrupted();
+  try {
+    files.finish_within_frame();
+    std::string text = "weft: interrupted within frame " + std::to_string(done + 1) + " of " +
+                       std::to_string(frames) + "\n";
+    if (!files.written().empty()) text += "weft: written: " + list(files.written()) + "\n";
+    if (!files.missing().empty())
+      text +=
+          "weft: not written, for want of the end of the frame: " + list(files.missing()) + "\n";
+    std::cerr << text;
+  } catch (const WriteError& error) {
+    print({{error.path, error.what(), ""}});
+    code = kNotWritten;
+  } catch (const std::exception& error) {  // there is nobody else on this thread to tell
+    print({{"internal", error.what(), ""}});
+    code = kStopped;
+  }
+  remove_temporaries();
+  std::_Exit(code);
+}
+
+// All frames, or those until a signal; then the files.
+Report advance(Simulation& simulation, std::int64_t frames, Recordings& recordings, Files& files) {
+  std::int64_t done = 0;
+  Takeover takeover([&] { end_within_frame(files, done, frames); });
+  Progress progress(frames, simulation.scene().time.frame);
+  while (done < frames && interrupted() == 0) {
+    {
+      const auto hold = takeover.hold();
+      recordings.before_frame(simulation);
+    }
+    simulation.advance_frame();
+    if (!simulation.status().ok) break;
+    const auto hold = takeover.hold();
+    files.frame(simulation);
+    progress.update(++done);
+  }
+  Report report = simulation.report();
+  if (simulation.status().ok && done < frames) {
+    report.status.ok = false;
+    report.status.text = "interrupted after frame " + std::to_string(simulation.frame());
+  }
+  takeover.stop();
+  files.finish(simulation, report);
+  return report;
 }
 
 int run(const RunArguments& arguments) {
-  Recordings recordings(arguments.record, arguments.replay);
+  Recordings recordings(arguments.files.record, arguments.files.replay);
   const std::optional<Recording>& replayed = recordings.replayed();
   LoadedScene loaded = scene_to_run(arguments, replayed);
   const std::int64_t frames = frame_count(arguments, loaded.scene.time, replayed);
+  refuse_clashes(arguments.files, replayed ? arguments.scene.scene : loaded.path, frames + 1);
   Options options;
   options.threads = arguments.threads;
   options.simd = parse_simd(arguments.simd);
   options.seed = replayed ? replayed->seed : arguments.seed.value_or(options.seed);
-  options.profile = !arguments.report.empty();
+  options.profile = !arguments.files.report.empty();
   if (arguments.tolerance && replayed)
     throw Failure{kBadCommandLine,
                   {{"--tolerance", "a recording carries its own solver", "not with --replay"}}};
@@ -195,32 +193,14 @@ int run(const RunArguments& arguments) {
     choose(loaded, *arguments.tolerance, double(frames) * loaded.scene.time.frame, options);
   Simulation simulation = simulate(loaded, options);
   catch_interrupts();  // before there is a temporary file that a signal could leave behind
-  Files files(arguments, simulation, frames);
-  recordings.start(simulation);
-  Progress progress(frames, loaded.scene.time.frame);
-  std::int64_t done = 0;
-  for (; done < frames && interrupted() == 0; ++done) {
-    recordings.before_frame(simulation);
-    simulation.advance_frame();
-    if (!simulation.status().ok) break;
-    recordings.after_frame(simulation);
-    files.frame(simulation);
-    progress.update(done + 1);
-  }
-
-  Report report = simulation.report();
-  const bool cut_short = simulation.status().ok && done < frames;
-  if (cut_short) {
-    report.status.ok = false;
-    report.status.text = "interrupted after frame " + std::to_string(simulation.frame());
-  }
-  files.finish(simulation, report, recordings.finish());
+  Files files(arguments.files, simulation, frames, recordings);
+  const Report report = advance(simulation, frames, recordings, files);
   std::cout << summary(report, simulation.plan().notes, files.written());
   if (!simulation.status().ok) {
     const std::string why = "the simulation stopped itself: " + simulation.status().text;
     throw Failure{kStopped, {{loaded.path, why, ""}}};
   }
-  if (cut_short) {
+  if (!report.status.ok) {
     std::cerr << "weft: " << report.status.text << " of " << frames << "\n";
     return 128 + interrupted();
   }
@@ -268,24 +248,24 @@ void add_run(CLI::App& program, int& exit_code) {
   command->add_option("--seed", arguments->seed, "Seeds every random choice (default: 1)")
       ->type_name("N")
       ->check(number_in<std::uint64_t>(0, UINT64_MAX, "a whole number from 0"));
-  command->add_option("--report", arguments->report, "Write what was measured, as JSON")
+  command->add_option("--report", arguments->files.report, "Write what was measured, as JSON")
       ->type_name("FILE.json");
   command
-      ->add_option("--dump", arguments->dump,
+      ->add_option("--dump", arguments->files.dump,
                    "Write the final positions as raw little-endian float64 x,y,z")
       ->type_name("FILE.f64");
   command
-      ->add_option("--export", arguments->animation,
+      ->add_option("--export", arguments->files.animation,
                    "Write the animation: FILE.pc2 or FILE.mdd (point caches), FILE.obj "
                    "(FILE_0000.obj, …), FILE.glb or FILE.gltf (morph targets)")
       ->type_name("FILE")
       ->check(CLI::Validator(fault_of_animation, ""));
   command
-      ->add_option("--record", arguments->record,
+      ->add_option("--record", arguments->files.record,
                    "Record the run: the scene, the inputs and the hash of every frame")
       ->type_name("FILE");
   command
-      ->add_option("--replay", arguments->replay,
+      ->add_option("--replay", arguments->files.replay,
                    "Replay a recording (SCENE may be left out); fails at the first frame that "
                    "differs")
       ->type_name("FILE");

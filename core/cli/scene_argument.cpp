@@ -1,9 +1,11 @@
 // Text of the command line -> a scene that can be simulated.
 #include "scene_argument.h"
 
+#include <new>
 #include <utility>
 
 #include "failure.h"
+#include "needs.h"
 #include "weft/read_scene.h"
 
 namespace weft::cli {
@@ -52,7 +54,14 @@ LoadedScene load(const SceneArgument& argument) {
 
 Simulation simulate(const LoadedScene& loaded, const Options& options) {
   try {
+    require_memory(loaded.scene, loaded.path);
     return Simulation(loaded.scene, options);
+  } catch (const std::bad_alloc&) {
+    throw Failure{kStopped,
+                  {{loaded.path,
+                    "the scene needs about " + bytes_words(estimate(loaded.scene).bytes) +
+                        " of memory, and the system gives no more",
+                    ""}}};
   } catch (const SceneError& error) {
     throw Failure{kBadScene, in_file(loaded.path, error.faults)};
   } catch (const std::invalid_argument& error) {

@@ -24,7 +24,8 @@ struct LoadedScene {
 // Reads and validates; throws a Failure that lists every fault.
 LoadedScene load(const SceneArgument& argument);
 
-// Builds the simulation; faults of the scene or of the options become a Failure.
+// Builds the simulation; faults of the scene or of the options, and too little memory, become a
+// Failure.
 Simulation simulate(const LoadedScene& loaded, const Options& options);
 
 }  // namespace weft::cli

@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "failure.h"
+#include "weft/printable.h"
 #include "weft/read_scene.h"
 
 namespace weft::cli {
@@ -17,10 +18,10 @@ int scenes() {
     throw Failure{kBadScene, {{"scenes", "none found", "WEFT_SCENES may name their folder"}}};
   }
   std::size_t width = 0;
-  for (const ShippedScene& scene : shipped) width = std::max(width, scene.name.size());
+  for (const ShippedScene& scene : shipped) width = std::max(width, printable(scene.name).size());
   for (const ShippedScene& scene : shipped) {
-    std::cout << std::left << std::setw(static_cast<int>(width) + 2) << scene.name << scene.about
-              << "\n";
+    std::cout << std::left << std::setw(static_cast<int>(width) + 2) << printable(scene.name)
+              << scene.about << "\n";
   }
   return kDone;
 }

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "needs.h"
+
 namespace weft::cli {
 
 namespace {
@@ -100,6 +102,7 @@ Trial try_way(const Scene& scene, const Way& way, double tolerance, int frames, 
 }  // namespace
 
 Choice choose_solver(const Scene& scene, double tolerance, double seconds, const Options& options) {
+  require_memory(scene, "--tolerance");
   Choice choice;
   const double frame = scene.time.frame;
   const int frames = std::max(1, int(std::lround(std::min(kTrial, seconds) / frame)));

@@ -33,6 +33,18 @@ std::vector<std::string> animation_extensions() {
   return extensions;
 }
 
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+void Animation::finish() {
+  complete();
+  commit();
+}
+
 std::int64_t particle_count(const View& view) {
   std::int64_t count = 0;
   for (const ClothView& cloth : view.cloths)
@@ -42,9 +54,7 @@ std::int64_t particle_count(const View& view) {
 
 std::unique_ptr<Animation> open_animation(const std::string& path, const View& first,
                                           std::int64_t samples) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = extension_of(path);
   for (const Format& format : kFormats) {
     if (extension == format.extension) return format.open(path, first, samples);
   }

@@ -12,6 +12,9 @@
 
 namespace weft {
 
+// The extension of a file name in small letters: ".pc2".
+std::string extension_of(const std::string& path);
+
 // Particles of all cloths.
 std::int64_t particle_count(const View& view);
 

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "output/animation.h"
 #include "output/bytes.h"
+#include "output/gltf_pair.h"
 #include "output/spool.h"
 
 namespace weft {
@@ -33,10 +33,11 @@ struct Bounds {
 class Gltf final : public Animation {
  public:
   Gltf(const std::string& path, const View& first, std::int64_t samples)
-      : file_(path), spool_(path), origin_(first.origin) {
-    const std::filesystem::path target(path);
-    if (target.extension() != ".glb")
-      buffer_.emplace((target.parent_path() / (target.stem().string() + ".bin")).string());
+      : path_(path), spool_(path), origin_(first.origin) {
+    if (extension_of(path) == ".glb")
+      binary_.emplace(path);
+    else
+      pair_.emplace(path);
     refuse_size(std::max<std::int64_t>(samples, 1), particle_count(first));
     for (const ClothView& cloth : first.cloths) {
       shapes_.push_back({cloth.columns, cloth.rows});
@@ -56,13 +57,12 @@ class Gltf final : public Animation {
       if (cloth.columns != shapes_[c].columns || cloth.rows != shapes_[c].rows)
         throw std::invalid_argument("an animation keeps its number of particles");
       if (cloth.topology_version > 0)
-        throw WriteError(file_.path(),
-                         "the cloth tears, which morph targets cannot follow; .obj can");
+        throw WriteError(path_, "the cloth tears, which morph targets cannot follow; .obj can");
       append_positions(view, cloth, base, at);
     }
   }
 
-  void finish() override {
+  void complete() override {
     std::string tail;
     for (const float time : times_) append_little_endian(tail, time);
     // Each sample's weights: all 0 but its own target's; the first sample is the mesh itself.
@@ -71,20 +71,21 @@ class Gltf final : public Animation {
         append_little_endian(tail, s == target ? 1.0F : 0.0F);
     const std::int64_t size =
         std::int64_t(indices_.size()) + spool_.bytes() + std::int64_t(tail.size());
-    const std::string text = document(size);
-    if (buffer_) {
-      file_.write(text + "\n");
-      write_buffer(*buffer_, tail);
-      buffer_->commit();
+    if (pair_) {
+      write_buffer(pair_->buffer(), tail);
+      pair_->complete([&](const std::string& uri) { return document(size, uri) + "\n"; });
     } else {
-      write_glb(text, size, tail);
+      write_glb(document(size, ""), size, tail);
+      binary_->complete();
     }
-    file_.commit();
   }
 
-  std::string written() const override {
-    return buffer_ ? file_.path() + ", " + buffer_->path() : file_.path();
+  void commit() override {
+    if (pair_) pair_->commit();
+    if (binary_) binary_->commit();
   }
+
+  std::string written() const override { return pair_ ? pair_->written() : path_; }
 
  private:
   struct Shape {
@@ -95,9 +96,8 @@ class Gltf final : public Animation {
 
   void refuse_size(std::int64_t samples, std::int64_t particles) const {
     if (samples > kMostSamples || samples * particles * 12 > kMostBytes)
-      throw WriteError(file_.path(), std::to_string(samples) + " samples of " +
-                                         std::to_string(particles) +
-                                         " particles do not fit morph targets; .pc2 and .mdd can");
+      throw WriteError(path_, std::to_string(samples) + " samples of " + std::to_string(particles) +
+                                  " particles do not fit morph targets; .pc2 and .mdd can");
   }
 
   void append_indices(const ClothView& cloth) {
@@ -133,7 +133,8 @@ class Gltf final : public Animation {
     bounds_.push_back(bounds);
   }
 
-  std::string document(std::int64_t size) const {
+  // `uri`: of the buffer, "" where it is in the same file.
+  std::string document(std::int64_t size, const std::string& uri) const {
     Json json;
     json["asset"] = {{"version", "2.0"}, {"generator", "weft"}};
     json["scene"] = 0;
@@ -191,7 +192,7 @@ class Gltf final : public Animation {
     json["accessors"] = accessors;
     json["bufferViews"] = views;
     Json buffer{{"byteLength", size}};
-    if (buffer_) buffer["uri"] = std::filesystem::path(buffer_->path()).filename().string();
+    if (!uri.empty()) buffer["uri"] = uri;
     json["buffers"] = Json::array({buffer});
     return json.dump();
   }
@@ -218,13 +219,14 @@ class Gltf final : public Animation {
     header += text;
     number(size);
     number(0x004E4942);  // "BIN"
-    file_.write(header);
-    write_buffer(file_, tail);
+    binary_->write(header);
+    write_buffer(*binary_, tail);
   }
 
-  OutputFile file_;
-  std::optional<OutputFile> buffer_;
-  Spool spool_;  // positions and displacements
+  std::string path_;
+  std::optional<OutputFile> binary_;  // .glb
+  std::optional<GltfPair> pair_;      // .gltf
+  Spool spool_;                       // positions and displacements
   std::vector<Shape> shapes_;
   std::array<double, 3> origin_;  // the nodes' translation [m]
   std::string indices_, some_;

@@ -29,14 +29,15 @@ class Mdd final : public Animation {
     flush();
   }
 
-  void finish() override {
+  void complete() override {
     std::string header;
     append_big_endian(header, samples_);
     append_big_endian(header, static_cast<std::int32_t>(points_));
     file_.write(header + times_);
     positions_.copy_to(file_);
-    file_.commit();
+    file_.complete();
   }
+  void commit() override { file_.commit(); }
 
   std::string written() const override { return file_.path(); }
 

@@ -1,8 +1,14 @@
 // Wavefront OBJ, one file per sample: run.obj becomes run_0000.obj, run_0001.obj, … Every cloth is
 // an object of quads over its grid or, once it is torn, of the triangles that are left and those along
-// its seams; coordinates are written so that they read back to the same bits.
+// its seams; coordinates are written so that they read back to the same bits. All files take their
+// names at the end, in order.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <array>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <filesystem>
 
 #include "output/animation.h"
@@ -71,14 +77,22 @@ void append_torn(std::string& text, const ClothView& cloth, std::int64_t first) 
   for (const auto& t : cloth.seams) face({points + t[0], points + t[1], points + t[2]});
 }
 
+// run.obj -> run_0012.obj; beyond 9999 the number grows a digit.
+std::string obj_name(const std::filesystem::path& path, std::int64_t sample) {
+  std::string digits = std::to_string(sample);
+  if (digits.size() < 4) digits.insert(0, 4 - digits.size(), '0');
+  return (path.parent_path() / (path.stem().string() + "_" + digits + ".obj")).string();
+}
+
 class ObjSequence final : public Animation {
  public:
   explicit ObjSequence(const std::string& path) : path_(path) {
-    OutputFile probe(name(0));  // found now, not after the first frame; leaves nothing
+    files_.emplace_back(obj_name(path_, 0));  // what cannot be written is found now
   }
 
   void append(const View& view) override {
-    OutputFile file(name(samples_));
+    if (samples_ > 0) files_.emplace_back(obj_name(path_, samples_), files_.front());
+    OutputFile& file = files_.back();
     std::int64_t first = 1;
     int number = 0;
     for (const ClothView& cloth : view.cloths) {
@@ -92,24 +106,37 @@ class ObjSequence final : public Animation {
       first += static_cast<std::int64_t>(cloth.columns) * cloth.rows +
                static_cast<std::int64_t>(cloth.seam_points.size());
     }
-    file.commit();
+    file.complete(false);
     ++samples_;
   }
 
-  void finish() override {}
-
-  std::string written() const override { return name(0) + " … " + name(samples_ - 1); }
-
- private:
-  // run.obj -> run_0012.obj; beyond 9999 the number grows a digit.
-  std::string name(std::int64_t sample) const {
-    std::string digits = std::to_string(sample);
-    if (digits.size() < 4) digits.insert(0, 4 - digits.size(), '0');
-    return (path_.parent_path() / (path_.stem().string() + "_" + digits + ".obj")).string();
+  // All at once: the disk takes milliseconds for each.
+  void complete() override {
+    const int file = ::open(files_.front().temporary().c_str(), O_RDONLY | O_CLOEXEC);
+    const bool stored = file >= 0 && ::syncfs(file) == 0;
+    const int why = errno;
+    if (file >= 0) ::close(file);
+    if (!stored)
+      throw WriteError(files_.front().path(), std::string("writing failed: ") + std::strerror(why));
+  }
+  void commit() override {
+    if (samples_ == 0) return;
+    for (OutputFile& file : files_) file.commit();
   }
 
+  std::string written() const override {
+    std::string text = files_.front().path() + " … " + files_.back().path();
+    const std::string next = obj_name(path_, samples_);
+    std::error_code error;
+    if (std::filesystem::exists(next, error))
+      text += " (" + next + " and what follows is of an earlier, longer run)";
+    return text;
+  }
+
+ private:
   std::filesystem::path path_;
   std::int64_t samples_ = 0;
+  std::vector<OutputFile> files_;
   std::string text_;  // one cloth, kept for its memory
 };
 

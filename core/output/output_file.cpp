@@ -1,79 +1,102 @@
-// OutputFile: a temporary file in the target's directory that takes the target's name on commit.
+// OutputFile: a temporary file in the target's folder that takes the target's name on commit.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
+#include <system_error>
 #include <utility>
 
+#include "output/staging.h"
+#include "output/target.h"
 #include "weft/output.h"
 
 namespace weft {
-
-namespace fs = std::filesystem;
 
 WriteError::WriteError(std::string file, const std::string& why)
     : std::runtime_error(why), path(std::move(file)) {}
 
 struct OutputFile::Stream {
   std::FILE* file = nullptr;
-  std::string target;     // the path with links resolved, so that a link is not replaced by a file
-  std::string temporary;  // "" when written directly
+  Target target;
+  std::shared_ptr<Staging> staging;  // none: written directly
+  std::string temporary;             // in it
 
   ~Stream() {
     if (file != nullptr) std::fclose(file);
-    if (!temporary.empty()) ::unlink(temporary.c_str());
   }
 };
 
 namespace {
 
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
-  throw WriteError(path, what + ": " + std::strerror(errno));
+[[noreturn]] void fail(const std::string& path, const std::string& what, int why = errno) {
+  throw WriteError(path, what + ": " + std::generic_category().message(why));
 }
 
-// A temporary name that no other file of this or another process uses.
-std::string temporary_name(const std::string& target) {
-  static std::atomic<unsigned> count = 0;
-  return target + "." + std::to_string(::getpid()) + "-" + std::to_string(count++) + ".tmp";
+// A new file has the mode that the umask leaves; one that replaces another has that one's, and its
+// owner as far as this process may give it away.
+int open_temporary(const std::string& path, const Target& target) {
+  const int file =
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, target.exists ? 0600 : 0666);
+  if (file < 0 || !target.exists) return file;
+  const auto& old = target.status;
+  if (::fchown(file, old.st_uid, old.st_gid) != 0 && ::fchown(file, uid_t(-1), old.st_gid) != 0)
+    errno = 0;  // its own then
+  if (::fchmod(file, old.st_mode & 07777U) == 0) return file;
+  const int why = errno;
+  ::close(file);
+  errno = why;
+  return -1;
 }
 
 }  // namespace
 
-OutputFile::OutputFile(std::string path)
+OutputFile::OutputFile(std::string path) : OutputFile(std::move(path), nullptr) {}
+OutputFile::OutputFile(std::string path, const OutputFile& beside)
+    : OutputFile(std::move(path), &beside) {}
+
+OutputFile::OutputFile(std::string path, const OutputFile* beside)
     : path_(std::move(path)), stream_(std::make_unique<Stream>()) {
   if (path_.empty()) throw WriteError(path_, "a file name is needed");
-  std::error_code error;
-  const fs::file_status status = fs::status(path_, error);
-  if (fs::is_directory(status)) throw WriteError(path_, "cannot write: it is a directory");
-  const bool exists = fs::exists(status);
-  if (exists && ::access(path_.c_str(), W_OK) != 0) fail(path_, "cannot write");
-  const fs::path resolved = fs::weakly_canonical(path_, error);
-  stream_->target = error ? path_ : resolved.string();
-
-  int flags = O_WRONLY | O_CREAT | O_CLOEXEC;
-  std::string opened = path_;
-  if (!exists || fs::is_regular_file(status)) {
-    stream_->temporary = opened = temporary_name(stream_->target);
-    flags |= O_EXCL;
-    // Only a process of this number, now gone, can have left it.
-    ::unlink(opened.c_str());
-  }
-  const int descriptor = ::open(opened.c_str(), flags, 0666);
-  if (descriptor < 0) {
-    stream_->temporary.clear();
+  Target& target = stream_->target = find_target(path_);
+  if (target.exists && S_ISDIR(target.status.st_mode))
+    throw WriteError(path_, "cannot write: it is a directory");
+  if (target.exists && target.descriptor < 0 && ::access(target.path.c_str(), W_OK) != 0)
     fail(path_, "cannot write");
+  int file = -1;
+  if (target.descriptor >= 0) {
+    file = ::fcntl(target.descriptor, F_DUPFD_CLOEXEC, 0);
+  } else if (!target.replaceable()) {
+    file = ::open(target.path.c_str(), O_WRONLY | O_CLOEXEC);
+  } else {
+    open_staging(beside);
+    file = open_temporary(stream_->temporary, target);
   }
-  stream_->file = ::fdopen(descriptor, "wb");
+  if (file < 0) fail(path_, "cannot write");
+  stream_->file = ::fdopen(file, "wb");
   if (stream_->file == nullptr) fail(path_, "cannot write");
+}
+
+void OutputFile::open_staging(const OutputFile* beside) {
+  const std::string& folder = stream_->target.folder;
+  if (beside != nullptr && beside->stream_->staging && beside->stream_->staging->folder() == folder)
+    stream_->staging = beside->stream_->staging;
+  try {
+    if (!stream_->staging) stream_->staging = std::make_shared<Staging>(folder);
+  } catch (const std::system_error& error) {
+    fail(path_, "cannot write", error.code().value());
+  }
+  stream_->temporary = stream_->staging->next();
 }
 
 OutputFile::~OutputFile() = default;
 OutputFile::OutputFile(OutputFile&& other) noexcept = default;
+
+std::string OutputFile::temporary() const {
+  return stream_->staging ? stream_->temporary : path_;
+}
 
 void OutputFile::write(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), stream_->file) != bytes.size()) {
@@ -89,14 +112,23 @@ void OutputFile::overwrite(std::int64_t offset, std::string_view bytes) {
   if (std::fseek(stream_->file, 0, SEEK_END) != 0) fail(path_, "writing failed");
 }
 
-void OutputFile::commit() {
+void OutputFile::complete(bool store) {
+  if (stream_->file == nullptr) return;
   // Closing flushes the last buffer: only a successful close means that all of it arrived.
-  if (std::fclose(std::exchange(stream_->file, nullptr)) != 0) fail(path_, "writing failed");
-  if (stream_->temporary.empty()) return;
-  if (std::rename(stream_->temporary.c_str(), stream_->target.c_str()) != 0) {
+  const bool stored = std::fflush(stream_->file) == 0 &&
+                      (!store || !stream_->staging || ::fsync(::fileno(stream_->file)) == 0);
+  const int why = errno;
+  const bool closed = std::fclose(std::exchange(stream_->file, nullptr)) == 0;
+  if (!stored) fail(path_, "writing failed", why);
+  if (!closed) fail(path_, "writing failed");
+}
+
+void OutputFile::commit() {
+  complete();
+  if (!stream_->staging) return;
+  if (std::rename(stream_->temporary.c_str(), stream_->target.path.c_str()) != 0)
     fail(path_, "cannot take its name");
-  }
-  stream_->temporary.clear();
+  stream_->staging.reset();
 }
 
 }  // namespace weft

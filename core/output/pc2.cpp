@@ -36,12 +36,13 @@ class Pc2 final : public Animation {
     ++samples_;
   }
 
-  void finish() override {
+  void complete() override {
     std::string bytes;
     append_little_endian(bytes, samples_);
     file_.overwrite(kSamplesOffset, bytes);
-    file_.commit();
+    file_.complete();
   }
+  void commit() override { file_.commit(); }
 
   std::string written() const override { return file_.path(); }
 

@@ -1,12 +1,11 @@
-// Recordings: one JSON object a line (weft/recording.h).
+// Recordings as they are written and replayed (weft/recording.h).
 #include "weft/recording.h"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "output/hex.h"
+#include "output/input_names.h"
 #include "weft/read_scene.h"
 
 namespace weft {
@@ -16,18 +15,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Kind = Input::Kind;
 
-constexpr std::array<const char*, 8> kNames{"grab",  "release", "pin",           "unpin",
-                                            "carry", "cut",     "move_collider", "set_scene"};
-
 Json scene_json(const Scene& scene) {
   return Json::parse(write_scene_text(scene));
-}
-
-Scene scene_of(const Json& json) {
-  SceneFile file = read_scene_text(json.dump());
-  if (!file.faults.empty())
-    throw RecordingError("scene" + file.faults[0].place + ": " + file.faults[0].what);
-  return std::move(file.scene);
 }
 
 Json input_json(const Input& input) {
@@ -51,56 +40,6 @@ Json input_json(const Input& input) {
       break;
   }
   return Json::object();
-}
-
-Input input_of(Kind kind, const Json& json) {
-  Input input;
-  input.kind = kind;
-  if (kind == Kind::grab || kind == Kind::pin || kind == Kind::unpin) {
-    const auto particle = json.at("particle").get<std::array<int, 3>>();
-    input.cloth = particle[0], input.i = particle[1], input.j = particle[2];
-  }
-  if (kind == Kind::grab) {
-    input.a = json.at("target").get<Vec3>();
-    input.amount = json.at("stiffness").get<double>();
-  } else if (kind == Kind::carry) {
-    input.cloth = json.at("cloth").get<int>();
-    input.a = json.at("velocity").get<Vec3>();
-  } else if (kind == Kind::cut) {
-    input.a = json.at("from").get<Vec3>();
-    input.b = json.at("to").get<Vec3>();
-    input.amount = json.at("width").get<double>();
-  } else if (kind == Kind::move_collider) {
-    input.collider = json.at("collider").get<int>();
-    input.a = json.at("target").get<Vec3>();
-  } else if (kind == Kind::set_scene) {
-    input.scene = std::make_shared<const Scene>(scene_of(json));
-  }
-  return input;
-}
-
-Recording::Event event_of(const Json& json) {
-  Recording::Event event;
-  event.frame = json.at("frame").get<std::int64_t>();
-  if (const auto hash = json.find("hash"); hash != json.end()) {
-    const auto& text = hash->get_ref<const std::string&>();
-    const std::optional<std::uint64_t> value = from_hex16(text);
-    if (!value) throw RecordingError("\"" + text + "\" is no hash (16 hexadecimal digits)");
-    event.hash = *value;
-    return event;
-  }
-  for (std::size_t k = 0; k < kNames.size(); ++k)
-    if (const auto input = json.find(kNames[k]); input != json.end())
-      event.input = input_of(static_cast<Kind>(k), *input);
-  if (!event.input) throw RecordingError("an input of no known kind");
-  return event;
-}
-
-void read_header(const Json& json, Recording& recording) {
-  if (!json.contains("weft_recording") || json.at("weft_recording") != 1)
-    throw RecordingError("not a recording of version 1");
-  recording.seed = json.at("seed").get<std::uint64_t>();
-  recording.scene = scene_of(json.at("scene"));
 }
 
 }  // namespace
@@ -143,7 +82,7 @@ Recorder::Recorder(const std::string& path, const Simulation& simulation) : file
 
 void Recorder::input(std::int64_t frame, const Input& input) {
   const Json line{{"frame", frame},
-                  {kNames[static_cast<std::size_t>(input.kind)], input_json(input)}};
+                  {kInputNames[static_cast<std::size_t>(input.kind)], input_json(input)}};
   file_.write(line.dump() + "\n");
 }
 
@@ -153,28 +92,8 @@ void Recorder::frame(const Simulation& simulation) {
 }
 
 void Recorder::finish() {
+  file_.complete();
   file_.commit();
-}
-
-Recording read_recording(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw RecordingError(path + ": cannot be read");
-  Recording recording;
-  std::string line;
-  for (std::int64_t number = 1; std::getline(in, line); ++number) {
-    try {
-      const Json json = Json::parse(line);
-      if (number == 1) {
-        read_header(json, recording);
-        continue;
-      }
-      recording.events.push_back(event_of(json));
-    } catch (const std::exception& error) {
-      throw RecordingError(path + ":" + std::to_string(number) + ": " + error.what());
-    }
-  }
-  if (recording.scene.cloths.empty()) throw RecordingError(path + ": not a recording");
-  return recording;
 }
 
 std::int64_t Recording::frames() const {
@@ -199,9 +118,15 @@ const Input* next_input(const Recording& recording, std::size_t& next,
 void compare_hash(const Recording& recording, std::size_t& next, const Simulation& simulation) {
   if (next >= recording.events.size()) return;
   const Recording::Event& event = recording.events[next++];
-  if (event.frame == simulation.frame() && event.hash == simulation.hash()) return;
-  throw RecordingError("frame " + std::to_string(simulation.frame()) + " has the hash " +
-                       hex16(simulation.hash()) + ", the recording has " + hex16(event.hash));
+  if (event.input || event.frame != simulation.frame())
+    throw RecordingError("frame " + std::to_string(simulation.frame()) + " is done, " +
+                         (event.input ? "an input before frame " : "frame ") +
+                         std::to_string(event.frame + (event.input ? 1 : 0)) +
+                         " is next in the recording");
+  if (event.hash == simulation.hash()) return;
+  throw RecordingError("frame " + std::to_string(simulation.frame()) + " differs: its hash is " +
+                       hex16(simulation.hash()) + ", in the recording " + hex16(event.hash) +
+                       "; another version of Weft made it, or it was edited: record it anew");
 }
 
 }  // namespace weft

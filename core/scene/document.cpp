@@ -14,11 +14,11 @@ class FieldWriter {
  public:
   template <class T>
   void operator()(const char* key, T&& field) {
-    object_[key] = write(field);
+    put(object_, key, write(field));
   }
 
   void operator()(Shape& shape) {
-    std::visit([&](auto& one) { object_[kShapeKeys[shape.index()]] = write(one); }, shape);
+    std::visit([&](auto& one) { put(object_, kShapeKeys[shape.index()], write(one)); }, shape);
   }
 
   // Whole numbers without a fraction; the sign of zero is kept.
@@ -72,6 +72,7 @@ class FieldWriter {
   template <class T>
   static Json write(std::vector<T>& list) {
     Json array = Json::array();
+    array.get_ref<Json::array_t&>().reserve(list.size());
     for (T& item : list) array.push_back(write(item));
     return array;
   }
@@ -108,7 +109,8 @@ Scene scene_of(const Json& document) {
 Json document_of(Scene scene) {
   Json document = Json::object();
   document["weft"] = 1;
-  document.update(FieldWriter::write(scene));
+  Json fields = FieldWriter::write(scene);
+  for (auto it = fields.begin(); it != fields.end(); ++it) put(document, it.key(), std::move(*it));
   return document;
 }
 
@@ -125,7 +127,7 @@ void drop_defaults(const Json& schema, Json& value) {
     const Json* property = descend(*chosen, nullptr, it.key());
     if (property) drop_defaults(*property, *it);
     const Json* standard = property ? member(*property, "default") : nullptr;
-    if (!standard || *standard != *it) kept[it.key()] = std::move(*it);
+    if (!standard || *standard != *it) put(kept, it.key(), std::move(*it));
   }
   value = std::move(kept);
 }

@@ -2,6 +2,7 @@
 // together.
 #include "weft/read_scene.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -22,6 +23,7 @@ Scene read_weft(Json& document, const std::vector<Override>& overrides, Check& r
   for (const Override& change : overrides)
     apply_override(scene_schema_json(), change, document, result);
   check(scene_schema_json(), document, result);
+  drop_unsound(result, document);
   const Scene scene = scene_of(document);
   check_together(scene, result);
   return scene;
@@ -43,6 +45,7 @@ Scene read_course(Json& document, const std::vector<Override>& overrides, Check&
   }
   Check course = std::move(result);
   check(course_schema_json(), document, course);
+  drop_unsound(course, document);
   const Scene scene = scene_of_course(document);
 
   Check together;  // in places of the scene
@@ -76,9 +79,12 @@ std::string nearest_scene(const std::string& name) {
 // The file's bytes, up to one more than any scene may have.
 bool read_bytes(const std::string& path, std::string& bytes) {
   std::ifstream file(path, std::ios::binary);
+  std::error_code unknown;  // of a pipe, say
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  if (!unknown) bytes.reserve(std::size_t(std::min<std::uintmax_t>(size, kMaxTextBytes + 1)));
   char block[1 << 16];
   while (file && bytes.size() <= kMaxTextBytes) {
-    file.read(block, sizeof block);
+    file.read(block, std::streamsize(std::min(sizeof block, kMaxTextBytes + 1 - bytes.size())));
     bytes.append(block, static_cast<std::size_t>(file.gcount()));
   }
   return !file.bad() && (file.eof() || bytes.size() > kMaxTextBytes);
@@ -101,6 +107,7 @@ SceneFile read_scene_text(std::string_view json, const std::vector<Override>& ov
   } else {
     file.scene = read_weft(document, overrides, result);
   }
+  release(document);
   file.faults = std::move(result.faults);
   return file;
 }

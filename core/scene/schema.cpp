@@ -1,8 +1,11 @@
 #include "scene/schema.h"
 
+#include <charconv>
 #include <cmath>
 
 #include "scene/assets.h"
+#include "scene/overrides.h"
+#include "weft/printable.h"
 
 namespace weft::text {
 namespace {
@@ -100,8 +103,11 @@ class Walk {
       fault(is(value), kind_words(schema));
     } else if (most && text.size() > most->get<std::size_t>()) {
       fault(name_of(place_) + " has " + std::to_string(text.size()) + " bytes",
-            "at most " + most->dump());
-    } else if (std::any_of(text.begin(), text.end(), [](char c) { return c >= 0 && c < ' '; })) {
+            "0 to " + most->dump());
+    } else if (!is_utf8(text)) {
+      fault(name_of(place_) + " has bytes that are not UTF-8", "one line of text");
+    } else if (std::any_of(text.begin(), text.end(),
+                           [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; })) {
       fault(name_of(place_) + " has control characters", "one line of text");
     }
   }
@@ -193,6 +199,24 @@ class Walk {
   std::string place_;
 };
 
+// The value at a place; null where there is none, or where the place is no JSON pointer.
+Json* value_at(Json& document, const std::string& place) {
+  std::vector<std::string> tokens;
+  if (!place.empty() && !split_pointer(place, tokens)) return nullptr;
+  Json* here = &document;
+  for (const std::string& token : tokens) {
+    std::size_t k = 0;
+    const auto [stop, error] = std::from_chars(token.data(), token.data() + token.size(), k);
+    if (here->is_object() && here->contains(token))
+      here = &(*here)[token];
+    else if (here->is_array() && error == std::errc() && k < here->size())
+      here = &(*here)[k];
+    else
+      return nullptr;
+  }
+  return here;
+}
+
 // Whether `inner` is `outer` or lies below it.
 bool within(std::string_view inner, std::string_view outer) {
   return inner.starts_with(outer) && (inner.size() == outer.size() || inner[outer.size()] == '/');
@@ -224,6 +248,11 @@ const Json& course_schema_json() {
 
 void check(const Json& schema, const Json& value, Check& result) {
   Walk(result).value(schema, value);
+}
+
+void drop_unsound(const Check& result, Json& document) {
+  for (const std::string& place : result.unsound)
+    if (Json* value = value_at(document, place)) release(*value);
 }
 
 const Json* alternative(const Json& schema, const Json& value) {

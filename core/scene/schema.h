@@ -1,7 +1,8 @@
 // The schemas of docs/ at work: checking a document against one, and looking values up in one.
 // Understood is the part of JSON Schema 2020-12 that they use: type, const, enum, minimum, maximum,
 // items, prefixItems, minItems, maxItems, maxLength, properties, required, additionalProperties
-// false, oneOf, default, description, $ref to $defs, and our x-unit.
+// false, oneOf, default, description, $ref to $defs, and our x-unit. Our x-limits are told only:
+// json_text.h has them.
 #pragma once
 
 #include <string>
@@ -33,6 +34,9 @@ const Json& course_schema_json();
 
 // All that the schema has against the value, in the order of the document.
 void check(const Json& schema, const Json& value, Check& result);
+
+// Makes null what is unsound, so that nobody reads it. The other values stay where they are.
+void drop_unsound(const Check& result, Json& document);
 
 // The schema of one member or element; null when the schema knows none. `value` chooses among
 // alternatives and may be null.

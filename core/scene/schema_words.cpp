@@ -37,7 +37,7 @@ std::string list_words(const Json& schema) {
   if (type && *type == "number") kind = "numbers";
   if (type && *type == "integer") kind = "integers";
   if (least && most && *least == *most) return "a list of " + least->dump() + " " + kind;
-  if (least) return "a list of at least " + least->dump();
+  if (least && most) return "a list of " + least->dump() + " to " + most->dump() + " " + kind;
   return most ? "a list of at most " + most->dump() + " " + kind : "a list of " + kind;
 }
 

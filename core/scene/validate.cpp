@@ -52,7 +52,7 @@ class Together {
     }
     if (particles > kMaxParticles)
       fault("/cloths", "the cloths have " + std::to_string(particles) + " particles",
-            "at most 16777216 in all");
+            "4 to 16777216 in all");
     for (std::size_t c = 0; c < scene_.colliders.size() && !result_.full(); ++c)
       collider(scene_.colliders[c], "/colliders/" + std::to_string(c));
   }
@@ -98,7 +98,7 @@ class Together {
     const double loss = cloth.drag * scene_.time.frame / std::max(scene_.time.substeps, 1);
     if (timed && loss > 1 + 1e-9)
       fault(place + "/drag", "drag takes " + number_words(loss) + " of the velocity in one substep",
-            "at most 1: less drag or more substeps");
+            "0 to 1: less drag or more substeps");
   }
 
   bool grid(const Grid& grid, const std::string& place) {
@@ -147,14 +147,20 @@ class Together {
     const double most = kMaxThickness * std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
     if (self.thickness > most)
       fault(key, "thickness is " + number_words(self.thickness),
-            "at most " + number_words(most) + " m, 4 times the spacing of the grid");
+            number_words(std::min(least_thickness(), most)) + " to " + number_words(most) +
+                " m, 4 times the spacing of the grid");
+  }
+
+  static double least_thickness() {
+    const Json& cloth = scene_schema_json()["properties"]["cloths"]["items"]["properties"];
+    return cloth["self_collision"]["properties"]["thickness"]["minimum"].get<double>();
   }
 
   void level(const Cloth& cloth, const std::string& place) {
     const int most = std::max(cloth.grid.nx, cloth.grid.ny) - 1;
     if (sound({place}) && cloth.level > most)
       fault(place, "level is " + std::to_string(cloth.level),
-            "at most " + std::to_string(most) + " on this grid");
+            "0 to " + std::to_string(most) + " on this grid");
   }
 
   void pins(const Cloth& cloth, const std::string& place) {
@@ -189,7 +195,7 @@ class Together {
       fault(place + "/friction",
             "dynamic friction " + number_words(friction.dynamic) + " is above static friction " +
                 number_words(friction.statik),
-            "dynamic at most static");
+            "0 to " + number_words(friction.statik) + ", at most static");
     if (sound({place + "/keys"})) keys(collider.keys, place + "/keys");
     std::visit([&](const auto& shape) { this->shape(shape, place); }, collider.shape);
     if (collider.cuts && sound({place})) cutter(collider, place);
@@ -197,8 +203,11 @@ class Together {
 
   void cutter(const Collider& collider, const std::string& place) {
     double spacing = std::numeric_limits<double>::infinity();
-    for (const Cloth& c : scene_.cloths)
-      spacing = std::min({spacing, spacing_u(c.grid), spacing_v(c.grid)});
+    for (std::size_t c = 0; c < scene_.cloths.size(); ++c) {
+      if (!sound({"/cloths/" + std::to_string(c) + "/grid"})) return;
+      const Grid& grid = scene_.cloths[c].grid;
+      spacing = std::min({spacing, spacing_u(grid), spacing_v(grid)});
+    }
     const double reach =
         std::visit([](const auto& shape) { return half_of(shape); }, collider.shape) +
         collider.offset;
@@ -233,7 +242,7 @@ class Together {
     const double most = std::min({box.half[0], box.half[1], box.half[2]});
     if (sound({place + "/box/half", place + "/box/rounding"}) && box.rounding > most)
       fault(place + "/box/rounding", "rounding is " + number_words(box.rounding),
-            "at most " + number_words(most) + " m, the smallest half side");
+            "0 to " + number_words(most) + " m, the smallest half side");
   }
 
   const Scene& scene_;
@@ -250,7 +259,9 @@ void check_together(const Scene& scene, Check& result) {
 
 std::vector<Fault> validate(const Scene& scene) {
   text::Check result;
-  text::check(text::scene_schema_json(), text::document_of(scene), result);
+  text::Json document = text::document_of(scene);
+  text::check(text::scene_schema_json(), document, result);
+  text::release(document);
   text::check_together(scene, result);
   return std::move(result.faults);
 }

@@ -6,6 +6,7 @@
 #include "scene/document.h"
 #include "scene/schema.h"
 #include "weft/output.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 
@@ -32,7 +33,7 @@ std::string line_of(const Fault& fault) {
 std::string fault_lines(const std::string& file, const std::vector<Fault>& faults) {
   std::string lines;
   for (const Fault& fault : faults)
-    lines += (lines.empty() ? "" : "\n") + file + ":" + line_of(fault);
+    lines += (lines.empty() ? "" : "\n") + printable(file) + ":" + printable(line_of(fault));
   return lines;
 }
 
@@ -61,8 +62,8 @@ std::string Document::set(const std::vector<Change>& changes, bool joined) {
   Json next = json_;
   try {
     for (const Change& change : changes) next[Json::json_pointer(change.pointer)] = change.value;
-  } catch (const nlohmann::json::exception& error) {
-    return error.what();
+  } catch (const nlohmann::json::exception&) {
+    return "the scene has no such value";
   }
   if (next == json_) return "";
   text::Check check;
@@ -140,7 +141,7 @@ std::string Document::keep() const {
     file.write(write_scene_text(scene_));
     file.commit();
   } catch (const WriteError& failure) {
-    return "Unsaved changes cannot be kept: " + failure.path + ": " + failure.what();
+    return "Unsaved changes cannot be kept: " + printable(failure.path) + ": " + failure.what();
   }
   return "";
 }

@@ -1,17 +1,13 @@
 // Raw pictures into ffmpeg's standard input.
 #include "film/film.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 
 #include "failure.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 
@@ -30,43 +26,53 @@ std::string for_shell(const std::string& text) {
   return quoted + "'";
 }
 
+template <class Do>
+void attempt(Do&& action) {
+  try {
+    action();
+  } catch (const WriteError& error) {
+    throw Failure(kCannotWrite, printable(error.path) + ": " + error.what());
+  }
+}
+
 }  // namespace
 
-std::string free_name(const std::string& base, const std::string& extension) {
+bool same_file(const std::string& a, const std::string& b) {
+  return !a.empty() && !b.empty() && find_clash({{"a", a}, {"b", b}}, {}).has_value();
+}
+
+std::string free_name(const std::string& base, const std::string& extension,
+                      const std::string& besides) {
   std::error_code error;
   std::string path = base + extension;
-  for (int n = 2; std::filesystem::exists(path, error); ++n)
+  for (int n = 2; std::filesystem::exists(path, error) || same_file(path, besides); ++n)
     path = base + "-" + std::to_string(n) + extension;
   return path;
 }
 
-Film::Film(const std::string& base, int width, int height, double start)
+Film::Film(const std::string& base, const std::string& besides, int width, int height, double start)
     : width_(width), height_(height), start_(start), last_(start) {
   if (!has_ffmpeg()) {
     static constexpr std::string_view kFirst = "_00000.png";
-    path_ = free_name(base, std::string(kFirst));
+    path_ = free_name(base, std::string(kFirst), besides);
     base_ = path_.substr(0, path_.size() - kFirst.size());
     return;
   }
-  path_ = free_name(base, ".mp4");
-  temporary_ = path_ + "." + std::to_string(::getpid()) + ".tmp";
-  // ffmpeg would find out too late, and tell the terminal only.
-  std::FILE* const file = std::fopen(temporary_.c_str(), "wb");
-  if (file == nullptr)
-    throw Failure(kCannotWrite, path_ + ": cannot write: " + std::strerror(errno));
-  std::fclose(file);
-  std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that ends early is told by write()
+  path_ = free_name(base, ".mp4", besides);
+  // ffmpeg would find out too late what cannot be written, and tell the terminal only.
+  attempt([&] { file_.emplace(path_); });
+  // Ctrl-C at the terminal is for this program, which then ends the film: ffmpeg does not hear it.
   const std::string command =
-      "ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " + std::to_string(width) + "x" +
-      std::to_string(height) + " -r " + std::to_string(static_cast<int>(kRate)) +
+      "exec $(command -v setsid) ffmpeg -y -loglevel error -f rawvideo -pix_fmt rgb24 -s " +
+      std::to_string(width) + "x" + std::to_string(height) + " -r " +
+      std::to_string(static_cast<int>(kRate)) +
       " -i - -c:v libx264 -preset veryfast -crf 20 -pix_fmt yuv420p -f mp4 " +
-      for_shell(temporary_);
+      for_shell(file_->temporary());
   pipe_.reset(::popen(command.c_str(), "w"));
 }
 
 Film::~Film() {
-  pipe_.reset();
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  pipe_.reset();  // before the file that it writes to goes
 }
 
 int Film::due(double time) {
@@ -81,10 +87,10 @@ int Film::due(double time) {
 
 void Film::add(const Picture& picture, int times) {
   for (int n = 0; n < times; ++n, ++count_) {
-    if (!temporary_.empty()) {
+    if (file_) {
       if (!pipe_ ||
           std::fwrite(picture.rgb.data(), 1, picture.rgb.size(), pipe_.get()) != picture.rgb.size())
-        throw Failure(kCannotWrite, path_ + kFailed);
+        throw Failure(kCannotWrite, printable(path_) + kFailed);
       continue;
     }
     char number[16];
@@ -94,10 +100,9 @@ void Film::add(const Picture& picture, int times) {
 }
 
 void Film::finish() {
-  if (temporary_.empty()) return;
-  const bool good = ::pclose(pipe_.release()) == 0;
-  if (!good || std::rename(temporary_.c_str(), path_.c_str()) != 0)
-    throw Failure(kCannotWrite, path_ + kFailed);
+  if (!file_) return;
+  if (::pclose(pipe_.release()) != 0) throw Failure(kCannotWrite, printable(path_) + kFailed);
+  attempt([&] { file_->commit(); });
 }
 
 }  // namespace weft::viewer

@@ -4,9 +4,11 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "picture/images.h"
+#include "weft/output.h"
 
 namespace weft::viewer {
 
@@ -14,9 +16,9 @@ class Film {
  public:
   static constexpr double kRate = 30;  // pictures per second
 
-  // Width and height are even. `base`: the file without extension. Throws Failure when the film
-  // cannot be written there.
-  Film(const std::string& base, int width, int height, double start);
+  // Width and height are even. `base`: the file without extension; `besides`: a file that it is not,
+  // "" = any. Throws Failure when the film cannot be written there.
+  Film(const std::string& base, const std::string& besides, int width, int height, double start);
   ~Film();  // a film that is not finished leaves no MP4
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;
@@ -39,14 +41,18 @@ class Film {
   struct Close {
     void operator()(std::FILE* pipe) const { ::pclose(pipe); }
   };
-  std::string base_, path_, temporary_;
+  std::string base_, path_;
+  std::optional<OutputFile> file_;  // MP4
   int width_, height_;
   double start_, last_;  // s, of the first picture and of the newest
   long count_ = 0;
   std::unique_ptr<std::FILE, Close> pipe_;
 };
 
-// The first of base.ext, base-2.ext, … that is not there yet.
-std::string free_name(const std::string& base, const std::string& extension);
+// The first of base.ext, base-2.ext, … that is not there yet, and is not `besides` ("" = any).
+std::string free_name(const std::string& base, const std::string& extension,
+                      const std::string& besides);
+// Whether two paths mean one file, be it there or not.
+bool same_file(const std::string& a, const std::string& b);
 
 }  // namespace weft::viewer

@@ -8,6 +8,7 @@
 
 #include "failure.h"
 #include "weft/output.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 
@@ -197,7 +198,7 @@ void write_png(const std::string& path, const Picture& picture) {
     file.write(bytes);
     file.commit();
   } catch (const WriteError& error) {
-    throw Failure(kCannotWrite, error.path + ": " + error.what());
+    throw Failure(kCannotWrite, printable(error.path) + ": " + error.what());
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "picture/cpu_time.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 
@@ -33,7 +34,7 @@ void Player::attempt(Do&& action) {
   try {
     action();
   } catch (const WriteError& error) {
-    tell(error.path + ": " + error.what());
+    tell(printable(error.path) + ": " + error.what());
   } catch (const std::exception& error) {
     tell(error.what());
   }
@@ -169,7 +170,7 @@ void Player::finish_recording() {
     const std::unique_ptr<Recorder> done = std::move(recorder_);
     vitals_.recording = false;
     done->finish();
-    vitals_.recorded = done->path();
+    vitals_.recorded = printable(done->path());
   });
 }
 
@@ -187,7 +188,7 @@ void Player::finish_export() {
     const std::unique_ptr<Animation> done = std::move(export_);
     vitals_.exporting = false;
     done->finish();
-    vitals_.recorded = done->written();
+    vitals_.recorded = printable(done->written());
   });
 }
 

@@ -49,6 +49,7 @@ class Player {
   // Frames due at `now` [s], and one of them.
   int due(double now);
   void advance();
+  const Vitals& vitals() const { return vitals_; }
   bool idle() const { return clock_.paused(); }
 
   // Copies what is to be shown.

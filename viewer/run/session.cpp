@@ -25,12 +25,17 @@ Session::Session(Scene scene, const Options& options, bool paused, bool hashes)
 }
 
 Session::~Session() {
+  end();
+}
+
+std::string Session::end() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
   wake_.notify_one();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
+  return problem_;
 }
 
 void Session::post(Command command) {
@@ -81,8 +86,10 @@ void Session::run() {
     }
     if (news) publish();
   }
+  const std::int64_t problems = player_.vitals().problems;
   player_.finish_recording();
   player_.finish_export();
+  if (player_.vitals().problems > problems) problem_ = player_.vitals().problem;
 }
 
 }  // namespace weft::viewer

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -24,6 +25,10 @@ class Session {
   using Command = std::function<void(Player&)>;
   void post(Command command);
 
+  // Ends after the present frame; what is recorded and exported is written. What went wrong with
+  // that, or "". The destructor does it, too.
+  std::string end();
+
   // Whether there is a newer state; shown() is it from then on.
   bool refresh() { return shown_.take(); }
   const Shown& shown() const { return shown_.front(); }
@@ -39,6 +44,7 @@ class Session {
   std::condition_variable wake_;
   std::vector<Command> commands_;
   bool stopping_ = false;
+  std::string problem_;
   std::thread thread_;
 };
 

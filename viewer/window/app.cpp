@@ -13,8 +13,10 @@
 #include <limits>
 
 #include "failure.h"
+#include "output/interrupt.h"
 #include "panel/theme.h"
 #include "picture/cpu_time.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 
@@ -73,8 +75,22 @@ void App::run() {
     turn_.all_ms = 1e3 * (seconds_now() - start);
     panel_.history.add(workspace_.vitals(), workspace_.snapshot().scene_serial, turn_);
     if (measure_ > 0 && measured(begun)) window_.close();
+    if (interrupted() != 0) window_.close();
   }
-  if (film_) end_film();
+  if (const std::string problem = end(); !problem.empty()) throw Failure(kCannotWrite, problem);
+}
+
+// All files that are not finished are; nobody looks at the window any more: what went wrong, or "".
+std::string App::end() {
+  std::string problem;
+  try {
+    if (film_) film_->finish();
+  } catch (const Failure& failure) {
+    problem = failure.what();
+  }
+  film_.reset();
+  const std::string other = workspace_.end();
+  return problem + (problem.empty() || other.empty() ? "" : "\n") + other;
 }
 
 // The first second, in which shaders are compiled, does not count.
@@ -215,11 +231,11 @@ void App::grant(const Wishes& wishes) {
 }
 
 void App::take_screenshot() {
-  const std::string path = free_name(workspace_.document().name(), ".png");
+  const std::string path = free_name(workspace_.document().name(), ".png", workspace_.record());
   const auto [width, height] = picture_size();
   try {
     write_png(path, view_.picture(workspace_, width, height));
-    workspace_.messages.tell("Picture saved to " + path, workspace_.now());
+    workspace_.messages.tell("Picture saved to " + printable(path), workspace_.now());
   } catch (const Failure& failure) {
     workspace_.messages.warn("No picture: " + std::string(failure.what()), workspace_.now());
   }
@@ -232,11 +248,11 @@ void App::start_or_end_film() {
   }
   const auto [width, height] = picture_size();
   try {
-    film_.emplace(workspace_.document().name(), width & ~1, height & ~1,
+    film_.emplace(workspace_.document().name(), workspace_.record(), width & ~1, height & ~1,
                   workspace_.snapshot().time);
     waits_at_ = film_->next();
     workspace_.wait_at(waits_at_);
-    workspace_.messages.tell("The film goes to " + film_->path() + " until you end it",
+    workspace_.messages.tell("The film goes to " + printable(film_->path()) + " until you end it",
                              workspace_.now());
   } catch (const Failure& failure) {
     workspace_.messages.warn("No film: " + std::string(failure.what()), workspace_.now());
@@ -246,7 +262,7 @@ void App::start_or_end_film() {
 void App::end_film() {
   try {
     film_->finish();
-    workspace_.messages.tell("Film saved to " + film_->path(), workspace_.now());
+    workspace_.messages.tell("Film saved to " + printable(film_->path()), workspace_.now());
   } catch (const Failure& failure) {
     workspace_.messages.warn("No film: " + std::string(failure.what()), workspace_.now());
   }

@@ -8,6 +8,7 @@
 #include "film/film.h"
 #include "hands/hands.h"
 #include "panel/panel.h"
+#include "window/end_at_exit.h"
 #include "window/figures.h"
 #include "window/keys.h"
 #include "window/log.h"
@@ -41,6 +42,7 @@ class App {
   void start_or_end_film();
   void end_film();
   void film();
+  std::string end();
   std::pair<int, int> picture_size() const;  // pixels
 
   Window window_;
@@ -57,6 +59,7 @@ class App {
   std::vector<Turn> turns_;
   Turn turn_;             // the present one
   double last_turn_ = 0;  // s
+  EndAtExit end_at_exit_{[this] { return end(); }};
 };
 
 }  // namespace weft::viewer

@@ -61,7 +61,7 @@ void Log::write(const Workspace& workspace, const View& view, const Hands& hands
                         {"faults", faults},
                         {"news", news},
                         {"controls", places}};
-  const std::string text = line.dump();
+  const std::string text = line.dump(-1, ' ', false, text::Json::error_handler_t::replace);
   if (text == last_) return;
   last_ = text;
   file_ << text << std::endl;

@@ -3,9 +3,11 @@
 
 #include <thread>
 
+#include "clashes.h"
 #include "failure.h"
 #include "film/film.h"
 #include "headless.h"
+#include "weft/printable.h"
 
 namespace weft::viewer {
 
@@ -23,6 +25,7 @@ Workspace::Workspace(const Arguments& arguments)
     : look(find_look(arguments.look)),
       settings(arguments.settings),
       pictures(arguments.pictures),
+      record_(arguments.record),
       threads_(threads_of(arguments)) {
   const std::string name = scene_name(arguments);
   const std::vector<Fault> faults = document_.open(name, arguments.overrides);
@@ -30,6 +33,7 @@ Workspace::Workspace(const Arguments& arguments)
   Options options;
   options.threads = threads_;
   options.seed = arguments.seed;
+  refuse_clashes(arguments, document_.path());
   session_.emplace(document_.scene(), options, arguments.paused, !arguments.log.empty());
   simulated_ = kept_ = document_.revision();
   tell_kept();
@@ -38,6 +42,10 @@ Workspace::Workspace(const Arguments& arguments)
   camera.zoom(static_cast<float>(std::log(arguments.zoom) / -std::log(0.88)));
   if (!arguments.record.empty())
     session_->post([path = arguments.record](Player& player) { player.record(path); });
+}
+
+std::string Workspace::end() {
+  return session_->end();
 }
 
 void Workspace::show_start() {
@@ -79,11 +87,15 @@ void Workspace::reset() {
 }
 
 void Workspace::save(const std::string& path) {
+  if (vitals().recording && same_file(path, record_)) {
+    messages.warn("Not saved: the recording goes to " + printable(path), now_);
+    return;
+  }
   try {
     document_.save(path);
-    messages.tell("Saved " + path, now_);
+    messages.tell("Saved " + printable(path), now_);
   } catch (const WriteError& error) {
-    messages.warn("Not saved: " + error.path + ": " + error.what(), now_);
+    messages.warn("Not saved: " + printable(error.path) + ": " + error.what(), now_);
   }
 }
 
@@ -145,8 +157,8 @@ void Workspace::start_or_end_export() {
     session_->post([](Player& player) { player.finish_export(); });
     return;
   }
-  const std::string path = free_name(document_.name(), ".pc2");
-  messages.tell("The animation goes to " + path + " until you end it", now_);
+  const std::string path = free_name(document_.name(), ".pc2", record_);
+  messages.tell("The animation goes to " + printable(path) + " until you end it", now_);
   session_->post([path](Player& player) { player.export_to(path); });
 }
 

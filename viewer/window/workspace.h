@@ -17,6 +17,11 @@ class Workspace {
   // Opens the scene of the arguments. Throws Failure.
   explicit Workspace(const Arguments& arguments);
 
+  // Ends the simulation, with all files of it: what went wrong, or "".
+  std::string end();
+  // The file of the recording, "" where none was asked for.
+  const std::string& record() const { return record_; }
+
   // Another scene; a broken one is told, and the present one stays.
   void open(const std::string& path_or_name);
   void open_neighbour(int step);  // in the list of shipped scenes
@@ -73,6 +78,7 @@ class Workspace {
 
   Document document_;
   std::vector<ShippedScene> scenes_ = shipped_scenes();
+  std::string record_;
   std::optional<Session> session_;
   Setting setting_;
   double now_ = 0, next_watch_ = 0, next_keep_ = 0;

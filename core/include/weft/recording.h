@@ -39,8 +39,10 @@ class Recorder {
   void input(std::int64_t frame, const Input& input);
   // Right after advance_frame().
   void frame(const Simulation& simulation);
-  // Gives the file its name.
+  // Gives the file its name: complete(), then commit(), which are those of OutputFile.
   void finish();
+  void complete() { file_.complete(); }
+  void commit() { file_.commit(); }
   const std::string& path() const { return file_.path(); }
 
  private:

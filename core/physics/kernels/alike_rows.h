@@ -313,7 +313,7 @@ WEFT_INLINE void along_row_alike(const ProjectRows& p, int j, int colour, const 
   }
 }
 
-// Row j of a family whose rows have one inverse mass and no torn constraints.
+// Row j of a stencil whose rows have one inverse mass and no torn constraints.
 template <Rule R>
 WEFT_INLINE void row_alike(const ProjectRows& p, int j, const Alike& c) {
   if (p.dj > 0) {
@@ -326,7 +326,7 @@ WEFT_INLINE void row_alike(const ProjectRows& p, int j, const Alike& c) {
   for (int colour = 0; colour < 2; ++colour) along_row_alike<R>(p, j, colour, c);
 }
 
-// Rows j and j+1 at once of a family along rows, where that is possible.
+// Rows j and j+1 at once of a stencil along rows, where that is possible.
 template <Rule R>
 WEFT_INLINE bool two_rows_alike(const ProjectRows& p, int j, const Alike& c) {
   if (kLanes == 1 || p.dj > 0 || p.far > 2) return false;

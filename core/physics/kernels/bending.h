@@ -7,7 +7,7 @@
 
 namespace weft::physics {
 
-// Lines side by side, and floats of scratch for each particle of a strip.
+// Lines side by side, and floats of scratch for each particle of a batch.
 inline constexpr int kBendLines = 16;
 inline constexpr int kBendScratch = 5 * kBendLines;
 

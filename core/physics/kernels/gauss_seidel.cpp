@@ -1,4 +1,4 @@
-// Gauss–Seidel: constraints by projection, one colour of one family at a time, all of whose
+// Gauss–Seidel: constraints by projection, one colour of one stencil at a time, all of whose
 // constraints are disjoint. Position based dynamics and its compliant form (XPBD):
 //
 //   C = |e| - l,  Δλ = (C + α̃ λ)/(w_a + w_b + α̃),  α̃ = 1/(k dt²),  λ <- λ - Δλ
@@ -107,8 +107,8 @@ WEFT_INLINE bool any_too_long(const ProjectRows& p, int j) {
 }
 
 template <Rule R, bool kTorn>
-void sweep_family(const ProjectRows& family, const physics::Projection& given) {
-  const ProjectRows p = family;  // a copy that no store can alias
+void sweep_stencil(const ProjectRows& stencil, const physics::Projection& given) {
+  const ProjectRows p = stencil;  // a copy that no store can alias
   const int end = given.end, colour = given.colour;
   Alike constants{};
   for (int j = given.begin; j < end; ++j) {
@@ -138,12 +138,12 @@ void sweep_family(const ProjectRows& family, const physics::Projection& given) {
 
 template <Rule R, bool kTorn>
 void sweep(const physics::Projection& p) {
-  for (int f = 0; f < p.count; ++f) sweep_family<R, kTorn>(p.families[f], p);
+  for (int f = 0; f < p.count; ++f) sweep_stencil<R, kTorn>(p.stencils[f], p);
 }
 
 template <bool kTorn>
 void sweep_by_rule(const physics::Projection& p) {
-  const ProjectRows& f = p.families[0];
+  const ProjectRows& f = p.stencils[0];
   if (f.limit) return sweep<Rule::limit, kTorn>(p);
   if (f.lambda) return sweep<Rule::multipliers, kTorn>(p);
   if (f.compliance) return sweep<Rule::compliant, kTorn>(p);
@@ -153,7 +153,7 @@ void sweep_by_rule(const physics::Projection& p) {
 }  // namespace
 
 void project(const physics::Projection& p) {
-  if (p.families[0].alive) return sweep_by_rule<true>(p);
+  if (p.stencils[0].alive) return sweep_by_rule<true>(p);
   sweep_by_rule<false>(p);
 }
 

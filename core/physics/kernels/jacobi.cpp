@@ -2,7 +2,7 @@
 //
 //   x_i <- x_i + w_i Σ ± Δλ e/|e|,  Δλ = (|e| - l + α̃ λ)/((w_a + w_b)/ω + α̃),  λ <- λ - Δλ
 //
-// with ω the relaxation (stages/sweeps.cpp), e = x_b - x_a, α̃ = 1/(k dt²).
+// with ω the relaxation (model/lattice/sweeps.cpp), e = x_b - x_a, α̃ = 1/(k dt²).
 #include "physics/kernels/plain_rows.h"
 #include "physics/kernels/projection.h"
 
@@ -17,7 +17,7 @@ struct JacobiLaw {
   using Block = WEFT_KERNELS::Block<JacobiLaw>;
   static constexpr bool kRates = false, kTorn = kMayTear, kWatched = false;
   // Between particles of one inverse mass w: Δλ/|e| = κ - κ l/|e|, κ = 1/(2w/ω + α̃).
-  template <PlainFamily F>
+  template <PlainStencil F>
   WEFT_INLINE static Wide scale(const Rows& r, const Block& b, Wide reciprocal, Wide) {
     const Constants& c = b.constants[F];
     if constexpr (kAlike) return fnma(wide(c.kl), reciprocal, wide(c.k));
@@ -79,7 +79,7 @@ WEFT_INLINE void sum_along(const ProjectRows& p, int j, Row3 sum, DelayType dela
 }
 
 template <bool Multipliers>
-void sum_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
+void sum_stencil(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
   if (p.dj == 0) {
     if (p.far == 1) return sum_along<Multipliers>(p, j, sum, Delay3<1>{});
     if (p.far == 2) return sum_along<Multipliers>(p, j, sum, Delay3<2>{});
@@ -102,9 +102,9 @@ void jacobi_rows(const physics::JacobiRows& r) {
     r.alike > 0 ? jacobi_rows_of<false, true>(r) : jacobi_rows_of<false, false>(r);
 }
 
-void jacobi_family(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
-  if (p.lambda) return sum_family<true>(p, j, sum, sum_far);
-  sum_family<false>(p, j, sum, sum_far);
+void jacobi_stencil(const ProjectRows& p, int j, Row3 sum, Row3 sum_far) {
+  if (p.lambda) return sum_stencil<true>(p, j, sum, sum_far);
+  sum_stencil<false>(p, j, sum, sum_far);
 }
 
 }  // namespace weft::WEFT_KERNELS

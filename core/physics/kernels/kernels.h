@@ -32,7 +32,7 @@ struct ConstRow3 {
   ConstRow3 from(int i) const { return {x + i, y + i, z + i}; }  // particle i on
 };
 
-// Constants of one spring family in one row: force on the near end = e (k - kl/|e|), e = far - near.
+// Constants of one spring stencil in one row: force on the near end = e (k - kl/|e|), e = far - near.
 struct SpringConstants {
   float k = 0;        // stiffness [N/m]
   float kl = 0;       // stiffness times rest length [N]
@@ -47,19 +47,19 @@ struct Advance {
   float gx, gy, gz;  // velocity gained from gravity [m/s]
 };
 
-// The six families of a plain cloth at once for rows begin … end-1 (kernels/plain_rows.h). Row j is
+// The six stencils of a plain cloth at once for rows begin … end-1 (kernels/plain_rows.h). Row j is
 // finished, and what its constraints do to rows j+1 and j+2 is carried to those; calls for successive
 // ranges of rows carry on from each other. The component arrays of x and v lie equally far apart, and
 // those of the carries.
-inline constexpr int kPlainFamilies = 6;
+inline constexpr int kPlainStencils = 6;
 struct PlainRows {
   int begin, end, rows;
   int columns, stride;
   Row3 x, v;       // row 0
   const float* w;  // inverse mass of row 0 [1/kg]
-  // Of row 0 of each family: -1 in the lanes of constraints, 0 in those of torn ones. Null: cannot
+  // Of row 0 of each stencil: -1 in the lanes of constraints, 0 in those of torn ones. Null: cannot
   // tear.
-  const std::int32_t* alive[kPlainFamilies];
+  const std::int32_t* alive[kPlainStencils];
   // What earlier rows do to later ones, 6 floats for every lane of a row, zero before row 0. How they lie
   // is the kernel's own affair.
   float* carry;
@@ -77,7 +77,7 @@ struct SpringRows : PlainRows {
   Advance advance;
 };
 
-// One family's constraints of one row in a Jacobi sweep.
+// One stencil's constraints of one row in a Jacobi sweep.
 struct JacobiConstants {
   float compliance = 0;  // 1/(k dt²) [1/kg], infinite where there is no constraint
   float k = 0, kl = 0;   // κ [kg] and κ times rest length [kg·m] between particles of one mass
@@ -87,14 +87,14 @@ struct JacobiConstants {
 struct JacobiRows : PlainRows {
   float alike;  // inverse mass of every particle of rows begin … end+1, 0 where they differ [1/kg]
   const JacobiConstants* constants;  // six for each row, as the springs
-  float rest[kPlainFamilies];        // m
+  float rest[kPlainStencils];        // m
   float weight;                      // of w_a + w_b: 1/relaxation
   float inverse_dt;                  // > 0: the velocity gains the correction times it [1/s]
 };
 
-// One family between row j and row j+dj: constraint a joins lane a+near of row j and lane a+far of
+// One stencil between row j and row j+dj: constraint a joins lane a+near of row j and lane a+far of
 // the other row, 0 <= a < count. For dj = 0 both rows are the same and near = 0.
-struct FamilyRow {
+struct StencilRow {
   int count;
   int near, far;
   bool same_row;
@@ -110,7 +110,7 @@ struct FamilyRow {
       alive;  // -1 in the lanes of constraints, 0 in those of torn ones; null: cannot tear
 };
 
-// One family of projected constraints. Which of the optional parts are given picks the rule: a strain
+// One stencil of projected constraints. Which of the optional parts are given picks the rule: a strain
 // limit, compliance with multipliers, compliance alone, or rigid constraints. The component arrays of x,
 // v and u lie equally far apart.
 struct ProjectRows {
@@ -132,10 +132,10 @@ struct ProjectRows {
   float inverse_dt;           // strain limit: the change of position goes into the velocity too
 };
 
-// A Gauss-Seidel sweep over rows begin … end-1, family by family, of one rule and dj: along the rows both
+// A Gauss-Seidel sweep over rows begin … end-1, stencil by stencil, of one rule and dj: along the rows both
 // colours, between rows those with j/dj % 2 == colour.
 struct Projection {
-  const ProjectRows* families;
+  const ProjectRows* stencils;
   int count;
   int begin, end;
   int colour;
@@ -155,18 +155,18 @@ struct AdvanceRow {
 
 // One row, and what a frame is judged by: the energies of its free particles, ½ Σ m v² and -Σ m g·x,
 // and the greatest size of a coordinate; infinite if one is not a number.
-struct TallyRow {
+struct EnergyRow {
   int columns;
   ConstRow3 x, v;
   const float* w;  // inverse mass [1/kg]
   double g[3];     // m/s²
 };
-struct Tally {
+struct EnergySum {
   double kinetic = 0, potential = 0;  // J
   float greatest = 0;                 // m
 };
 
-// The constraints of one family and row: ends next to each other, and which are left.
+// The constraints of one stencil and row: ends next to each other, and which are left.
 struct FarRows {
   int count;
   ConstRow3 near, far;
@@ -281,7 +281,7 @@ struct PushRow {
   bool velocities;  // gain at once, else they get it from positions
 };
 
-struct LineStrip;  // kernels/line.h
+struct LineBatch;  // kernels/line.h
 struct BlockRows;  // kernels/contact.h
 struct NearBoxes;
 struct CellKeys;
@@ -298,7 +298,7 @@ struct SumAsked;
 struct MoveBodies;
 struct SquaresWithin;
 struct SurfacePairs;  // kernels/surface.h
-// Constraints of one family in one row: number a joins near + a and far + a. What is longer ends.
+// Constraints of one stencil in one row: number a joins near + a and far + a. What is longer ends.
 struct TearRow {
   int count;
   ConstRow3 near, far;
@@ -315,27 +315,27 @@ struct TwistRow;
 
 struct KernelTable {
   void (*spring_rows)(const SpringRows&);
-  void (*spring_family)(const FamilyRow&);         // f += spring force
-  void (*damped_spring_family)(const FamilyRow&);  // f += spring force and damping along it
-  int (*tear)(const TearRow&);                     // returns how many have ended
-  void (*integrate)(const AdvanceRow&);            // leapfrog step from f, then f <- 0
-  void (*predict)(const AdvanceRow&);              // predicted <- x; v and x advanced by gravity
-  void (*velocity)(const AdvanceRow&);             // v <- v + (x - predicted)/dt
-  void (*project)(const Projection&);              // Gauss-Seidel, in place
+  void (*spring_stencil)(const StencilRow&);         // f += spring force
+  void (*damped_spring_stencil)(const StencilRow&);  // f += spring force and damping along it
+  int (*tear)(const TearRow&);                       // returns how many have ended
+  void (*integrate)(const AdvanceRow&);              // leapfrog step from f, then f <- 0
+  void (*predict)(const AdvanceRow&);                // predicted <- x; v and x advanced by gravity
+  void (*velocity)(const AdvanceRow&);               // v <- v + (x - predicted)/dt
+  void (*project)(const Projection&);                // Gauss-Seidel, in place
   void (*jacobi_rows)(const JacobiRows&);
   // Jacobi: the corrections of one row's constraints, by unit inverse mass, added to the sums of rows
   // j and j+dj
-  void (*jacobi_family)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
+  void (*jacobi_stencil)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
   // x += w f, v += w f/dt if inverse_dt > 0, f <- 0 (w null: 1)
   void (*apply_corrections)(const AdvanceRow&);
-  void (*line_strip)(const LineStrip&);  // a strip of lines, each solved as a whole
+  void (*line_batch)(const LineBatch&);  // a batch of lines, each solved as a whole
   void (*rows_to_lanes)(const TransposeRows&);
   void (*lanes_to_rows)(const TransposeRows&);
   void (*predict_second_order)(const SecondOrderRow&);
   void (*velocity_second_order)(const SecondOrderRow&);
   void (*tethers)(const TetherRow&);
   void (*bend_row)(const BendRow&);     // v += dt force/mass of the bending energy
-  void (*bend_line)(const BendLine&);   // implicit bending along a strip of lines
+  void (*bend_line)(const BendLine&);   // implicit bending along a batch of lines
   void (*bend_twist)(const TwistRow&);  // and of every second cell between two rows
   RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
   RowReach (*below_faces[kShapes])(const FacesRow&);
@@ -357,7 +357,7 @@ struct KernelTable {
   int (*surface_pairs)(const SurfacePairs&);    // measures them; returns how many touch
   // The greatest size of `count` values, a multiple of 16; infinite if one is not a number.
   float (*greatest)(const float* values, std::ptrdiff_t count);
-  Tally (*tally)(const TallyRow&);
+  EnergySum (*energy_sum)(const EnergyRow&);
   float (*greatest_square)(const FarRows&);     // of a constraint's length
   double (*stretch_energy)(const StretchRow&);  // J
   void (*tangent)(const TangentRow&);

@@ -26,9 +26,9 @@
 namespace weft::WEFT_KERNELS {
 namespace {
 
-using physics::kStripLines;
-using physics::kStripScratch;
-using physics::LineStrip;
+using physics::kBatchLines;
+using physics::kBatchScratch;
+using physics::LineBatch;
 
 // Pivots below belong to no constraint, or to one of no length and so no direction; their reciprocals
 // would not be finite.
@@ -93,9 +93,9 @@ WEFT_INLINE void store3_at(Row3 r, Place s, Wide3 v) {
 template <bool kLambda, bool kVelocity>
 class Block {
  public:
-  Block(const LineStrip& strip, int offset)
-      : p(strip), offset_(offset), line_(strip.first + offset) {
-    const int left = strip.columns - line_;
+  Block(const LineBatch& batch, int offset)
+      : p(batch), offset_(offset), line_(batch.first + offset) {
+    const int left = batch.columns - line_;
     lines_ = left < kLanes ? left : kLanes;
     if (p.lean == 0) {  // nothing leaves the sheet, and beyond its side is padding without mass
       last_whole_ = line_;
@@ -168,7 +168,7 @@ class Block {
             lines & (lanes < p.columns), lines & (lanes >= p.columns)};
   }
   WEFT_INLINE float* scratch(int m) const {
-    return p.scratch + static_cast<std::ptrdiff_t>(m) * kStripScratch + offset_;
+    return p.scratch + static_cast<std::ptrdiff_t>(m) * kBatchScratch + offset_;
   }
   // Asks for a row that will be written: rows are too far apart for the processor to foresee them, and
   // another core may hold them. None but its own: another core may need what lies beyond.
@@ -206,8 +206,8 @@ class Block {
     if (p.alive) solved = solved & alive(here);
     reciprocal_ = select(solved, 1.0f / pivot, Wide{});
     store(scratch(m), right_ * reciprocal_);
-    store(scratch(m) + kStripLines, factor);
-    if constexpr (kLambda) store(scratch(m) + 2 * kStripLines, length);
+    store(scratch(m) + kBatchLines, factor);
+    if constexpr (kLambda) store(scratch(m) + 2 * kBatchLines, length);
     edge_ = e;
     x_ = far;
     w_ = w_far;
@@ -217,10 +217,10 @@ class Block {
   WEFT_INLINE void substitute(int m, Place here, Place there) {
     const Wide3 near = load3_at(p.x, here);
     mu_ = fma(factor_, mu_, load(scratch(m)));
-    factor_ = load(scratch(m) + kStripLines);
+    factor_ = load(scratch(m) + kBatchLines);
     if constexpr (kLambda) {
       const Wide before = p.fresh ? Wide{} : load_at(p.lambda, here);
-      store_at(p.lambda, here, fnma(mu_, load(scratch(m) + 2 * kStripLines), before));
+      store_at(p.lambda, here, fnma(mu_, load(scratch(m) + 2 * kBatchLines), before));
     }
     // No multiplier where there is no constraint, whatever lies between the lanes.
     const Wide3 own = (x_ - near) * mu_;
@@ -239,8 +239,8 @@ class Block {
     if constexpr (kVelocity) store3_at(p.v, s, fma(by, share * p.inverse_dt, load3_at(p.v, s)));
   }
 
-  const LineStrip& p;
-  int offset_;  // of the block in the strip
+  const LineBatch& p;
+  int offset_;  // of the block in the batch
   int lines_;   // that exist
   int line_;    // of lane 0 if it went on straight to where it is now
   int first_whole_ = 0, last_whole_ = -1;
@@ -256,8 +256,8 @@ class Block {
 
 // One or two blocks of lines side by side.
 template <bool kLambda, bool kVelocity, int kBlocks>
-void solve_blocks(const LineStrip& given, int first) {
-  const LineStrip p = given;  // a copy that no store can alias
+void solve_blocks(const LineBatch& given, int first) {
+  const LineBatch p = given;  // a copy that no store can alias
   Block<kLambda, kVelocity> a(p, first), b(p, first + (kBlocks - 1) * kLanes);
   const int constraints = p.particles - 1;
   a.begin();
@@ -297,8 +297,8 @@ void solve_blocks(const LineStrip& given, int first) {
 }
 
 template <bool kLambda, bool kVelocity>
-void solve(const LineStrip& p) {
-  const int lines = least(kStripLines, p.columns - p.first);
+void solve(const LineBatch& p) {
+  const int lines = least(kBatchLines, p.columns - p.first);
   for (int first = 0; first < lines;) {
     const bool two = kLanes >= 8 && lines - first > kLanes;
     two ? solve_blocks<kLambda, kVelocity, 2>(p, first)
@@ -309,7 +309,7 @@ void solve(const LineStrip& p) {
 
 }  // namespace
 
-void line_strip(const LineStrip& p) {
+void line_batch(const LineBatch& p) {
   if (p.lambda) return p.inverse_dt > 0 ? solve<true, true>(p) : solve<true, false>(p);
   p.inverse_dt > 0 ? solve<false, true>(p) : solve<false, false>(p);
 }

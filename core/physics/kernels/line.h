@@ -10,33 +10,33 @@ namespace weft::physics {
 
 // Lines solved side by side: two blocks of the widest registers, so that one block's division hides
 // behind the other's.
-inline constexpr int kStripLines = 32;
-// Floats of scratch for each particle of a strip.
-inline constexpr int kStripScratch = 3 * kStripLines;
+inline constexpr int kBatchLines = 32;
+// Floats of scratch for each particle of a batch.
+inline constexpr int kBatchScratch = 3 * kBatchLines;
 
-// A strip of neighbouring lines of one family, each a chain of particles. Particle m of line n lies
+// A batch of neighbouring lines of one stencil, each a chain of particles. Particle m of line n lies
 // `n + m*step` floats behind lane 0 of the first row, in lane n + m*lean of its row. Where that is
 // beyond a side of the sheet, the line is cut and goes on at the other side, `columns` lanes from
 // there, and so every line passes through all rows.
-struct LineStrip {
+struct LineBatch {
   Row3 x;          // lane 0 of the row where lines start
   const float* w;  // inverse mass, laid out as x [1/kg]
   std::ptrdiff_t step;
   int particles;  // rows that lines pass through
   int lean;
   int columns;
-  int first;         // number of the strip's first line, a multiple of 16; it has up to kStripLines
+  int first;         // number of the batch's first line, a multiple of 16; it has up to kBatchLines
   float rest;        // m
   float share;       // factor on the correction
   Row3 v;            // velocities, laid out as x; gain corrections times inverse_dt
   float inverse_dt;  // 1/s; 0 = velocities are not touched
-  const float* compliance;         // [m][kStripLines] of constraint m of each line [1/kg]
-  std::ptrdiff_t compliance_step;  // kStripLines, or 0 when all rows are alike
+  const float* compliance;         // [m][kBatchLines] of constraint m of each line [1/kg]
+  std::ptrdiff_t compliance_step;  // kBatchLines, or 0 when all rows are alike
   // -1 where constraint m of line n holds, 0 where it is cut, laid out as x; or null.
   const std::int32_t* alive;
   float* lambda;   // multipliers, laid out as x; null for a single sweep [kg·m]
   bool fresh;      // the multipliers are still zero, whatever the memory says
-  float* scratch;  // particles * kStripScratch floats
+  float* scratch;  // particles * kBatchScratch floats
 };
 
 }  // namespace weft::physics

@@ -1,16 +1,16 @@
-// The six families of a plain cloth in one pass over the rows: every constraint is evaluated once, in
+// The six stencils of a plain cloth in one pass over the rows: every constraint is evaluated once, in
 // the row of its near end, and what it does to the rows below is carried along, so that a row is
 // finished, and moved in place, as soon as its own constraints are done.
 //
 // A `Law` says what a constraint does to its ends and how a finished row moves:
 //
 //   Law::Rows                                     the kernel's argument, a PlainRows
-//   Law::Constants                                of a row's family, as in Rows::constants
+//   Law::Constants                                of a row's stencil, as in Rows::constants
 //   Law::kTorn                                    whether constraints may have died (PlainRows::alive)
 //   Law::kWatched                                 whether the law asks for constraints that are too long
 //   Law::kRates                                   whether pulls depend on velocities
 //   Law::scale<F>(rows, block, 1/length, edge·velocity)
-//                                                 of family F: edge times it pulls the near end, and
+//                                                 of stencil F: edge times it pulls the near end, and
 //                                                 its negative the far end
 //   Law::too_long<F>(rows, block, 1/length)       of kWatched laws: which are
 //   Law::tell(rows, row)                          that some of a row are, of those that are alive
@@ -25,11 +25,11 @@
 
 namespace weft::WEFT_KERNELS {
 
-enum PlainFamily { kRight, kDown, kDiagonal, kAntidiagonal, kRight2, kDown2, kFamilies };
-static_assert(kFamilies == physics::kPlainFamilies);
+enum PlainStencil { kRight, kDown, kDiagonal, kAntidiagonal, kRight2, kDown2, kStencils };
+static_assert(kStencils == physics::kPlainStencils);
 
 // A block of lanes: its first lane in component x of the positions, and of the same column one and two
-// rows below; what earlier rows do to it; the constants of its row's first family; and how many columns
+// rows below; what earlier rows do to it; the constants of its row's first stencil; and how many columns
 // are left from its first lane on.
 template <class Law>
 struct Block {
@@ -48,7 +48,7 @@ struct Block {
             j + 1 < s.rows ? x + s.stride : last,
             j + 2 < s.rows ? x + 2 * std::ptrdiff_t(s.stride) : last,
             s.carry,
-            s.constants + std::ptrdiff_t(j) * kFamilies,
+            s.constants + std::ptrdiff_t(j) * kStencils,
             s.columns};
   }
   // The block to the right.
@@ -71,13 +71,13 @@ struct Block {
 // multipliers that far; the last takes it by multiplications (root.h).
 //
 // What goes to the next lane of the block's own row is summed up before it is shifted: hence the order
-// of the families.
+// of the stencils.
 //
 // Lanes past a row's last constraint pull nothing: their scale is zero. So the delays need no reset
 // between rows, and one loop goes over the blocks of all rows. Such a zero has a sign, which depends on
 // the padding: sums begin with a zero that is positive, and so never show it.
-inline constexpr PlainFamily kOrder[] = {kRight, kAntidiagonal, kDown, kDiagonal, kRight2, kDown2};
-constexpr bool divided(PlainFamily f) {
+inline constexpr PlainStencil kOrder[] = {kRight, kAntidiagonal, kDown, kDiagonal, kRight2, kDown2};
+constexpr bool divided(PlainStencil f) {
   return f != kDown2;
 }
 
@@ -91,10 +91,10 @@ struct Pipeline {
   using Block = WEFT_KERNELS::Block<Law>;
 
   std::ptrdiff_t plane;  // floats from one component to the next
-  Wide3 edge[kFamilies];
-  Wide length[kFamilies];  // squared length, then length, then its reciprocal, of those divided
-  ReciprocalRoot root[kFamilies];
-  Wide rate[kFamilies];  // edge · its ends' difference in velocity
+  Wide3 edge[kStencils];
+  Wide length[kStencils];  // squared length, then length, then its reciprocal, of those divided
+  ReciprocalRoot root[kStencils];
+  Wide rate[kStencils];  // edge · its ends' difference in velocity
   Wide3 own, below;      // pull on the block in `pull`, and on the row below it (negated)
   WideInt overlong;      // lanes of constraints too long in this row
   Delay3<1> to_right, diagonal;
@@ -104,7 +104,7 @@ struct Pipeline {
     return load_planes(s.v.x + (x - s.x.x), plane);
   }
 
-  template <PlainFamily F>
+  template <PlainStencil F>
   WEFT_INLINE void square(const Rows& s, const Block& b) {
     const float* const near = F == kAntidiagonal ? b.x + 1 : b.x;
     const float* const far = F == kRight      ? b.x + 1
@@ -118,22 +118,22 @@ struct Pipeline {
     if constexpr (Law::kRates) rate[F] = dot(e, velocity(s, far) - velocity(s, near));
   }
 
-  template <PlainFamily F>
+  template <PlainStencil F>
   WEFT_INLINE void begin_root() {
     if constexpr (divided(F))
       length[F] = sqrt(length[F]);
     else
       root[F].guess(length[F]);
   }
-  template <PlainFamily F>
+  template <PlainStencil F>
   WEFT_INLINE void end_root() {
     if constexpr (divided(F))
       length[F] = 1.0f / length[F];
     else
       root[F].refine();
   }
-  // What family F does to the block, to its right and below.
-  template <PlainFamily F>
+  // What stencil F does to the block, to its right and below.
+  template <PlainStencil F>
   WEFT_INLINE void pull(const Rows& s, const Block& b) {
     const Wide3 e = edge[F];
     const Wide reciprocal = divided(F) ? length[F] : root[F].result();
@@ -182,7 +182,7 @@ struct Pipeline {
       Law::finish(s, pulled, own);
       if constexpr (Law::kWatched)
         if (any(overlong)) {
-          Law::tell(s, (pulled.constants - s.constants) / kFamilies);
+          Law::tell(s, (pulled.constants - s.constants) / kStencils);
           overlong = WideInt{};
         }
     }

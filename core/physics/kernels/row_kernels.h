@@ -14,12 +14,12 @@ using physics::AdvanceRow;
 using physics::CollideRow;
 using physics::ConstRow3;
 using physics::FacesRow;
-using physics::FamilyRow;
 using physics::ProjectRows;
 using physics::Row3;
 using physics::RowReach;
 using physics::SpringConstants;
 using physics::SpringRows;
+using physics::StencilRow;
 
 WEFT_INLINE Wide3 load3(ConstRow3 r, std::ptrdiff_t i) {
   return {load(r.x + i), load(r.y + i), load(r.z + i)};
@@ -86,17 +86,17 @@ WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const 
 }
 
 void spring_rows(const SpringRows&);
-void spring_family(const FamilyRow&);
-void damped_spring_family(const FamilyRow&);
+void spring_stencil(const StencilRow&);
+void damped_spring_stencil(const StencilRow&);
 int tear(const physics::TearRow&);
 void integrate(const AdvanceRow&);
 void predict(const AdvanceRow&);
 void velocity(const AdvanceRow&);
 void project(const physics::Projection&);
 void jacobi_rows(const physics::JacobiRows&);
-void jacobi_family(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
+void jacobi_stencil(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
 void apply_corrections(const AdvanceRow&);
-void line_strip(const physics::LineStrip&);
+void line_batch(const physics::LineBatch&);
 void rows_to_lanes(const physics::TransposeRows&);
 void lanes_to_rows(const physics::TransposeRows&);
 void predict_second_order(const physics::SecondOrderRow&);
@@ -107,7 +107,7 @@ void bend_line(const physics::BendLine&);
 void bend_twist(const physics::TwistRow&);
 
 float greatest(const float* values, std::ptrdiff_t count);
-physics::Tally tally(const physics::TallyRow&);
+physics::EnergySum energy_sum(const physics::EnergyRow&);
 float greatest_square(const physics::FarRows&);
 double stretch_energy(const physics::StretchRow&);
 void tangent(const physics::TangentRow&);

@@ -41,7 +41,7 @@ float greatest(const float* values, std::ptrdiff_t count) {
 
 // In double: what a small swing releases is a millionth of the height it has. Gravity mostly points along
 // an axis.
-physics::Tally tally(const physics::TallyRow& r) {
+physics::EnergySum energy_sum(const physics::EnergyRow& r) {
   const double g[] = {r.g[0], r.g[1], r.g[2]};
   WideDouble motion[kBlocks] = {}, height[kBlocks] = {};
   Greatest most;
@@ -58,7 +58,7 @@ physics::Tally tally(const physics::TallyRow& r) {
         most.add(b, along[k]);
       }
     }
-  physics::Tally e{0, 0, most.value()};
+  physics::EnergySum e{0, 0, most.value()};
   for (int b = 0; b < kBlocks; ++b)
     for (int lane = 0; lane < kLanes; ++lane) {
       e.kinetic += 0.5 * motion[b][lane];

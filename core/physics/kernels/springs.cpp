@@ -20,14 +20,14 @@ struct SpringLaw {
   using Block = WEFT_KERNELS::Block<SpringLaw>;
   static constexpr bool kRates = kDamped, kTorn = kTear != Tear::never,
                         kWatched = kTear == Tear::watched;
-  template <PlainFamily F>
+  template <PlainStencil F>
   WEFT_INLINE static Wide scale(const Rows&, const Block& b, Wide reciprocal, Wide rate) {
     const SpringConstants& c = b.constants[F];
     const Wide spring = fnma(wide(c.kl), reciprocal, wide(c.k));
     if constexpr (!kDamped) return spring;
     return fma(c.damping * rate, reciprocal * reciprocal, spring);
   }
-  template <PlainFamily F>
+  template <PlainStencil F>
   WEFT_INLINE static WideInt too_long(const Rows&, const Block& b, Wide reciprocal) {
     return reciprocal < b.constants[F].taut;
   }
@@ -56,10 +56,10 @@ void spring_rows_of(const SpringRows& r) {
   plain_rows<SpringLaw<kDamped, Tear::watched>>(r);
 }
 
-// f_near += F, f_far -= F for every spring of the family. Within one row the difference of
+// f_near += F, f_far -= F for every spring of the stencil. Within one row the difference of
 // neighbouring springs is taken first, so that the sum has the same order at every width.
 template <bool kDamped, bool kTorn>
-WEFT_INLINE void add_family(const FamilyRow& r) {
+WEFT_INLINE void add_stencil(const StencilRow& r) {
   const SpringConstants& c = r.spring;
   const Row3 scratch{r.scratch, r.scratch + r.stride, r.scratch + 2 * r.stride};
   for (int a = 0; a < padded(r.count); a += kLanes) {
@@ -92,13 +92,13 @@ WEFT_INLINE void add_family(const FamilyRow& r) {
 void spring_rows(const SpringRows& r) {
   r.damped ? spring_rows_of<true>(r) : spring_rows_of<false>(r);
 }
-void spring_family(const FamilyRow& r) {
-  if (r.alive) return add_family<false, true>(r);
-  add_family<false, false>(r);
+void spring_stencil(const StencilRow& r) {
+  if (r.alive) return add_stencil<false, true>(r);
+  add_stencil<false, false>(r);
 }
-void damped_spring_family(const FamilyRow& r) {
-  if (r.alive) return add_family<true, true>(r);
-  add_family<true, false>(r);
+void damped_spring_stencil(const StencilRow& r) {
+  if (r.alive) return add_stencil<true, true>(r);
+  add_stencil<true, false>(r);
 }
 
 void integrate(const AdvanceRow& r) {

@@ -1,0 +1,196 @@
+// A recording as it is read: nothing in the file is trusted, and each fault has its line and place.
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <optional>
+
+#include "output/hex.h"
+#include "output/input_names.h"
+#include "scene/json_text.h"
+#include "weft/read_scene.h"
+#include "weft/recording.h"
+
+namespace weft {
+
+namespace {
+
+using text::Json;
+using Kind = Input::Kind;
+
+// What is wrong in a line, and where in it.
+[[noreturn]] void fail(const std::string& place, const std::string& what,
+                       const std::string& allowed) {
+  throw RecordingError(place + (place.empty() ? "" : ": ") + what + " (" + allowed + ")");
+}
+
+// A value in a line, with its place in it.
+struct Value {
+  const Json* json;
+  std::string place;
+
+  Value at(const std::string& key) const {
+    if (!json->is_object()) fail(place, text::brief(*json) + " is out of place", "an object");
+    const Json* const found = text::member(*json, key);
+    if (found == nullptr) fail(place, "\"" + key + "\" is missing", "every key of a recording");
+    return {found, text::join(place, key)};
+  }
+  Value at(std::size_t n) const { return {&(*json)[n], text::join(place, std::to_string(n))}; }
+
+  template <class T>
+  T whole(T most = std::numeric_limits<T>::max()) const {
+    if (!json->is_number_unsigned() ||
+        json->get<std::uint64_t>() > static_cast<std::uint64_t>(most))
+      fail(place, text::brief(*json) + " is out of place",
+           "a whole number from 0 to " + std::to_string(most));
+    return json->get<T>();
+  }
+  double number() const {
+    if (!json->is_number()) fail(place, text::brief(*json) + " is out of place", "a number");
+    return json->get<double>();
+  }
+  void need_three() const {
+    if (!json->is_array() || json->size() != 3)
+      fail(place, text::brief(*json) + " is out of place", "a list of 3 numbers");
+  }
+  Vec3 vector() const {
+    need_three();
+    return {at(0).number(), at(1).number(), at(2).number()};
+  }
+  std::uint64_t hash() const {
+    const auto value = json->is_string() ? from_hex16(json->get_ref<const std::string&>())
+                                         : std::optional<std::uint64_t>();
+    if (!value) fail(place, text::brief(*json) + " is no hash", "16 hexadecimal digits");
+    return *value;
+  }
+  Scene scene() const {
+    if (!json->is_object()) fail(place, text::brief(*json) + " is out of place", "a scene");
+    SceneFile file = read_scene_text(json->dump());
+    if (!file.faults.empty())
+      fail(place + file.faults[0].place, file.faults[0].what, file.faults[0].allowed);
+    return std::move(file.scene);
+  }
+};
+
+Input input_of(Kind kind, const Value& value) {
+  Input input;
+  input.kind = kind;
+  if (kind == Kind::grab || kind == Kind::pin || kind == Kind::unpin) {
+    const Value particle = value.at("particle");
+    particle.need_three();
+    input.cloth = particle.at(0).whole<int>();
+    input.i = particle.at(1).whole<int>();
+    input.j = particle.at(2).whole<int>();
+  }
+  if (kind == Kind::grab) {
+    input.a = value.at("target").vector();
+    input.amount = value.at("stiffness").number();
+  } else if (kind == Kind::carry) {
+    input.cloth = value.at("cloth").whole<int>();
+    input.a = value.at("velocity").vector();
+  } else if (kind == Kind::cut) {
+    input.a = value.at("from").vector();
+    input.b = value.at("to").vector();
+    input.amount = value.at("width").number();
+  } else if (kind == Kind::move_collider) {
+    input.collider = value.at("collider").whole<int>();
+    input.a = value.at("target").vector();
+  } else if (kind == Kind::set_scene) {
+    input.scene = std::make_shared<const Scene>(value.scene());
+  }
+  return input;
+}
+
+Recording::Event event_of(const Value& line) {
+  Recording::Event event;
+  event.frame = line.at("frame").whole<std::int64_t>();
+  if (text::member(*line.json, "hash") != nullptr) {
+    event.hash = line.at("hash").hash();
+    return event;
+  }
+  for (std::size_t k = 0; k < kInputNames.size(); ++k)
+    if (text::member(*line.json, kInputNames[k]) != nullptr)
+      event.input = input_of(static_cast<Kind>(k), line.at(kInputNames[k]));
+  if (!event.input) fail("", "it has neither a hash nor an input", "hash, grab, release, pin, …");
+  return event;
+}
+
+// Frames come one after the other; they may begin anew with another scene.
+class Order {
+ public:
+  void check(const Recording::Event& event) {
+    const bool is_hash = !event.input;
+    const std::int64_t before = event.frame - (is_hash ? 1 : 0);
+    if (before == 0 && anew_) done_ = 0;
+    if (before != done_)
+      fail("/frame", std::to_string(event.frame) + " is out of order: lines are missing or doubled",
+           std::to_string(done_ + (is_hash ? 1 : 0)) + " comes here");
+    anew_ = event.input && (anew_ || event.input->kind == Kind::set_scene);
+    if (is_hash) ++done_;
+  }
+
+ private:
+  std::int64_t done_ = 0;
+  bool anew_ = false;
+};
+
+void read_header(const Value& line, Recording& recording) {
+  if (!line.json->is_object() || text::member(*line.json, "weft_recording") == nullptr ||
+      line.at("weft_recording").whole<int>() != 1)
+    fail("", "this is no recording", "weft_recording 1");
+  recording.seed = line.at("seed").whole<std::uint64_t>();
+  recording.scene = line.at("scene").scene();
+}
+
+Json parsed(const std::string& line) {
+  std::vector<Fault> faults;
+  Json json = text::parse(line, faults);
+  if (faults.empty()) return json;
+  std::string what = faults[0].what;
+  constexpr std::string_view kLine = "line 1, ";  // of a text of its own, to the parser
+  if (what.starts_with(kLine)) what.erase(0, kLine.size());
+  fail(faults[0].place, what, faults[0].allowed);
+}
+
+// The next line; of one longer than any recording's, only so much that it is known to be.
+bool next_line(std::istream& in, std::string& line) {
+  std::array<char, 1 << 16> some{};
+  for (line.clear(); line.size() <= text::kMaxTextBytes; in.clear()) {
+    in.getline(some.data(), some.size());
+    if (in.bad() || in.gcount() == 0) return !line.empty();
+    const bool ended = in.good();
+    line.append(some.data(), static_cast<std::size_t>(in.gcount() - (ended ? 1 : 0)));
+    if (ended || in.eof()) return true;
+  }
+  return true;
+}
+
+}  // namespace
+
+Recording read_recording(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw RecordingError(path + ": cannot be read");
+  Recording recording;
+  std::string text;
+  std::int64_t number = 0;
+  Order order;
+  while (next_line(in, text)) {
+    ++number;
+    try {
+      const Json json = parsed(text);
+      const Value line{&json, ""};
+      if (number == 1) {
+        read_header(line, recording);
+        continue;
+      }
+      recording.events.push_back(event_of(line));
+      order.check(recording.events.back());
+    } catch (const RecordingError& error) {
+      throw RecordingError(path + ":" + std::to_string(number) + ": " + error.what());
+    }
+  }
+  if (number == 0) throw RecordingError(path + ": it is empty or no file");
+  return recording;
+}
+
+}  // namespace weft

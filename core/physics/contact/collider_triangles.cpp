@@ -1,0 +1,183 @@
+// Stage "collider_faces": a collider with features smaller than the mesh is caught by the triangles
+// that it would slip through between the particles (seed 000 names this failure).
+//
+// The point p = Σ b_k x_k of a triangle deepest in the collider is lifted out by `depth` along the
+// normal there, each corner by its share:  x_k += w_k b_k / (Σ w b²) n depth.  It rubs like a
+// particle: p's velocity into the surface is lost, friction shortens the rest. Beside a held corner the
+// others are long levers; none is moved by more than kMostLever times the depth at once.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "physics/contact/collider_stage.h"
+#include "physics/contact/triangle_shape.h"
+#include "physics/model/clamp_to_int.h"
+#include "physics/model/path.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr int kMostPlaces = 16;   // on the way of a fast collider
+constexpr double kSlack = 1e-3;   // of an edge: a triangle may be as deep
+constexpr double kDeep = 3e-2;    // of an edge: one that was as deep is looked at again at once
+constexpr int kTurns = 8;         // of one triangle in a substep
+constexpr double kMostLever = 2;  // the greatest share of a corner; 1.37 where masses are equal
+
+struct Touch {
+  Weights weights{};
+  Vec3 normal{};
+  double depth = 0;  // m; > 0: to be lifted by, at the end of the substep
+};
+
+// The first contact on the way of the triangle, seen from the collider.
+template <class Shape>
+Touch first_touch(const Shape& shape, double offset, const Corners& end, int places, double edge) {
+  for (int n = 1; n <= places; ++n) {
+    const double left = 1 - double(n) / places;
+    Corners c = end;
+    for (int k = 0; k < 3; ++k) c.x[k] = minus(end.x[k], times(end.path[k], left));
+    const Deepest d = deepest_on(shape, c, offset, edge);
+    if (d.nearest.distance >= offset) continue;
+    const double beyond = dot(minus(c.at(d.weights), end.at(d.weights)), d.nearest.normal);
+    return {d.weights, d.nearest.normal, offset - d.nearest.distance + std::max(0.0, beyond)};
+  }
+  return {};
+}
+
+class ColliderTriangles final : public RowStage {
+ public:
+  ColliderTriangles(const ClothParts& parts, const Collider& collider, const StartInside& start)
+      : RowStage("collider_faces", "triangles of the sheet against its small features", 1,
+                 2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1),
+                 "triangles"),
+        parts_(parts),
+        collider_(parts, collider, start, true),
+        far_(parts, collider_.fastest()),
+        upright_(collider.shape),
+        edge_(longest_edge(parts.cloth.grid)) {}
+
+  void reserve_slots(int slots) override {
+    bound_ = Rows(slots, parts_.lattice.stride);
+    room_ = AlignedArray<std::int32_t>(room() * std::size_t(slots));
+  }
+  std::size_t bytes() const override {
+    return bound_.bytes() + room_.size() * sizeof(std::int32_t);
+  }
+  double idle() const override { return far_.share(); }
+  void follow(const Collider& collider) override {
+    if (&collider != &collider_.collider()) return;
+    collider_.follow_keys();
+    far_.restart(collider_.fastest());
+  }
+
+  void run(int j, const Substep& s) override {
+    Lattice& l = parts_.lattice;
+    if (j + 1 >= l.rows || far_.skip(j, s)) return;
+    FacesRow f;
+    f.row = collider_.row(parts_, j, s);
+    f.x_next = l.x.row(j + 1);
+    f.v_next = l.v.row(j + 1);
+    f.edge = float(edge_);
+    f.slack = float(kSlack * edge_);
+    const Row3 bound = bound_.row(s.slot);
+    f.bound[0] = bound.x;
+    f.bound[1] = bound.y;
+    f.room = room_.data() + room() * std::size_t(s.slot);
+    RowReach reach = parts_.kernels.below_faces[collider_.shape()](f);
+    // The way of a substep matters only where it is long against the collider.
+    const float way = reach.speed * f.row.dt;
+    const float near = way > 0.5f * f.row.shape.thin ? way : float(-kSlack * edge_);
+    // Between its corners a triangle may be nearer by as much as an edge, stretched by half.
+    reach.clearance -= float(1.5 * edge_);
+    far_.found(j, s, reach);
+    for (int i = 0; i + 1 < l.columns; ++i) {
+      if (f.bound[0][i] < near) lift(f.row, {j, j, j + 1}, {i, i + 1, i});
+      if (f.bound[1][i] < near) lift(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
+    }
+  }
+
+ private:
+  // An edge or a corner of the collider leaves a triangle by one of its sides after another.
+  void lift(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i) {
+    for (int n = 0; n < kTurns && touch(r, j, i); ++n) continue;
+  }
+
+  // Lifts one triangle out once; whether it may be in by another side still.
+  bool touch(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i) {
+    Lattice& l = parts_.lattice;
+    const Vec3 place{r.cx, r.cy, r.cz}, u{r.ux, r.uy, r.uz};
+    std::array<Vec3, 3> v;
+    Corners c;
+    double longest = 0;
+    for (int k = 0; k < 3; ++k) {
+      v[k] = minus({l.v.at(0, j[k], i[k]), l.v.at(1, j[k], i[k]), l.v.at(2, j[k], i[k])}, u);
+      c.x[k] = upright_.into(
+          minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place));
+      c.path[k] = upright_.into(times(v[k], r.dt));
+      longest = std::max(longest, std::sqrt(dot(c.path[k], c.path[k])));
+    }
+    Touch touch = std::visit(
+        [&](const auto& shape) {
+          const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
+          const int places = clamp_to_int(std::ceil(2 * longest / size), 1, kMostPlaces);
+          // It rests as deep as may be: lifted all the way it would fall back and ring.
+          return first_touch(shape, r.offset - kSlack * edge_, c, places, edge_);
+        },
+        upright_.shape);
+    if (touch.depth <= 0) return false;
+    touch.normal = upright_.out_of(touch.normal);
+    std::array<double, 3> share;
+    double mobility = 0, greatest = 0;
+    Vec3 speed{};
+    for (int k = 0; k < 3; ++k) {
+      share[k] = l.w(j[k], i[k]) * touch.weights[k];
+      mobility += share[k] * touch.weights[k];
+      greatest = std::max(greatest, share[k]);
+      speed = plus(speed, times(v[k], touch.weights[k]));
+    }
+    if (mobility <= 0) return false;
+    const bool lever = greatest > kMostLever * mobility;
+    const double scale = lever ? kMostLever / greatest : 1 / mobility;
+    const auto [moved, gained] = rub(r, touch, speed);
+    for (int k = 0; k < 3; ++k)
+      for (int m = 0; m < 3; ++m) {
+        l.x.at(m, j[k], i[k]) = coordinate(l.x.at(m, j[k], i[k]) + scale * share[k] * moved[m]);
+        l.v.at(m, j[k], i[k]) = float(l.v.at(m, j[k], i[k]) + scale * share[k] * gained[m]);
+      }
+    return !lever && touch.depth > kDeep * edge_;
+  }
+
+  // Changes of position and velocity of the touching point, as a particle's in collide.h.
+  static std::pair<Vec3, Vec3> rub(const CollideRow& r, const Touch& touch, const Vec3& speed) {
+    const double into = dot(speed, touch.normal);
+    const Vec3 tangential = minus(speed, times(touch.normal, into));
+    const double distance = std::sqrt(dot(tangential, tangential)) * r.dt;
+    const double pressed = std::max(0.0, -into * r.dt);
+    const double rubbed = distance <= r.friction_static * pressed
+                              ? 1
+                              : std::min(1.0, r.friction_dynamic * pressed / distance);
+    const Vec3 lost = times(tangential, -rubbed);
+    return {plus(times(touch.normal, touch.depth), times(lost, r.dt)),
+            plus(times(touch.normal, std::max(0.0, -into)), lost)};
+  }
+
+  std::size_t room() const { return 2 * std::size_t(parts_.lattice.stride) + 16; }
+
+  ClothParts parts_;
+  MovingCollider collider_;
+  SpeculativeCulling far_;
+  Upright upright_;
+  double edge_;  // m, longest of a flat triangle
+  Rows bound_;
+  AlignedArray<std::int32_t> room_;
+};
+
+}  // namespace
+
+std::unique_ptr<RowStage> make_collider_triangles(const ClothParts& parts, const Collider& collider,
+                                                  const StartInside& start) {
+  if (!caught_by_triangles(parts.cloth, collider)) return nullptr;
+  return std::make_unique<ColliderTriangles>(parts, collider, start);
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,71 @@
+// The shapes of colliders. Each is one file in this folder with two halves: its wide signed
+// distance, built once per instruction set (kernels/collide.h), and what is needed of it elsewhere,
+// below. Everything is about the shape's place: the point that its keys move.
+#pragma once
+
+#include "physics/kernels/kernels.h"
+#include "physics/model/vector.h"
+#include "weft/scene.h"
+#include "weft/shape.h"
+
+namespace weft::physics {
+
+// Signed distance [m] (negative inside) and the outward unit normal.
+struct Nearest {
+  double distance = 0;
+  Vec3 normal{0, 1, 0};
+};
+
+// How far, and where to, a triangle must move to leave a core that it cuts; no depth when it does
+// not.
+struct Overlap {
+  double depth = 0;  // m
+  Vec3 normal{0, 1, 0};
+};
+using Triangle = std::array<Vec3, 3>;
+
+// The shape as a core that is grown by a radius: its point nearest to p.
+struct Core {
+  Vec3 nearest{};
+  double radius = 0;
+};
+
+#define WEFT_SHAPE(Shape)                                    \
+  ShapeConstants constants_of(const Shape& shape);           \
+  Vec3 place_of(const Shape& shape);                         \
+  void move(Shape& shape, const Vec3& by);                   \
+  Nearest nearest_of(const Shape& shape, const Vec3& p);     \
+  Core core_of(const Shape& shape, const Vec3& p);           \
+  Overlap overlap_of(const Shape& shape, const Triangle& t); \
+  double feature_of(const Shape& shape);                     \
+  ShapeMesh mesh_of(const Shape& shape);
+// constants_of: for the kernels; place_of: where it stands without keys; move: to elsewhere;
+// nearest_of, core_of: seen from p, in double; overlap_of: of the core and a triangle; feature_of: its smallest radius of
+// curvature, infinite for a plane [m]; mesh_of: triangles for drawing.
+WEFT_SHAPE(Sphere)
+WEFT_SHAPE(Plane)
+WEFT_SHAPE(Capsule)
+WEFT_SHAPE(Box)
+#undef WEFT_SHAPE
+
+// Adds a surface of `across` by `along` quads between points point(u, v), 0 <= u, v <= 1, with
+// normals normal(u, v); seen from outside, u runs to the right and v up.
+template <class Point, class Normal>
+void add_patch(ShapeMesh& mesh, int across, int along, Point&& point, Normal&& normal) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (int b = 0; b <= along; ++b)
+    for (int a = 0; a <= across; ++a) {
+      const double u = double(a) / across, v = double(b) / along;
+      mesh.positions.push_back(point(u, v));
+      mesh.normals.push_back(normal(u, v));
+    }
+  const auto row = static_cast<std::uint32_t>(across + 1);
+  for (std::uint32_t b = 0; b < std::uint32_t(along); ++b)
+    for (std::uint32_t a = 0; a < std::uint32_t(across); ++a) {
+      const std::uint32_t p = first + b * row + a;
+      mesh.triangles.push_back({p, p + 1, p + row});
+      mesh.triangles.push_back({p + 1, p + row + 1, p + row});
+    }
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,81 @@
+#include "physics/contact/contact_reaction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/contact/collider_stage.h"
+#include "physics/model/path.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr double kRounding = 1e-6;  // m, and of the distance from zero
+constexpr double kAtRest = 1e-2;    // of what a substep adds to the velocity into the surface
+
+// What friction leaves of an acceleration along a surface onto which it is pressed [m/s²].
+Vec3 rubbed(const Friction& friction, const Vec3& along, double pressed) {
+  if (friction.model == FrictionModel::course) return times(along, 1 - friction.dynamic);
+  const double size = std::sqrt(dot(along, along));
+  if (size <= friction.statik * pressed) return {};
+  return times(along, std::max(0.0, 1 - friction.dynamic * pressed / size));
+}
+
+Nearest nearest_to(const Shape& shape, const Vec3& p) {
+  return std::visit([&](const auto& s) { return nearest_of(s, p); }, shape);
+}
+
+// What makes a velocity along the surface at p, where the normal is n, follow it for a substep [m/s²].
+double turning_of(const Shape& shape, const Vec3& p, const Vec3& n, const Vec3& along, double dt) {
+  const Vec3 way = times(along, dt);
+  return std::max(0.0, dot(minus(nearest_to(shape, plus(p, way)).normal, n), way)) / (dt * dt);
+}
+
+// What a particle that rests on a surface at p, or slides along it, keeps of an acceleration a; all of
+// it where it does neither. v is its velocity as seen from the collider.
+Vec3 supported(const Collider& c, bool chords, const Vec3& p, const Nearest& surface, const Vec3& v,
+               const Vec3& a, const Lag& lag) {
+  constexpr int kRounds = 3;  // turning and friction depend on each other, hardly
+  const Vec3& n = surface.normal;
+  const double inward = -dot(a, n), off = dot(v, n);
+  const Vec3 along = plus(a, times(n, inward)), sliding = minus(v, times(n, off));
+  double turning = 0;
+  for (int round = 0; chords && round < kRounds; ++round) {
+    const Vec3 gained = times(rubbed(c.friction, along, inward - turning), lag.behind);
+    turning = turning_of(c.shape, p, n, plus(sliding, gained), lag.dt);
+  }
+  const double pressed = inward - turning;
+  // On a chord it was off the surface half a substep ago, by so much.
+  const double was_off = off + turning * (lag.dt / 2 - lag.behind);
+  if (pressed <= 0 || std::abs(was_off) > (turning + kAtRest * pressed) * lag.dt) return a;
+  return minus(rubbed(c.friction, along, pressed), times(n, turning));
+}
+
+}  // namespace
+
+void support(const Scene& scene, const Cloth& cloth, double time, const Lag& lag, const Lattice& l,
+             std::vector<Vec3>& a) {
+  for (const Collider& c : scene.colliders) {
+    if (c.cuts) continue;
+    const Vec3 place = c.keys.empty() ? place_of(c.shape) : position_at(c.keys, time);
+    const Vec3 u = c.keys.empty() ? Vec3{} : velocity_over(c.keys, time, lag.dt);
+    const bool chords = c.friction.model == FrictionModel::coulomb && resolves(cloth, c);
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i) {
+        if (l.w(j, i) <= 0) continue;
+        const auto now = [&](const Rows& rows) {
+          return Vec3{rows.at(0, j, i), rows.at(1, j, i), rows.at(2, j, i)};
+        };
+        const Vec3 x = now(l.x), p = minus(x, place);
+        const Nearest surface = nearest_to(c.shape, p);
+        Vec3& own = a[std::size_t(j) * l.columns + i];
+        const double inward = -dot(own, surface.normal);
+        // A substep ends on the surface, or off a curved one by what it went into it before.
+        const double rounding =
+            kRounding * std::max({1.0, std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
+        if (inward > 0 && surface.distance < c.offset + rounding + inward * lag.dt * lag.dt)
+          own = supported(c, chords, p, surface, minus(now(l.v), u), own, lag);
+      }
+  }
+}
+
+}  // namespace weft::physics

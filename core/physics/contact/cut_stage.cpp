@@ -1,0 +1,98 @@
+// Stage "cut": constraints that a cutting collider's surface reaches end (seed 000, scene 3).
+#include <cmath>
+
+#include "physics/contact/collider_stage.h"
+
+namespace weft::physics {
+namespace {
+
+// A constraint is cut where a point of it comes inside the offset surface. Points are looked at as
+// densely as the cutter is small.
+class CutStage final : public RowStage {
+ public:
+  CutStage(const ClothParts& parts, const Collider& collider, const StartInside& start,
+           Tearing& tearing)
+      : RowStage("cut", "constraints in a cutter's way end", greatest_reach(parts),
+                 parts.constraints(), "constraints"),
+        parts_(parts),
+        collider_(parts, collider, start),
+        far_(parts, collider_.fastest()),
+        tearing_(tearing) {
+    for (const Stencil& f : parts.stencils) longest_ = std::max(longest_, f.rest);
+  }
+  double idle() const override { return far_.share(); }
+  void follow(const Collider& collider) override {
+    if (&collider != &collider_.collider()) return;
+    collider_.follow_keys();
+    far_.restart(collider_.fastest());
+  }
+  void reserve_slots(int slots) override {
+    distances_ = AlignedArray<float>(std::size_t(slots) * parts_.lattice.stride);
+  }
+
+  void run(int j, const Substep& s) override {
+    if (far_.skip(j, s)) return;
+    Lattice& l = parts_.lattice;
+    const CollideRow r = collider_.row(parts_, j, s);
+    const Vec3 place{r.cx, r.cy, r.cz};
+    const auto at = [&](int row, int i) {
+      return minus({l.x.at(0, row, i), l.x.at(1, row, i), l.x.at(2, row, i)}, place);
+    };
+    RowReach reach{1e30f, 0};
+    float* const distance = distances_.data() + std::size_t(s.slot) * l.stride;
+    std::visit(
+        [&](const auto& shape) {
+          for (int i = 0; i < l.columns; ++i) {
+            distance[i] = float(nearest_of(shape, at(j, i)).distance - r.offset);
+            reach.clearance = std::min(reach.clearance, distance[i]);
+            double square = 0;
+            for (int k = 0; k < 3; ++k) square += double(l.v.at(k, j, i)) * l.v.at(k, j, i);
+            reach.speed = std::max(reach.speed, float(std::sqrt(square)));
+          }
+          if (reach.clearance < 2 * longest_)
+            for (const Stencil& f : parts_.stencils)
+              cut_stencil(shape, r.offset, f, j, at, distance);
+        },
+        collider_.collider().shape);
+    reach.clearance -= float(2 * longest_);
+    far_.found(j, s, reach);
+  }
+
+ private:
+  template <class Shape, class At>
+  void cut_stencil(const Shape& shape, double offset, const Stencil& f, int j, const At& at,
+                   const float* distance) {
+    if (j + f.dj >= parts_.lattice.rows) return;
+    for (int a = 0; a < f.per_row(parts_.lattice.columns); ++a) {
+      if (!f.alive(j, a) || distance[a + f.near()] > 2 * longest_) continue;
+      const Vec3 from = at(j, a + f.near()), e = minus(at(j + f.dj, a + f.far()), from);
+      // Sphere tracing along the constraint: each step as long as nothing can be nearer.
+      const double length = std::sqrt(dot(e, e));
+      for (double t = 0;;) {
+        const double left = nearest_of(shape, plus(from, times(e, t))).distance - offset;
+        if (left <= 0) {
+          tearing_.end(f, j, a);
+          break;
+        }
+        if (t >= 1) break;
+        t = std::min(1.0, t + std::max(left, 0.01 * length) / std::max(length, 1e-12));
+      }
+    }
+  }
+
+  ClothParts parts_;
+  MovingCollider collider_;
+  SpeculativeCulling far_;
+  Tearing& tearing_;
+  double longest_ = 0;  // m, of a constraint at rest
+  AlignedArray<float> distances_;
+};
+
+}  // namespace
+
+std::unique_ptr<RowStage> make_cut(const ClothParts& parts, const Collider& collider,
+                                   const StartInside& start, Tearing& tearing) {
+  return std::make_unique<CutStage>(parts, collider, start, tearing);
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,129 @@
+// Colliders in motion (moving_collider.h).
+#include "physics/contact/moving_collider.h"
+
+#include <cmath>
+
+#include "physics/model/path.h"
+
+namespace weft::physics {
+
+double longest_edge(const Grid& grid) {
+  return std::hypot(spacing_u(grid), spacing_v(grid));
+}
+
+bool resolves(const Cloth& cloth, const Collider& collider) {
+  const double feature = std::visit([](const auto& s) { return feature_of(s); }, collider.shape);
+  return feature + collider.offset > kSmallFeature * longest_edge(cloth.grid);
+}
+
+bool caught_by_triangles(const Cloth& cloth, const Collider& collider) {
+  return collider.friction.model == FrictionModel::coulomb && !resolves(cloth, collider);
+}
+
+MovingCollider::MovingCollider(const ClothParts& parts, const Collider& collider,
+                               const StartInside& start, bool by_triangles)
+    : collider_(collider),
+      start_(start),
+      by_triangles_(by_triangles),
+      growth_(kPulledFrames * parts.scene.time.frame) {
+  CollideRow& r = constants_;
+  r.friction_static = float(collider.friction.statik);
+  r.friction_dynamic = float(collider.friction.dynamic);
+  r.offset = float(collider.offset);
+  r.resolved = resolves(parts.cloth, collider);
+  std::visit(
+      [&](const auto& shape) {
+        const Vec3 place = place_of(shape);
+        r.shape = constants_of(shape);
+        r.cx = float(place[0]);
+        r.cy = float(place[1]);
+        r.cz = float(place[2]);
+      },
+      collider.shape);
+  follow_keys();
+}
+
+void MovingCollider::follow_keys() {
+  double along = 0;
+  for (std::size_t n = 1; n < collider_.keys.size(); ++n) {
+    const Key &a = collider_.keys[n - 1], &b = collider_.keys[n];
+    const Vec3 e = minus(b.position, a.position);
+    along = std::max(along, std::sqrt(dot(e, e)) / (b.time - a.time));
+  }
+  fastest_ = along + deepest() / growth_;
+}
+
+double MovingCollider::deepest() const {
+  if (collider_.friction.model == FrictionModel::course) return 0;
+  return by_triangles_ ? std::max(start_.deepest_particle, start_.deepest_triangle)
+                       : start_.deepest_particle;
+}
+
+CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s) const {
+  Lattice& l = parts.lattice;
+  CollideRow r = constants_;
+  r.columns = l.columns;
+  r.x = l.x.row(j);
+  r.v = l.v.row(j);
+  r.w = l.w(j);
+  r.dt = float(s.dt);
+  r.inverse_dt = float(1 / s.dt);
+  const double grown = (s.time - start_.time) / growth_;
+  if (grown < 1) r.offset -= float(deepest() * (1 - grown));
+  if (collider_.keys.empty()) return r;
+  const Vec3 c = position_at(collider_.keys, s.time);
+  const Vec3 u = velocity_over(collider_.keys, s.time, s.dt);
+  r.cx = float(c[0]);
+  r.cy = float(c[1]);
+  r.cz = float(c[2]);
+  r.ux = float(u[0]);
+  r.uy = float(u[1]);
+  r.uz = float(u[2]);
+  return r;
+}
+
+SpeculativeCulling::SpeculativeCulling(const ClothParts& parts, double collider_speed)
+    : rows_(parts.lattice.rows), acceleration_(1), collider_speed_(collider_speed) {
+  constexpr double kStrain = 0.2;
+  double heaviest = 0;
+  for (int j = 0; j < parts.lattice.rows; ++j)
+    for (int i = 0; i < parts.lattice.columns; ++i)
+      heaviest = std::max(heaviest, double(parts.lattice.w(j, i)));
+  for (const Stencil& f : parts.stencils)
+    acceleration_ += 2 * f.stiffness * f.rest * kStrain * heaviest;
+  const Vec3& g = parts.scene.gravity;
+  acceleration_ += 2 * std::sqrt(dot(g, g));
+}
+
+void SpeculativeCulling::restart(double collider_speed) {
+  collider_speed_ = collider_speed;
+  for (Row& row : rows_) row.resume = row.ran;
+}
+
+bool SpeculativeCulling::skip(int j, const Substep& s) {
+  Row& row = rows_[j];
+  ++row.all;
+  // A substep that is not later than the last one: the state was set back.
+  const bool skipped = s.time > row.ran && s.time < row.resume;
+  row.skipped += skipped;
+  return skipped;
+}
+
+void SpeculativeCulling::found(int j, const Substep& s, const RowReach& reach) {
+  const double speed = 2 * (reach.speed + collider_speed_), a = acceleration_;
+  const double c = std::max(0.0, double(reach.clearance));
+  const double wait = (std::sqrt(speed * speed + 2 * a * c) - speed) / a;
+  rows_[j].ran = s.time;
+  rows_[j].resume = s.time + wait;
+}
+
+double SpeculativeCulling::share() const {
+  std::int64_t skipped = 0, all = 0;
+  for (const Row& row : rows_) {
+    skipped += row.skipped;
+    all += row.all;
+  }
+  return all > 0 ? double(skipped) / double(all) : 0;
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,86 @@
+// What the collider stages share: where a collider is during a substep, and which rows are too far
+// from it to matter.
+#pragma once
+
+#include "physics/contact/colliders/shapes.h"
+#include "physics/model/lattice/stages.h"
+
+namespace weft::physics {
+
+// What of a cloth lies inside a collider and can move when the two first meet, at the start or when the
+// collider is put where the cloth is: particles, and triangles where those catch the collider, and how
+// deep at most [m].
+struct StartInside {
+  double time = 0;  // s
+  std::int64_t particles = 0, triangles = 0;
+  double deepest_particle = 0, deepest_triangle = 0;
+};
+
+// Frames over which a collider that holds part of a sheet when they first meet grows to its size.
+inline constexpr int kPulledFrames = 10;
+
+// Of a flat triangle of the cloth [m].
+double longest_edge(const Grid& grid);
+
+// Whether the cloth's mesh is fine enough for the collider's features: more than kSmallFeature of those
+// edges. Else it could slip through between the particles.
+inline constexpr double kSmallFeature = 1.5;
+bool resolves(const Cloth& cloth, const Collider& collider);
+// Whether triangles, too, are kept out of it.
+bool caught_by_triangles(const Cloth& cloth, const Collider& collider);
+
+// A collider in motion, as the kernels take it. What is inside when it meets the cloth would be torn
+// from its neighbours if it were put onto the surface at once: the collider begins as much smaller as
+// the deepest of it lies below the surface.
+class MovingCollider {
+ public:
+  // by_triangles: triangles, too, are kept out.
+  // `start`: what of the cloth was inside when the two met; it outlives this.
+  MovingCollider(const ClothParts& parts, const Collider& collider, const StartInside& start,
+                 bool by_triangles = false);
+  // The collider at the end of the substep, and row j of the cloth.
+  CollideRow row(const ClothParts& parts, int j, const Substep& s) const;
+  // Greatest speed along its keys, and of its growth [m/s].
+  double fastest() const { return fastest_; }
+  // Takes up keys, and what is inside, when they have changed.
+  void follow_keys();
+  const Collider& collider() const { return collider_; }
+  std::size_t shape() const { return collider_.shape.index(); }
+
+ private:
+  double deepest() const;  // m below the surface when they met
+
+  const Collider& collider_;
+  CollideRow constants_{};
+  double fastest_ = 0;
+  const StartInside& start_;
+  const bool by_triangles_;
+  const double growth_;  // s, until it has grown
+};
+
+// Rows that cannot touch a collider before a time. A particle at distance c, of speed s towards the
+// collider, gets there no sooner than after τ with 2 s τ + a τ²/2 = c, where a is more than springs
+// at a strain of 20 % and gravity give it; speeds may double besides by contact. Should one be
+// faster yet it is found inside later, and lifted out then.
+class SpeculativeCulling {
+ public:
+  SpeculativeCulling(const ClothParts& parts, double collider_speed);
+  // Whether row j has nothing to do in this substep.
+  bool skip(int j, const Substep& s);
+  // All rows are looked at again: the collider's path has changed.
+  void restart(double collider_speed);
+  // Row j has just been worked on and lies so.
+  void found(int j, const Substep& s, const RowReach& reach);
+  // Share of the rows so far that were skipped.
+  double share() const;
+
+ private:
+  struct Row {
+    double ran = -1, resume = -1;  // s
+    std::int64_t skipped = 0, all = 0;
+  };
+  std::vector<Row> rows_;
+  double acceleration_, collider_speed_;
+};
+
+}  // namespace weft::physics

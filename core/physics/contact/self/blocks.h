@@ -1,0 +1,121 @@
+// The blocks that sheets are cut into for self-collision, and which of them may touch.
+//
+// Blocks are far from each other when the boxes about them are. A block and those beside it always
+// meet; they are known not to touch when the sheet is nearly flat there: with every edge along the
+// rows within ε_u of one vector U, and every edge across within ε_v of V, two particles a columns and
+// b rows apart are at least
+//
+//   |a U + b V| - |a| ε_u - |b| ε_v >= ρ |a u + b v|,
+//   ρ = sqrt(1 - |U·V|/(|U||V|)) min(|U|/|u|, |V|/|v|) - √2 max(ε_u/|u|, ε_v/|v|)
+//
+// apart, where u and v are the edges at rest, square to each other. So no pair that is 1/ρ thicknesses
+// apart at rest touches, and nearer ones are neighbours. (Volino and Magnenat-Thalmann 1994 bound
+// normals to the same end.)
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "physics/kernels/contact.h"
+#include "physics/model/lattice/lattice.h"
+#include "physics/step/threads.h"
+
+namespace weft::physics {
+
+// One cloth that takes part.
+struct Sheet {
+  Lattice* lattice;
+  float thickness, friction;
+  float uu, uv, vv;  // rest metric: |di u + dj v|² [m²]
+  bool course;
+};
+// Of all sheets together.
+std::size_t count_particles(const std::vector<Sheet>& sheets);
+
+// Of no values.
+inline Spread nothing() {
+  constexpr float far = std::numeric_limits<float>::max();
+  return {{far, far, far}, {-far, -far, -far}};
+}
+
+struct Block {
+  int sheet, row, column, rows, columns;
+  int across, down;  // its place among the sheet's blocks
+  bool active;       // searched for pairs the last time
+};
+
+// A block's first particle in the rows of its sheet.
+inline Row3 first_of(const Block& block, Rows& rows) {
+  const Row3 r = rows.row(block.row);
+  return {r.x + block.column, r.y + block.column, r.z + block.column};
+}
+
+class Blocks {
+ public:
+  // `neighbour`: pairs closer than so many thicknesses at rest are none.
+  Blocks(const std::vector<Sheet>& sheets, float neighbour, const KernelTable& kernels);
+
+  const std::vector<Block>& all() const { return blocks_; }
+  // Where the particles of a sheet were when last remembered.
+  const Rows& then(std::size_t sheet) const { return then_[sheet]; }
+
+  // Bounds of every block, as its particles are now. What is not known to be nearly flat counts as not
+  // flat, until all edges are measured again.
+  void measure(Threads& threads);
+  void measure_edges(Threads& threads);
+
+  struct Outlook {
+    bool covered;    // all pairs that may touch, or soon will, are active and have moved little
+    double seconds;  // until the next look
+    bool touching;   // some may touch
+  };
+  // `reach`: within which blocks may touch; `skin`: how far active ones may move against each other;
+  // `motion`: the same between two looks [m]; `longest`: until the next look [s].
+  Outlook look(float reach, float skin, float motion, double longest);
+
+  // Makes active what may touch within `reach`, or all, and remembers where it is. Edges are to be
+  // measured before.
+  void choose(float reach);
+  void choose_all();
+  Spread box() const;  // about the active blocks, as measured [m]
+  std::size_t active() const { return active_; }
+  std::size_t bytes() const;
+
+ private:
+  struct Flat {
+    float ratio = 0;   // ρ of a block and those beyond it along the row, the column and both
+    float needed = 1;  // for nothing to touch there
+    float rate = 0;    // at most so much less in a second [1/s]
+  };
+  void cut(const std::vector<Sheet>& sheets);
+  BlockRows rows_of(std::size_t b);
+  void measure_block(std::size_t b);
+  void measure_flat(bool all);
+  Flat flat(std::size_t b) const;
+  template <class Visit>
+  void for_each_of_square(std::size_t b, const Visit& visit) const;
+  // The first of a square of four blocks that holds both, a <= b; -1 when none does.
+  int corner(std::size_t a, std::size_t b) const;
+  template <class Visit>
+  void for_each_near(float distance, Visit&& visit);
+  void remember();
+
+  const std::vector<Sheet>& sheets_;
+  const float neighbour_;
+  const KernelTable& kernels_;
+  std::vector<Block> blocks_;
+  struct Extent {
+    int first, across, down;
+  };
+  std::vector<Extent> extents_;  // of every sheet, in blocks
+  std::vector<BlockBounds> bounds_;
+  std::vector<Flat> flat_;
+  std::vector<std::uint8_t> edges_;       // whether a block is of a square that is nearly flat
+  AlignedArray<float> low_[3], high_[3];  // of bounds_.x
+  std::vector<std::int32_t> near_;        // of one block, which others,
+  std::vector<float> near_squared_;       // and how far their boxes are
+  std::vector<Rows> then_;
+  std::size_t active_ = 0;
+};
+
+}  // namespace weft::physics

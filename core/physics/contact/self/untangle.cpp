@@ -1,0 +1,391 @@
+// Sheets that pass through each other (untangle.h).
+#include "physics/contact/self/untangle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "physics/model/lattice/stages.h"
+#include "physics/contact/colliders/shapes.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr int kRowsAFrame = 8;   // that the line where sheets meet moves by
+constexpr int kMostFrames = 90;  // what has not come apart by then stays as it is
+constexpr int kFold = 4;  // columns or rows: what is nearer on a sheet crosses in a fold of it
+constexpr std::size_t kMostOfLine = 1 << 15;  // particles that are looked at
+// Times the area that it has: of a pinned particle, and of one that is an end of a crossing edge, too.
+constexpr double kPinned = 100, kPinnedEnd = 1e6;
+constexpr double kOnGrid = 1e-3;      // spacings that a pin may start off the grid of a flat sheet
+constexpr double kBeyond = 0.5;       // thicknesses that an end goes beyond the triangle
+constexpr double kMostOfEdge = 0.25;  // but no more than this part of its edge
+// Rings about what moves that come along, and the part that each goes of the way of the one within.
+constexpr int kRings = 3;
+constexpr double kAlong = 0.7;
+
+// Disjoint sets of the numbers from 0 (Tarjan 1975); the least of a set stands for it.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  std::int32_t of(std::int32_t n) {
+    while (parent_[std::size_t(n)] != n) {
+      std::int32_t& up = parent_[std::size_t(n)];
+      up = parent_[std::size_t(up)];
+      n = up;
+    }
+    return n;
+  }
+  void join(std::int32_t a, std::int32_t b) {
+    a = of(a), b = of(b);
+    parent_[std::size_t(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  return cross(minus(b, a), minus(c, a));
+}
+
+// Whether all of a sheet starts on its grid, but for the jitter.
+bool starts_flat(const Cloth& cloth) {
+  const Grid& g = cloth.grid;
+  return std::all_of(cloth.pins.begin(), cloth.pins.end(), [&](const Pin& p) {
+    if (p.keys.empty()) return true;
+    const Vec3 place = plus(
+        g.origin, plus(times(g.u, p.i / double(g.nx - 1)), times(g.v, p.j / double(g.ny - 1))));
+    const Vec3 off = minus(p.keys.front().position, place);
+    return std::sqrt(dot(off, off)) < kOnGrid * std::min(spacing_u(g), spacing_v(g));
+  });
+}
+
+// Whether flat sheet a lies on one side of flat sheet b's plane.
+bool on_one_side(const Grid& a, const Grid& b) {
+  const Vec3 normal = cross(b.u, b.v);
+  const double margin = (a.jitter + b.jitter) * std::sqrt(dot(normal, normal));
+  bool above = true, below = true;
+  for (const Vec3& corner :
+       {a.origin, plus(a.origin, a.u), plus(a.origin, a.v), plus(a.origin, plus(a.u, a.v))}) {
+    const double height = dot(normal, minus(corner, b.origin));
+    above &= height > margin;
+    below &= height < -margin;
+  }
+  return above || below;
+}
+
+}  // namespace
+
+Untangle::Untangle(const Scene& scene, const std::vector<const ClothParts*>& cloths) {
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const SelfCollision& self = scene.cloths[c].self_collision;
+    if (self.mode == SelfCollisionMode::off) continue;
+    const Grid& g = scene.cloths[c].grid;
+    sheets_.push_back({cloths[c], self.thickness, spacing_u(g) * spacing_v(g), count});
+    const Lattice& l = cloths[c]->lattice;
+    count += std::size_t(l.columns) * std::size_t(l.rows);
+  }
+  passing_.resize(count);
+  due_ = may_cross(scene);
+}
+
+const Untangle::Sheet& Untangle::sheet_of(std::int32_t particle) const {
+  auto sheet =
+      std::upper_bound(sheets_.begin(), sheets_.end(), std::size_t(particle),
+                       [](std::size_t number, const Sheet& s) { return number < s.first; });
+  return *--sheet;
+}
+
+double Untangle::inverse_mass(std::int32_t particle) const {
+  const Sheet& s = sheet_of(particle);
+  const Lattice& l = s.cloth->lattice;
+  const auto n = int(std::size_t(particle) - s.first);
+  return double(l.w(n / l.columns, n % l.columns));
+}
+
+// A flat sheet does not cross itself, nor one that lies on one side of it.
+bool Untangle::may_cross(const Scene& scene) const {
+  std::vector<const Cloth*> cloths;
+  for (const Cloth& c : scene.cloths)
+    if (c.self_collision.mode != SelfCollisionMode::off) cloths.push_back(&c);
+  for (const Cloth* a : cloths) {
+    if (!starts_flat(*a)) return true;
+    for (const Cloth* b : cloths)
+      if (a < b && !on_one_side(a->grid, b->grid) && !on_one_side(b->grid, a->grid)) return true;
+  }
+  return false;
+}
+
+bool Untangle::passes(std::int32_t particle, std::int32_t line) const {
+  for (std::size_t n = first_end(particle); n < ends_.size() && ends_[n].particle == particle; ++n)
+    if (ends_[n].line == line) return ends_[n].passes;
+  return false;
+}
+
+std::size_t Untangle::crossings() {
+  x_.clear();
+  faces_.clear();
+  for (const Sheet& s : sheets_) add_surface(*s.cloth, x_, faces_);
+  edges_ = edges_of(faces_);
+  crossings_ = find_crossings(x_, faces_, edges_);
+  return crossings_.size();
+}
+
+void Untangle::pull_apart() {
+  std::fill(passing_.begin(), passing_.end(), std::uint8_t{0});
+  since_ = crossings() > 0 ? since_ + 1 : 0;
+  due_ = since_ > 0 && since_ <= kMostFrames;
+  if (!due_) return;
+  // Where all crosses all, which takes long to tell, one a frame.
+  const int rows = crossings_.size() > x_.size() ? 1 : kRowsAFrame;
+  for (int row = 0; row < rows && !crossings_.empty(); ++row) {
+    choose_parts();
+    move_ends();
+    crossings_ = find_crossings(x_, faces_, edges_);
+  }
+  put_back();
+}
+
+// Crossings along one line where sheets meet: from an edge through a triangle the line goes on to the
+// other edges of the edge's triangles, or to those of that triangle.
+void Untangle::find_lines() {
+  Sets lines(crossings_.size());
+  const auto share = [](const Edge& a, const Edge& b) {
+    return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+  };
+  std::vector<std::int32_t> by_face(crossings_.size());
+  std::iota(by_face.begin(), by_face.end(), 0);
+  const auto crossing = [&](std::int32_t k) { return crossings_[std::size_t(k)]; };
+  std::ranges::stable_sort(by_face, {}, [&](std::int32_t k) { return crossing(k).face; });
+  for (auto a = by_face.begin(); a != by_face.end(); ++a)
+    for (auto b = a + 1; b != by_face.end() && crossing(*b).face == crossing(*a).face; ++b)
+      if (share(crossing(*a).edge, crossing(*b).edge)) lines.join(*a, *b);
+  for (std::size_t k = 0; k < crossings_.size(); ++k) {
+    const Crossing& c = crossings_[k];
+    const Face& f = faces_[std::size_t(c.face)];
+    for (int side = 0; side < 3; ++side) {
+      const std::int32_t a = f[side], b = f[(side + 1) % 3];
+      const Edge edge{std::min(a, b), std::max(a, b)};
+      for (auto other = std::ranges::lower_bound(crossings_, edge, {}, &Crossing::edge);
+           other != crossings_.end() && other->edge == edge; ++other) {
+        const Face& through = faces_[std::size_t(other->face)];
+        const auto has = [&](std::int32_t n) {
+          return std::find(through.begin(), through.end(), n) != through.end();
+        };
+        if (has(c.edge[0]) && has(c.edge[1]))
+          lines.join(std::int32_t(k), std::int32_t(other - crossings_.begin()));
+      }
+    }
+  }
+  line_.resize(crossings_.size());
+  for (std::size_t k = 0; k < line_.size(); ++k) line_[k] = lines.of(std::int32_t(k));
+}
+
+// The ends of crossing edges, by particle and line, each once.
+void Untangle::list_ends() {
+  ends_.clear();
+  for (std::size_t k = 0; k < crossings_.size(); ++k) {
+    const Face& f = faces_[std::size_t(crossings_[k].face)];
+    const Vec3 normal = normal_of(at(f[0]), at(f[1]), at(f[2]));
+    for (const std::int32_t end : crossings_[k].edge)
+      ends_.push_back({end, line_[k], dot(normal, minus(at(end), at(f[0]))) > 0, 0, false});
+  }
+  const auto place = [](const End& e) { return std::pair(e.particle, e.line); };
+  std::ranges::stable_sort(ends_, {}, place);
+  const auto same = [&](const End& a, const End& b) { return place(a) == place(b); };
+  ends_.erase(std::unique(ends_.begin(), ends_.end(), same), ends_.end());
+}
+
+// Of every line, the part that is least.
+void Untangle::choose_parts() {
+  find_lines();
+  list_ends();
+  std::vector<Edge> crossing;
+  for (const Crossing& c : crossings_) crossing.push_back(c.edge);
+  whole_.clear();
+  std::set_difference(edges_.begin(), edges_.end(), crossing.begin(), crossing.end(),
+                      std::back_inserter(whole_));
+  // Ends of one line on one side that are neighbours begin one part.
+  Sets parts(ends_.size());
+  for (const auto& [a, b] : edges_)
+    for (std::size_t n = first_end(a); n < ends_.size() && ends_[n].particle == a; ++n)
+      for (std::size_t m = first_end(b); m < ends_.size() && ends_[m].particle == b; ++m)
+        if (ends_[n].line == ends_[m].line && ends_[n].front == ends_[m].front)
+          parts.join(std::int32_t(n), std::int32_t(m));
+  for (std::size_t n = 0; n < ends_.size(); ++n) ends_[n].part = parts.of(std::int32_t(n));
+  list_neighbours();
+  std::vector<std::int32_t> order(ends_.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto line_of = [&](std::int32_t n) { return ends_[std::size_t(n)].line; };
+  std::ranges::stable_sort(order, {}, line_of);
+  part_.assign(x_.size(), -1);
+  for (auto begin = order.begin(); begin != order.end();) {
+    const std::int32_t line = line_of(*begin);
+    const auto end =
+        std::find_if(begin, order.end(), [&](std::int32_t n) { return line_of(n) != line; });
+    choose_part({begin, end});
+    begin = end;
+  }
+}
+
+// Every particle belongs to the part of the line's end that is the fewest edges away, as far as that is
+// looked at.
+void Untangle::choose_part(std::span<const std::int32_t> ends) {
+  reached_.clear();
+  for (const std::int32_t n : ends) {
+    const End& end = ends_[std::size_t(n)];
+    part_[std::size_t(end.particle)] = end.part;
+    reached_.push_back(end.particle);
+  }
+  for (std::size_t k = 0; k < reached_.size() && reached_.size() < kMostOfLine; ++k) {
+    const auto n = std::size_t(reached_[k]);
+    for (std::size_t at = first_[n]; at < first_[n + 1]; ++at) {
+      std::int32_t& part = part_[std::size_t(neighbours_[at])];
+      if (part >= 0) continue;
+      part = part_[n];
+      reached_.push_back(neighbours_[at]);
+    }
+  }
+  std::map<std::int32_t, double> areas;
+  for (const std::int32_t n : reached_) areas[part_[std::size_t(n)]] += area(n, kPinned);
+  for (const std::int32_t n : ends) {
+    const End& end = ends_[std::size_t(n)];
+    areas[end.part] += area(end.particle, kPinnedEnd);
+  }
+  const auto least = std::min_element(areas.begin(), areas.end(), [](const auto& a, const auto& b) {
+                       return a.second < b.second;
+                     })->first;
+  for (const std::int32_t n : ends)
+    ends_[std::size_t(n)].passes = ends_[std::size_t(n)].part == least;
+  for (const std::int32_t n : reached_) {
+    passing_[std::size_t(n)] |= part_[std::size_t(n)] == least;
+    part_[std::size_t(n)] = -1;
+  }
+}
+
+// Of a particle [m²], so many times where it is pinned.
+double Untangle::area(std::int32_t particle, double pinned) const {
+  return sheet_of(particle).area * (inverse_mass(particle) > 0 ? 1 : pinned);
+}
+
+std::size_t Untangle::first_end(std::int32_t particle) const {
+  return std::size_t(std::ranges::lower_bound(ends_, particle, {}, &End::particle) - ends_.begin());
+}
+
+// By edges that do not cross.
+void Untangle::list_neighbours() {
+  first_.assign(x_.size() + 1, 0);
+  for (const Edge& e : whole_)
+    for (const std::int32_t end : e) ++first_[std::size_t(end) + 1];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  neighbours_.resize(2 * whole_.size());
+  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+  for (const auto& [a, b] : whole_) {
+    neighbours_[next[std::size_t(a)]++] = b;
+    neighbours_[next[std::size_t(b)]++] = a;
+  }
+}
+
+// Whether two are that near on one sheet that the sides of what crosses there tell little.
+bool Untangle::in_a_fold(std::int32_t a, std::int32_t b) const {
+  const Sheet& s = sheet_of(a);
+  if (&s != &sheet_of(b)) return false;
+  const int columns = s.cloth->lattice.columns;
+  const int n = a - int(s.first), m = b - int(s.first);
+  return std::abs(n % columns - m % columns) <= kFold &&
+         std::abs(n / columns - m / columns) <= kFold;
+}
+
+// From a particle to the middle of its neighbours.
+Vec3 Untangle::to_neighbours(std::int32_t particle) const {
+  const std::size_t begin = first_[std::size_t(particle)], end = first_[std::size_t(particle) + 1];
+  if (begin == end || !(inverse_mass(particle) > 0)) return {};
+  Vec3 sum{};
+  for (std::size_t n = begin; n < end; ++n) sum = plus(sum, at(neighbours_[n]));
+  return minus(times(sum, 1 / double(end - begin)), at(particle));
+}
+
+// Each moves by the mean of what the edges that it is an end of, and the triangles that it is a corner
+// of, ask for. What lies about comes along.
+void Untangle::move_ends() {
+  Moves m{std::vector<Vec3>(x_.size(), Vec3{}), std::vector<int>(x_.size(), 0)};
+  for (std::size_t k = 0; k < crossings_.size(); ++k) {
+    const auto [a, b] = crossings_[k].edge;
+    const Face& f = faces_[std::size_t(crossings_[k].face)];
+    if (in_a_fold(a, f[0])) {
+      for (const std::int32_t n : {a, b, f[0], f[1], f[2]}) m.ask(n, to_neighbours(n));
+      continue;
+    }
+    const bool passes_a = passes(a, line_[k]), passes_b = passes(b, line_[k]);
+    if (passes_a && !passes_b) take_through(a, b, f, m);
+    if (passes_b && !passes_a) take_through(b, a, f, m);
+  }
+  for (std::size_t n = 0; n < x_.size(); ++n)
+    if (m.asked[n] > 0) m.way[n] = times(m.way[n], 1.0 / m.asked[n]);
+  for (int ring = 0; ring < kRings; ++ring) take_along(m);
+  for (std::size_t n = 0; n < x_.size(); ++n) x_[n] = plus(x_[n], m.way[n]);
+}
+
+// An edge's end goes towards the other, as far as the triangle between them and then some: half the way
+// itself, and half the triangle comes to meet it, but by no more than a part of its size.
+void Untangle::take_through(std::int32_t end, std::int32_t other, const Face& f, Moves& m) const {
+  const Vec3 normal = normal_of(at(f[0]), at(f[1]), at(f[2])), edge = minus(at(other), at(end));
+  const double area = std::sqrt(dot(normal, normal));
+  // Where the edge passes, by its length and by the triangle's corners.
+  const double along = dot(normal, minus(at(f[0]), at(end))) / dot(normal, edge);
+  if (!(area > 0) || !(along > 0 && along < 1)) return;
+  const Vec3 place = plus(at(end), times(edge, along));
+  std::array<double, 3> share{};
+  double sum_of_squares = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (!(inverse_mass(f[c]) > 0)) continue;
+    const Vec3 across = normal_of(place, at(f[(c + 1) % 3]), at(f[(c + 2) % 3]));
+    share[c] = std::max(0.0, dot(normal, across)) / (area * area);
+    sum_of_squares += share[c] * share[c];
+  }
+  const Vec3 direction = times(normal, (dot(normal, edge) > 0 ? 1 : -1) / area);
+  const double beyond =
+      std::min(kBeyond * sheet_of(end).thickness, kMostOfEdge * std::sqrt(dot(edge, edge)));
+  const double far = along * dot(direction, edge) + beyond;
+  const bool held = !(inverse_mass(end) > 0), triangle_held = !(sum_of_squares > 0);
+  const double most = kMostOfEdge * std::sqrt(sheet_of(f[0]).area);
+  const double theirs = triangle_held ? 0 : held ? far : std::min(0.5 * far, most);
+  for (std::size_t c = 0; c < 3; ++c)
+    if (share[c] > 0) m.ask(f[c], times(direction, -theirs * share[c] / sum_of_squares));
+  if (!held) m.ask(end, times(direction, far - theirs));
+}
+
+// What is next to what moves goes a part of the way with it.
+void Untangle::take_along(Moves& m) const {
+  std::vector<int> count(x_.size(), 0);
+  for (const auto& [a, b] : edges_)
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
+      const auto n = std::size_t(from), next = std::size_t(to);
+      if (m.asked[n] == 0 || m.asked[next] > 0 || !(inverse_mass(to) > 0)) continue;
+      m.way[next] = plus(m.way[next], m.way[n]);
+      ++count[next];
+    }
+  for (std::size_t n = 0; n < x_.size(); ++n)
+    if (count[n] > 0) {
+      m.way[n] = times(m.way[n], kAlong / count[n]);
+      m.asked[n] = 1;
+    }
+}
+
+void Untangle::put_back() {
+  for (const Sheet& s : sheets_) {
+    Lattice& l = s.cloth->lattice;
+    std::size_t n = s.first;
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i, ++n)
+        for (int k = 0; k < 3; ++k) l.x.at(k, j, i) = coordinate(x_[n][k]);
+  }
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,126 @@
+// A triangle against the shape of a collider, in double precision, seen from the shape's place and in its
+// own axes: the deepest point of one in the other.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "physics/contact/colliders/shapes.h"
+
+namespace weft::physics {
+
+using Weights = std::array<double, 3>;
+
+// One triangle's corners, seen from the collider's place at the end of the substep.
+struct Corners {
+  Triangle x, path;  // and how far each came in this substep
+  Vec3 at(const Weights& b) const {
+    return plus(plus(times(x[0], b[0]), times(x[1], b[1])), times(x[2], b[2]));
+  }
+};
+
+// The point of a triangle nearest to q (Ericson, Real-Time Collision Detection, 5.1.5).
+inline Weights nearest_on(const Triangle& t, const Vec3& q) {
+  const Vec3 ab = minus(t[1], t[0]), ac = minus(t[2], t[0]), aq = minus(q, t[0]);
+  const double d1 = dot(ab, aq), d2 = dot(ac, aq);
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+  const Vec3 bq = minus(q, t[1]);
+  const double d3 = dot(ab, bq), d4 = dot(ac, bq);
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) {
+    const double s = d1 / std::max(d1 - d3, 1e-300);
+    return {1 - s, s, 0};
+  }
+  const Vec3 cq = minus(q, t[2]);
+  const double d5 = dot(ab, cq), d6 = dot(ac, cq);
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) {
+    const double s = d2 / std::max(d2 - d6, 1e-300);
+    return {1 - s, 0, s};
+  }
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double s = (d4 - d3) / std::max((d4 - d3) + (d5 - d6), 1e-300);
+    return {0, 1 - s, s};
+  }
+  const double sum = va + vb + vc;
+  return {va / sum, vb / sum, vc / sum};
+}
+
+struct Deepest {
+  Weights weights{};
+  Nearest nearest;
+};
+
+inline constexpr int kProjections = 12;  // between triangle and core
+
+// The point of a triangle nearest to the core of a shape, by alternating projections between the two.
+// They end early at a plane that holds the two further apart than `enough`.
+struct Approach {
+  Weights weights{1 / 3., 1 / 3., 1 / 3.};
+  bool apart = false;  // a plane was found between the two
+  bool far = false;    // and it holds them apart by enough
+};
+template <class Shape>
+Approach approach(const Shape& shape, const Corners& c, double enough, double edge) {
+  Approach a;
+  Core core = core_of(shape, c.at(a.weights));
+  for (int n = 0; n < kProjections; ++n) {
+    const Weights before = a.weights;
+    a.weights = nearest_on(c.x, core.nearest);
+    const Vec3 here = c.at(a.weights);
+    core = core_of(shape, here);
+    const Vec3 way = minus(here, core.nearest);
+    const double square = dot(way, way);
+    double least = 1e300;
+    for (const Vec3& x : c.x) least = std::min(least, dot(way, minus(x, here)));
+    const double gap = (square + least) / std::sqrt(std::max(square, 1e-300));
+    a.apart |= gap > 1e-6 * edge;  // more than rounding
+    a.far = a.apart && gap >= enough;
+    const Vec3 change = minus(a.weights, before);
+    if (a.far || dot(change, change) < 1e-12) break;
+  }
+  return a;
+}
+
+// The deepest point of a triangle in a shape. One that cuts the core is first moved out of it, along the
+// way of least overlap.
+template <class Shape>
+Deepest deepest_on(const Shape& shape, Corners c, double offset, double edge) {
+  const double radius = core_of(shape, c.x[0]).radius;
+  Approach a = approach(shape, c, radius + offset, edge);
+  if (a.far) return {a.weights, {offset, {}}};
+  if (!a.apart) {
+    if (const Overlap overlap = overlap_of(shape, c.x); overlap.depth > 0) {
+      for (Vec3& x : c.x) x = plus(x, times(overlap.normal, overlap.depth + 1e-3 * edge));
+      a = approach(shape, c, std::numeric_limits<double>::infinity(), edge);
+      return {a.weights, {-overlap.depth - radius, overlap.normal}};
+    }
+  }
+  return {a.weights, nearest_of(shape, c.at(a.weights))};
+}
+
+// A shape in its own axes: a box is looked at there.
+struct Upright {
+  Shape shape;
+  std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+
+  explicit Upright(const Shape& given) : shape(given) {
+    if (auto* box = std::get_if<Box>(&shape)) {
+      const ShapeConstants turned = constants_of(*box);
+      for (int k = 0; k < 3; ++k)
+        axes[k] = {turned.turn[3 * k], turned.turn[3 * k + 1], turned.turn[3 * k + 2]};
+      box->rotation = {};
+    }
+  }
+  Vec3 into(const Vec3& p) const { return {dot(axes[0], p), dot(axes[1], p), dot(axes[2], p)}; }
+  Vec3 out_of(const Vec3& p) const {
+    return plus(plus(times(axes[0], p[0]), times(axes[1], p[1])), times(axes[2], p[2]));
+  }
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,29 @@
+// Stage "carry" (carry.cpp): in the plan only while a hand carries what is held.
+#pragma once
+
+#include "physics/model/lattice/stages.h"
+
+namespace weft::physics {
+
+class Carry final : public RowStage {
+ public:
+  explicit Carry(const ClothParts& parts)
+      : RowStage("carry", "held particles moved by a hand", 0, parts.particles(), "particles"),
+        parts_(parts) {}
+  // From `time` [s] on all that is held now moves at `velocity` [m/s].
+  void begin(double time, const Vec3& velocity);
+  double speed() const;  // m/s
+  void run(int j, const Substep& s) override;
+
+ private:
+  struct Held {
+    int column;
+    Vec3 start;  // m
+  };
+  ClothParts parts_;
+  std::vector<std::vector<Held>> by_row_;
+  double time_ = 0;
+  Vec3 velocity_{};
+};
+
+}  // namespace weft::physics

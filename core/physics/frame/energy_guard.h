@@ -1,0 +1,90 @@
+// The last line against explosions: what a simulation's motion may come to, by the energy that was
+// put into it.
+//
+//   ½ Σ m v² <= kBound (elastic energy and motion of the start + what gravity has released)
+//
+// Stiff springs turn the rounding of positions into motion, substep by substep: that is allowed for.
+// A projected constraint counts as a spring of at most the inertia of its ends over dt², all that a
+// sweep makes of it, and of its positional share. The spring that a hand pulls with puts in what moving
+// its far end stores in it. Where something else does work (pins and bodies on paths or carried by a
+// hand, wind, contact of the sheet with itself), the motion may also come to kBound times that of a
+// sheet that is 10 m/s faster than what drives it. A run that keeps its energy stays near a quarter of
+// the bound.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "physics/frame/cloth_step.h"
+
+namespace weft::physics {
+
+// Whether the motion and elastic energy of a cloth, as the method feels it, is more than twice what it
+// was at `start` with positions x and velocities v, and besides more than what gravity, paths and wind
+// can have put in until `end`.
+bool gained(const Scene& scene, Method method, const ClothStep& step, const Rows& x, const Rows& v,
+            double dt, double start, double end);
+
+// What a cloth holds at the end of a frame, as the method feels it, and what drag took of its motion in
+// it [J].
+struct Balance {
+  double inner = 0;      // motion and elastic energy
+  double potential = 0;  // of gravity
+  double lost = 0;
+};
+Balance balance(const Scene& scene, Method method, const ClothStep& step, double dt);
+
+// Whether paths or wind do work between two times.
+bool works(const Scene& scene, double from, double to);
+
+// Watches sheets that nothing drives: whether they keep energy that drag must have taken. Sweeps that
+// overshoot put in anew what it takes, frame by frame.
+class Upkeep {
+ public:
+  void restart() { known_ = false; }
+  // Counts one more frame; whether more than what moved at the lowest of all energies has been lost
+  // since, and the energy is no lower.
+  bool kept_up(const Balance& now);
+
+ private:
+  bool known_ = false;
+  double least_ = 0, inner_ = 0, lost_ = 0;  // J
+};
+
+class EnergyGuard {
+ public:
+  static constexpr double kBound = 4;
+
+  // Counts what the state holds that a run begins with, or goes on from after it was set.
+  void open(const Scene& scene, Method method,
+            const std::vector<std::unique_ptr<ClothStep>>& cloths, double time, double dt);
+  // Something that a hand moves goes at so many m/s from now on.
+  void drive(double speed);
+  // So much more energy is there to move the sheets [J].
+  void put_in(double energy) { put_in_ += energy; }
+  // Looks at the end of a frame; `driven`: something but gravity did work in it.
+  void look(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths, bool driven);
+  // The same, by what has been summed over all cloths.
+  void look(const EnergySum& all, bool driven);
+  // Whether the motion last looked at is within the bound.
+  bool holds() const { return kinetic_ <= bound(); }
+  // Takes the frame last looked at, of so many substeps, for good.
+  void accept(int substeps);
+  // What velocities must be multiplied with to be within the bound.
+  double reduction() const;
+
+ private:
+  double bound() const;
+
+  double put_in_ = 0;     // J; of the start, and by rounding since
+  double rounding_ = 0;   // J; what stiff springs make of the rounding of positions in a substep
+  double free_mass_ = 0;  // kg
+  double fastest_ = 0;    // m/s; what drives the sheets, at most
+  double highest_ = 0;    // J; potential of gravity
+  double released_ = 0;   // J; by gravity so far
+  // J; of the frame last looked at: motion, potential, what gravity has released.
+  double kinetic_ = 0, potential_ = 0, fall_ = 0;
+  bool driven_ = false;
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,190 @@
+// Memory and time of a run, from counts and measured constants (weft/estimate.h).
+#include "weft/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "physics/model/lattice/stability.h"
+#include "physics/model/lattice/stencil.h"
+#include "weft/simulation.h"
+
+namespace weft {
+
+using namespace physics;
+
+namespace {
+
+// Bytes a particle, measured as peak resident memory of `weft run` on sheets of 100 to 1000 points a
+// side (bench/estimate): what every scene needs, and what a feature adds.
+namespace memory {
+constexpr double kProgram = 9e6;  // bytes, whatever the scene
+constexpr double kState = 380;    // both lattices, what a frame goes back to, measuring
+constexpr double kProjection = 25;
+constexpr double kJacobi = 20;
+constexpr double kOrder2 = 60;
+constexpr double kTethers = 35;
+constexpr double kTearing = 60;
+constexpr double kMasses = 40;
+constexpr double kParticles = 430;  // contact of a folded sheet; 230 where it lies flat
+constexpr double kSurface = 1100;   // 900 where it lies flat
+}  // namespace memory
+
+// Nanoseconds on one thread of a current x86-64 core with AVX-512, measured as docs/benchmarks.md tells
+// and raised by a third, for what a whole program meets: a constraint, or a particle, and substep.
+namespace cost {
+constexpr double kFrame = 20e3, kSubstep = 400;  // a cloth
+constexpr double kFrameParticle = 12;            // a particle and frame: saving, looking, measuring
+constexpr double kSpring = 0.5, kDampedSpring = 0.75;
+constexpr double kGaussSeidel = 1.0, kJacobi = 0.6, kLine = 1.3;  // and sweep
+constexpr double kSpringBend = 2, kSweepBend = 5;                 // from here on: a particle
+constexpr double kProjection = 1.2, kTethers = 1.5;
+constexpr double kStrainLimit = 1.2, kTearing = 0.6, kWind = 0.8;
+constexpr double kCollider = 0.5, kBox = 20;       // and collider; a box meets whole triangles
+constexpr double kParticles = 15, kSurface = 130;  // contact of a sheet that lies on itself
+}  // namespace cost
+
+bool is_spring(Method method) {
+  return method == Method::spring || method == Method::spring_friction;
+}
+
+// A cutting of a cloth with the same springs: its corner, as heavy as its lightest particle.
+Cloth cutting(const Cloth& from) {
+  constexpr int kPoints = 24;  // a side; the longest constraint spans 8
+  Cloth cloth;
+  const Grid& grid = from.grid;
+  cloth.grid.nx = std::min(grid.nx, kPoints);
+  cloth.grid.ny = std::min(grid.ny, kPoints);
+  for (int k = 0; k < 3; ++k) {
+    cloth.grid.u[k] = grid.u[k] * (cloth.grid.nx - 1) / (grid.nx - 1);
+    cloth.grid.v[k] = grid.v[k] * (cloth.grid.ny - 1) / (grid.ny - 1);
+  }
+  cloth.particle_mass = particle_mass(from, 0, 0);
+  for (const double mass : from.masses) cloth.particle_mass = std::min(cloth.particle_mass, mass);
+  cloth.stiffness = from.stiffness;
+  cloth.spring_damping = from.spring_damping;
+  cloth.level = from.level;
+  cloth.bending = from.bending;
+  return cloth;
+}
+
+// Small, but with the substeps and the method of the whole.
+Scene cutting(const Scene& from) {
+  Scene scene;
+  scene.time = from.time;
+  scene.solver = from.solver;
+  for (const Cloth& cloth : from.cloths)
+    if (Cloth piece = cutting(cloth); std::ranges::find(scene.cloths, piece) == scene.cloths.end())
+      scene.cloths.push_back(std::move(piece));
+  return scene;
+}
+
+struct Way {
+  Solver solver;
+  int substeps;
+};
+
+// How the scene will be solved.
+Way way_of(const Scene& scene) {
+  const Simulation piece(cutting(scene), {.threads = 1});
+  Way way{piece.scene().solver, piece.substeps()};
+  if (piece.plan().fallback && is_spring(way.solver.method)) way.solver.method = Method::compliant;
+  if (!is_spring(way.solver.method) && scene.time.substeps == kAutoSubsteps)
+    way.substeps =
+        int(std::clamp(std::round(scene.time.frame / projection_substep(scene)), 1.0, 1e5));
+  return way;
+}
+
+double constraints_of(const Cloth& cloth) {
+  double count = 0;
+  for (const Stencil& f : stencils_of(cloth))
+    count += double(std::max(0, f.per_row(cloth.grid.nx))) * std::max(0, cloth.grid.ny - f.dj);
+  return count;
+}
+
+double bytes_of(const Cloth& cloth, const Solver& solver) {
+  const bool projects = !is_spring(solver.method);
+  double each = memory::kState;
+  if (projects) each += memory::kProjection;
+  if (projects && solver.sweep == Sweep::jacobi) each += memory::kJacobi;
+  if (solver.order == 2) each += memory::kOrder2;
+  if (solver.tethers) each += memory::kTethers;
+  if (cloth.tear_strain > 0) each += memory::kTearing;
+  if (!cloth.masses.empty()) each += memory::kMasses;
+  if (cloth.self_collision.mode == SelfCollisionMode::particles) each += memory::kParticles;
+  if (cloth.self_collision.mode == SelfCollisionMode::surface) each += memory::kSurface;
+  return each * row_stride(cloth.grid.nx) * cloth.grid.ny;
+}
+
+// Of one substep [ns].
+double constraint_cost(const Cloth& cloth, const Solver& solver) {
+  const double count = constraints_of(cloth);
+  const double particles = double(cloth.grid.nx) * cloth.grid.ny;
+  const double bends = cloth.bending > 0 ? particles : 0;
+  if (solver.method == Method::spring) return count * cost::kSpring + bends * cost::kSpringBend;
+  if (solver.method == Method::spring_friction)
+    return count * cost::kDampedSpring + bends * cost::kSpringBend;
+  const double sweep = solver.sweep == Sweep::jacobi ? cost::kJacobi
+                       : solver.sweep == Sweep::line ? cost::kLine
+                                                     : cost::kGaussSeidel;
+  const double tethers = solver.tethers ? cost::kTethers : 0;
+  return solver.iterations * (count * sweep + bends * cost::kSweepBend) +
+         particles * (cost::kProjection + tethers);
+}
+
+double substep_cost(const Scene& scene, const Cloth& cloth, const Solver& solver) {
+  double each = 0;
+  if (cloth.strain_limit > 0) each += cost::kStrainLimit;
+  if (cloth.tear_strain > 0) each += cost::kTearing;
+  if (scene.wind.drag > 0 || scene.wind.lift > 0) each += cost::kWind;
+  for (const Collider& collider : scene.colliders)
+    each += solver.collision_iterations *
+            (std::holds_alternative<Box>(collider.shape) ? cost::kBox : cost::kCollider);
+  if (cloth.self_collision.mode == SelfCollisionMode::particles) each += cost::kParticles;
+  if (cloth.self_collision.mode == SelfCollisionMode::surface) each += cost::kSurface;
+  return cost::kSubstep + constraint_cost(cloth, solver) +
+         each * double(cloth.grid.nx) * cloth.grid.ny;
+}
+
+std::string words(double value, const char* unit) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*g %s", value < 100 ? 2 : 3, value, unit);
+  return text;
+}
+
+}  // namespace
+
+Estimate estimate(const Scene& scene) {
+  if (auto faults = validate(scene); !faults.empty()) throw SceneError(std::move(faults));
+  const Way way = way_of(scene);
+  Estimate e;
+  e.substeps = way.substeps;
+  e.frames = std::round(scene.time.seconds / scene.time.frame);
+  e.bytes = memory::kProgram;
+  double nanoseconds = 0;
+  for (const Cloth& cloth : scene.cloths) {
+    e.particles += std::int64_t(cloth.grid.nx) * cloth.grid.ny;
+    e.constraints += std::int64_t(constraints_of(cloth));
+    e.bytes += bytes_of(cloth, way.solver);
+    nanoseconds += cost::kFrame + cost::kFrameParticle * double(cloth.grid.nx) * cloth.grid.ny +
+                   way.substeps * substep_cost(scene, cloth, way.solver);
+  }
+  e.frame_seconds = nanoseconds * 1e-9;
+  return e;
+}
+
+std::string bytes_words(double bytes) {
+  if (bytes >= 1e12) return words(bytes * 1e-12, "TB");
+  return bytes >= 1e9 ? words(bytes * 1e-9, "GB") : words(std::ceil(bytes * 1e-6), "MB");
+}
+
+std::string time_words(double seconds) {
+  constexpr double kMinute = 60, kHour = 60 * kMinute, kDay = 24 * kHour, kYear = 365 * kDay;
+  if (seconds < 1) return words(seconds * 1e3, "ms");
+  if (seconds < 2 * kMinute) return words(seconds, "s");
+  if (seconds < 2 * kHour) return words(seconds / kMinute, "min");
+  if (seconds < 2 * kDay) return words(seconds / kHour, "h");
+  return seconds < 2 * kYear ? words(seconds / kDay, "days") : words(seconds / kYear, "years");
+}
+
+}  // namespace weft

@@ -1,0 +1,210 @@
+// The frame: substeps of all cloths through their plans, contact between them, and a stop with the place
+// of the fault when the state turns non-finite.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "physics/frame/state.h"
+#include "physics/model/lattice/energy.h"
+
+namespace weft {
+
+using namespace physics;
+
+namespace {
+
+// Of the springs' stability limit, between two runs of self-collision. Their shortest period is π of it:
+// with more than that in between, they push what lies on each other ever livelier.
+constexpr double kSwing = 2.5;
+// Share of the time that threads with a cloth each must be busy for: about what several make of one.
+constexpr double kBusy = 0.9;
+constexpr std::int64_t kManyParticles = 8192;  // for whose contact threads stand by all frame
+
+}  // namespace
+
+void Simulation::State::advance_frame() {
+  if (!status.ok) return;
+  const auto start = std::chrono::steady_clock::now();
+  since_hand_ = grab_ || carried() ? 0 : std::min(since_hand_ + scene.time.frame, kCalm);
+  if (hand_has_passed()) begin_again();
+  for (std::size_t c = 0; c < cloths.size(); ++c)
+    if (carried_[c]) wake(int(c));
+  if (sleeping) sleeping->begin_frame(double(frame) * scene.time.frame);
+  // What has been put in stays in when what did it is gone.
+  if (was_driven_ && !driven()) open_guard();
+  was_driven_ = driven();
+  save();
+  do {
+    run_frame();
+    look();
+  } while (too_coarse());
+  if (!finite_) {
+    find_fault();
+    restore();
+    return;
+  }
+  calm();
+  if (is_explicit(method) && !(sleeping && sleeping->all_asleep())) lag = dt / 2;
+  for (auto& step : cloths)
+    if (step->tearing()) step->tearing()->update();
+  ++frame;
+  total_substeps += substeps;
+
+  if (sleeping) sleeping->end_frame([&](std::size_t c) -> const Rows& { return records_[c].x(); });
+  if (is_explicit(method) && !(sleeping && sleeping->all_asleep())) follow_stretch(limit_);
+  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+  total_ms += spent.count();
+  // A run longer than the scene says keeps the times of its last frames.
+  if (frame_ms.size() < frame_ms.capacity())
+    frame_ms.push_back(float(spent.count()));
+  else
+    frame_ms[std::size_t(frame) % frame_ms.size()] = float(spent.count());
+}
+
+void Simulation::State::run_frame() {
+  if (sleeping && sleeping->all_asleep()) return;
+  if (!self_collision) return run_substeps(0, substeps);
+  if (surface) begin_surfaces();
+  if (self_collision->particles() < kManyParticles) return run_with_contact();
+  threads.together([&] { run_with_contact(); });
+}
+
+// What the frame has come to.
+void Simulation::State::look() {
+  finite_ = true;
+  if (sleeping && sleeping->all_asleep()) return;
+  EnergySum all;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (self_collision || asleep(c)) records_[c].measure();  // else its passes have looked
+    all += records_[c].energy_sum();
+  }
+  finite_ = all.greatest < kFarAway;
+  if (finite_) guard_.look(all, driven());
+}
+
+void Simulation::State::run_with_contact() {
+  for (int s = 0; s < substeps;) {
+    const int count = std::min(until_collision_ - since_collision_, substeps - s);
+    run_substeps(s, count);
+    s += count;
+    since_collision_ += count;
+    // A frame ends with surfaces that have not crossed.
+    if (since_collision_ < until_collision_ && !(surface && s == substeps)) break;
+    const auto start = std::chrono::steady_clock::now();
+    const double swing =
+        is_explicit(method) ? kSwing * limit_ : std::numeric_limits<double>::infinity();
+    until_collision_ = self_collision->run(dt, since_collision_, swing, threads);
+    if (surface)
+      until_collision_ = std::min(until_collision_, surface->run(dt, since_collision_, threads));
+    since_collision_ = 0;
+    const auto spent = std::chrono::steady_clock::now() - start;
+    self_collision_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+    ++self_collision_runs;
+  }
+}
+
+// Contact begins with what does not cross; what does comes apart first.
+void Simulation::State::begin_surfaces() {
+  if (untangle->due() || surface->forced()) {
+    untangle->pull_apart();
+    surface->leave_out(untangle->passing());
+    surface->restart();
+  }
+  if (!surface->valid()) surface->begin(threads);
+}
+
+Substeps Simulation::State::substeps_from(int first, int count) const {
+  const bool kicked = first == 0 && is_explicit(method);
+  return {double(frame) * scene.time.frame + first * dt, dt, count, kicked ? lag + dt / 2 : dt};
+}
+
+// A thread each where that keeps all of them busy; else cloths that are worth all threads take them one
+// after the other, and small ones run side by side.
+void Simulation::State::run_substeps(int first, int count) {
+  const Substeps now = substeps_from(first, count);
+  const auto run = [&](std::size_t c, Threads& team) {
+    cloths[c]->schedule().run(now, team, sleeping ? sleeping->rows(c) : std::span<const RowSpan>(),
+                              self_collision ? nullptr : &records_[c]);
+  };
+  const bool standing_by = threads.standing_by();
+  const auto worth_running_apart = [&] {
+    std::int64_t all = 0;
+    for (const std::size_t c : apart_) all += particles(c);
+    return apart_.size() > 1 && Schedule::worth_running_apart(all, count, standing_by);
+  };
+  apart_.clear();
+  for (std::size_t c = 0; c < cloths.size(); ++c)
+    if (!asleep(c)) apart_.push_back(c);
+  bool apart = worth_running_apart() && keep_busy(apart_);
+  if (!apart) {
+    std::size_t small = 0;
+    for (const std::size_t c : apart_)
+      if (cloths[c]->schedule().worth_sharing(particles(c), count, standing_by))
+        run(c, threads);
+      else
+        apart_[small++] = c;
+    apart_.resize(small);
+    apart = worth_running_apart();
+  }
+  const auto run_apart = [&] {
+    threads.share(apart_.size(), !apart, [&](std::size_t n) { run(apart_[n], one_thread); });
+  };
+  apart ? threads.together(run_apart) : run_apart();
+}
+
+int Simulation::State::particles(std::size_t cloth) const {
+  const Lattice& l = cloths[cloth]->lattice();
+  return l.columns * l.rows;
+}
+
+// Whether cloths of such sizes, each going to the thread that is free first, keep threads busy for nearly
+// all of the time.
+bool Simulation::State::keep_busy(const std::vector<std::size_t>& each) {
+  busy_.assign(std::size_t(threads.count()), 0);
+  std::int64_t all = 0;
+  for (const std::size_t c : each) {
+    *std::min_element(busy_.begin(), busy_.end()) += particles(c);
+    all += particles(c);
+  }
+  const std::int64_t longest = *std::max_element(busy_.begin(), busy_.end());
+  return kBusy * double(longest) * threads.count() <= double(all);
+}
+
+// Runs the frame again, stage by stage, to the first that leaves a particle non-finite.
+void Simulation::State::find_fault() {
+  restore();
+  status.ok = false;
+  status.frame = frame + 1;
+  status.stage = "step";
+  const Substeps all = substeps_from(0, substeps);
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    Lattice& l = cloths[c]->lattice();
+    for (int s = 0; s < substeps; ++s) {
+      const Substep substep = all.at(s);
+      for (const auto& stage : cloths[c]->stages()) {
+        stage->run_alone(l.rows, substep, threads);
+        for (int j = 0; j < l.rows && status.text == "ok"; ++j)
+          for (int i = 0; i < l.columns && status.text == "ok"; ++i)
+            for (int k = 0; k < 3; ++k)
+              if (!(std::abs(l.x.at(k, j, i)) < kFarAway) || !std::isfinite(l.v.at(k, j, i))) {
+                status.stage = stage->name;
+                status.cloth = int(c);
+                status.i = i;
+                status.j = j;
+                status.text = "not finite in frame " + std::to_string(status.frame) + ", substep " +
+                              std::to_string(s + 1) + ", stage " + stage->name + ", cloth " +
+                              std::to_string(c) + ", particle [" + std::to_string(i) + "," +
+                              std::to_string(j) + "]";
+                break;
+              }
+        if (status.text != "ok") return;
+      }
+    }
+  }
+  // Every stage stays finite by itself: what runs between them does not.
+  status.stage = self_collision ? "self_collision" : "step";
+  status.text = "not finite in frame " + std::to_string(status.frame) + ", stage " + status.stage;
+}
+
+}  // namespace weft

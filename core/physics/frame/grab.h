@@ -1,0 +1,26 @@
+// Stage "grab" (grab.cpp): in the plan only while something is held.
+#pragma once
+
+#include "physics/model/lattice/stages.h"
+
+namespace weft::physics {
+
+class Grab final : public RowStage {
+ public:
+  explicit Grab(const ClothParts& parts)
+      : RowStage("grab", "a particle drawn to a target", 0, 1, "particles"), parts_(parts) {}
+  double energy() const;  // J; in the spring as it is stretched now
+  Velocities velocities(double dt) const override;
+  void run(int j, const Substep& s) override;
+
+  int column = 0, row = 0;
+  Vec3 target{};
+  double stiffness = 0;  // N/m
+
+ private:
+  double held_stiffness() const;
+
+  ClothParts parts_;
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,247 @@
+// Measures a simulation (measure.h). Nothing here touches the state.
+#include "physics/frame/measure.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+
+#include "physics/contact/colliders/shapes.h"
+#include "physics/contact/self/crossings.h"
+#include "physics/model/lattice/bending.h"
+#include "physics/model/lattice/energy.h"
+#include "weft/shape.h"
+
+namespace weft::physics {
+namespace {
+
+void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
+  const ClothStep& step = *s.cloths[index];
+  const Lattice& l = step.lattice();
+  const AlignedArray<float>& masses = s.masses(index);
+  const std::vector<Vec3> x = gather(l, l.x);
+  // A strain limit takes back much of what springs alone would add in the half substep to now.
+  const std::vector<Vec3> v =
+      step.cloth().strain_limit > 0 ? gather(l, l.v) : velocities_now(s, index);
+  r.energy.elastic += elastic_energy(step.cloth(), step.stencils(), x) +
+                      bending_energy(step.cloth(), x, step.bend_links());
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    const int i = int(p) % l.columns, j = int(p) / l.columns;
+    if (masses[std::size_t(j) * l.stride + i] == 0) continue;
+    const double m = particle_mass(step.cloth(), i, j);
+    const Vec3 a = plus(x[p], s.origin);
+    const Vec3& b = v[p];
+    for (int k = 0; k < 3; ++k) {
+      r.energy.kinetic += 0.5 * m * b[k] * b[k];
+      r.energy.gravity -= m * s.scene.gravity[k] * a[k];
+      r.momentum[k] += m * b[k];
+      const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      r.angular_momentum[k] += m * (a[k1] * b[k2] - a[k2] * b[k1]);
+    }
+  }
+}
+
+void add_constraints(const ClothStep& step, Report& r) {
+  for (const Stencil& f : step.stencils()) {
+    const std::int64_t n =
+        std::int64_t(f.per_row(step.lattice().columns)) * (step.lattice().rows - f.dj);
+    (f.kind == Kind::structural ? r.constraints.structural
+     : f.kind == Kind::shear    ? r.constraints.shear
+                                : r.constraints.bend) += n;
+  }
+}
+
+void add_penetration(const Simulation::State& s, const ClothStep& step, Report& r) {
+  const double time = double(s.frame) * s.scene.time.frame;
+  for (const Vec3& x : gather(step.lattice(), step.lattice().x))
+    for (const Collider& c : s.scene.colliders)
+      if (!c.cuts)
+        r.penetration.collider_max =
+            std::max(r.penetration.collider_max, -signed_distance(c, time, x));
+}
+
+// Strain over all cloths: the largest, and the mean weighted by constraints.
+void add_strain(const Simulation::State& s, Report& r) {
+  double sum = 0, count = 0, largest = 0;
+  bool any = false;
+  for (const auto& step : s.cloths) {
+    std::int64_t n = 0;
+    for (const Stencil& f : step->stencils())
+      if (f.kind == Kind::structural)
+        n += std::int64_t(f.per_row(step->lattice().columns)) * (step->lattice().rows - f.dj);
+    if (n == 0) continue;
+    const Strain strain = structural_strain(step->cloth(), step->stencils(),
+                                            gather(step->lattice(), step->lattice().x));
+    largest = any ? std::max(largest, strain.max) : strain.max;
+    any = true;
+    sum += strain.mean * double(n);
+    count += double(n);
+  }
+  r.strain.max = largest;
+  r.strain.mean = count > 0 ? sum / count : 0;
+}
+
+void add_self_contact(const Simulation::State& s, Report& r) {
+  std::vector<Vec3> x;
+  std::vector<Face> faces;
+  for (const auto& step : s.cloths) add_surface(step->parts(), x, faces);
+  r.penetration.crossings = count_crossings(x, faces);
+  if (!s.self_collision) return;
+  // By a search of its own: the one that runs must not notice.
+  const SelfContact::Overlaps overlaps =
+      SelfContact::make(s.scene, parts_of(s.cloths), kernel_table(s.simd))->overlaps();
+  r.penetration.self_pairs = overlaps.pairs;
+  r.penetration.self_max = overlaps.deepest;
+}
+
+// What the stages passed over while they ran.
+void add_idle(const Simulation::State& s, Report& r) {
+  for (const auto& step : s.cloths)
+    for (const auto& stage : step->stages())
+      if (const double idle = stage->idle(); idle > 0) {
+        char why[64];
+        std::snprintf(why, sizeof why, "%.1f %% of the rows were out of reach", 100 * idle);
+        r.skipped.push_back({stage->name, stage->detail + ": " + why});
+      }
+  if (s.sleeping) {
+    char why[96];
+    std::snprintf(why, sizeof why,
+                  "%lld particles are asleep; %.1f %% of all rows' frames were slept through",
+                  static_cast<long long>(s.sleeping->asleep()), 100 * s.sleeping->share());
+    r.skipped.push_back({"sleep", why});
+  }
+  if (s.self_collision && s.self_collision_runs > 0) {
+    const auto percent_of_substeps = [&](std::int64_t times) {
+      return 100 * double(times) / double(std::max<std::int64_t>(s.total_substeps, 1));
+    };
+    char why[240];
+    std::snprintf(
+        why, sizeof why,
+        "looked after %.1f %% of the substeps, searched in %.1f %% of those; %.1f %% of the "
+        "particles had nothing near",
+        percent_of_substeps(s.self_collision_runs), 100 * (1 - s.self_collision->kept()),
+        100 * s.self_collision->passed_over());
+    r.skipped.push_back({"self_collision", why});
+    if (s.surface) {
+      std::snprintf(
+          why, sizeof why,
+          "surfaces measured after %.1f %% of the substeps and in part after %.1f %%, pairs listed "
+          "%.1f times; %lld moves of particles cut short",
+          percent_of_substeps(s.surface->measured()),
+          percent_of_substeps(s.surface->measured_in_part()), s.surface->listed(),
+          static_cast<long long>(s.surface->held_back()));
+      r.skipped.push_back({"self_surface", why});
+    }
+  }
+}
+
+void add_wall_time(const Simulation::State& s, Report& r) {
+  std::vector<float> ms = s.frame_ms;
+  std::sort(ms.begin(), ms.end());
+  r.wall_ms.total = s.total_ms;
+  if (ms.empty()) return;
+  const auto quantile = [&](double q) {
+    return double(ms[std::size_t(q * double(ms.size() - 1))]);
+  };
+  r.wall_ms.frame_min = ms.front();
+  r.wall_ms.frame_median = quantile(0.5);
+  r.wall_ms.frame_p99 = quantile(0.99);
+  r.wall_ms.frame_max = ms.back();
+}
+
+// Stages of one name together, plus what the frame spends outside them; sums to the total.
+void add_stages(const Simulation::State& s, Report& r) {
+  if (!s.options.profile) {
+    r.stages.push_back({"step", s.total_ms, s.total_substeps});
+    return;
+  }
+  double sum = 0;
+  for (std::size_t c = 0; c < s.cloths.size(); ++c) {
+    const auto& stages = s.cloths[c]->stages();
+    for (std::size_t q = 0; q < stages.size(); ++q) {
+      const double ms = double(s.stage_ns[c][q].load()) * 1e-6;
+      auto at = std::find_if(r.stages.begin(), r.stages.end(),
+                             [&](const StageTime& t) { return t.name == stages[q]->name; });
+      if (at == r.stages.end()) at = r.stages.insert(at, {stages[q]->name, 0, 0});
+      at->ms += ms;
+      at->calls += s.total_substeps;
+      sum += ms;
+    }
+  }
+  if (s.self_collision) {
+    const double ms = double(s.self_collision_ns) * 1e-6;
+    r.stages.push_back({"self_collision", ms, s.self_collision_runs});
+    sum += ms;
+  }
+  // Several threads spend more than passes on the clock: shares of the work, not of the wall.
+  const double scale = sum > s.total_ms ? s.total_ms / sum : 1;
+  for (StageTime& t : r.stages) t.ms *= scale;
+  r.stages.push_back({"frame", std::max(0.0, s.total_ms - sum * scale), s.frame});
+}
+
+}  // namespace
+
+std::vector<Vec3> velocities_now(const Simulation::State& s, std::size_t index) {
+  const ClothStep& step = *s.cloths[index];
+  std::vector<Vec3> v = gather(step.lattice(), step.lattice().v);
+  if (!is_explicit(s.method)) return v;
+  std::vector<Vec3> a;
+  s.accelerations_now(index, s.lag, a);
+  for (std::size_t p = 0; p < v.size(); ++p)
+    for (int k = 0; k < 3; ++k) v[p][k] += a[p][k] * s.lag;
+  return v;
+}
+
+std::uint64_t state_hash(const Simulation::State& s) {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+  const auto add = [&](float value) {
+    const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
+    for (int b = 0; b < 4; ++b) hash = (hash ^ (bits >> (8 * b) & 0xff)) * 0x100000001b3u;
+  };
+  for (const auto& step : s.cloths) {
+    const Lattice& l = step->lattice();
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i)
+        for (int k = 0; k < 3; ++k) add(l.x.at(k, j, i));
+  }
+  return hash;
+}
+
+Report measure(const Simulation::State& s, bool contacts) {
+  Report r;
+  r.scene = s.scene.name;
+  r.version = WEFT_VERSION;
+#if defined(__clang__)
+  r.compiler = "clang++ " __clang_version__;
+#else
+  r.compiler = "g++ " __VERSION__;
+#endif
+  r.simd = simd_name(s.simd);
+  r.frames = s.frame;
+  r.substeps = s.total_substeps;
+  r.dt = s.dt;
+  r.sim_seconds = double(s.frame) * s.scene.time.frame;
+  r.threads = s.threads.count();
+  r.skipped = s.plan.skipped;
+  r.status = s.status;
+  r.finite = s.status.ok;
+  for (std::size_t c = 0; c < s.cloths.size(); ++c) {
+    const ClothStep& step = *s.cloths[c];
+    r.particles += std::int64_t(step.lattice().columns) * step.lattice().rows;
+    add_constraints(step, r);
+    add_energy(s, c, r);
+    if (step.tearing()) r.torn += step.tearing()->torn();
+    if (contacts) add_penetration(s, step, r);
+  }
+  r.energy.total = r.energy.kinetic + r.energy.elastic + r.energy.gravity;
+  add_strain(s, r);
+  if (contacts && s.status.ok) add_self_contact(s, r);
+  if (s.sleeping) r.asleep = s.sleeping->asleep();
+  add_idle(s, r);
+  add_wall_time(s, r);
+  add_stages(s, r);
+  r.hash = state_hash(s);
+  return r;
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,15 @@
+// What a run is measured by: the report, the hash, velocities at the time of the positions.
+#pragma once
+
+#include "physics/frame/state.h"
+#include "weft/report.h"
+
+namespace weft::physics {
+
+Report measure(const Simulation::State& state, bool contacts);
+std::uint64_t state_hash(const Simulation::State& state);
+
+// Velocities of one cloth at the frame's time [m/s].
+std::vector<Vec3> velocities_now(const Simulation::State& state, std::size_t cloth);
+
+}  // namespace weft::physics

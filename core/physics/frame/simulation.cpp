@@ -1,0 +1,177 @@
+// The simulation: builds the state and the plan of a scene, and advances it frame by frame.
+#include "weft/simulation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "physics/frame/cloth_step.h"
+#include "physics/frame/measure.h"
+#include "physics/frame/origin.h"
+#include "physics/frame/state.h"
+#include "physics/model/lattice/energy.h"
+#include "physics/model/lattice/stability.h"
+
+namespace weft {
+
+using namespace physics;
+
+namespace {
+
+std::string fault_text(const std::vector<Fault>& faults) {
+  std::string text = "the scene cannot be simulated";
+  for (const Fault& f : faults) {
+    text += "\n  " + f.place + ": " + f.what;
+    if (!f.allowed.empty()) text += " (" + f.allowed + ")";
+  }
+  return text;
+}
+
+}  // namespace
+
+SceneError::SceneError(std::vector<Fault> found)
+    : std::invalid_argument(fault_text(found)), faults(std::move(found)) {}
+
+Simulation::Simulation(Scene scene, Options options) {
+  if (auto faults = validate(scene); !faults.empty()) throw SceneError(std::move(faults));
+  if (!simd_available(options.simd))
+    throw std::invalid_argument(std::string("this machine has no ") + simd_name(options.simd));
+  if (options.threads < 0 || options.threads > 256)
+    throw std::invalid_argument("threads is " + std::to_string(options.threads) + " (0 to 256)");
+  const Vec3 origin = origin_of(scene);
+  state_ = std::make_unique<State>(std::move(scene), options, origin);
+}
+
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+void Simulation::advance_frame() {
+  state_->advance_frame();
+}
+const Scene& Simulation::scene() const {
+  return state_->where_it_stands();
+}
+const Options& Simulation::options() const {
+  return state_->options;
+}
+int Simulation::threads() const {
+  return state_->threads.count();
+}
+Simd Simulation::simd() const {
+  return state_->simd;
+}
+std::int64_t Simulation::frame() const {
+  return state_->frame;
+}
+double Simulation::time() const {
+  return double(state_->frame) * state_->scene.time.frame;
+}
+double Simulation::dt() const {
+  return state_->dt;
+}
+int Simulation::substeps() const {
+  return state_->substeps;
+}
+const Plan& Simulation::plan() const {
+  return state_->plan;
+}
+const Status& Simulation::status() const {
+  return state_->status;
+}
+
+View Simulation::view() const {
+  View view;
+  view.version = std::uint64_t(state_->frame) + state_->changes;
+  view.time = time();
+  view.origin = state_->origin;
+  for (std::size_t n = 0; n < state_->cloths.size(); ++n) {
+    const auto& step = state_->cloths[n];
+    const Lattice& l = step->lattice();
+    ClothView c;
+    c.columns = l.columns;
+    c.rows = l.rows;
+    c.stride = l.stride;
+    c.x = l.x.component(0);
+    c.y = l.x.component(1);
+    c.z = l.x.component(2);
+    c.vx = l.v.component(0);
+    c.vy = l.v.component(1);
+    c.vz = l.v.component(2);
+    c.inverse_mass = state_->masses(n).span();
+    if (const Tearing* t = step->tearing()) {
+      c.topology_version = t->version();
+      c.triangles = t->triangles();
+      c.torn = t->torn() > 0;
+      if (const TearBoundary* s = step->seams()) {
+        c.seam_points = s->points();
+        c.seam_particles = s->particles();
+        c.seams = s->triangles();
+      }
+    }
+    view.cloths.push_back(c);
+  }
+  return view;
+}
+
+std::vector<double> Simulation::positions() const {
+  std::vector<double> all;
+  for (const auto& step : state_->cloths)
+    for (const Vec3& x : gather(step->lattice(), step->lattice().x))
+      for (int k = 0; k < 3; ++k) all.push_back(x[k] + state_->origin[k]);
+  return all;
+}
+
+std::vector<double> Simulation::velocities() const {
+  std::vector<double> all;
+  for (std::size_t c = 0; c < state_->cloths.size(); ++c)
+    for (const Vec3& v : velocities_now(*state_, c)) all.insert(all.end(), v.begin(), v.end());
+  return all;
+}
+
+void Simulation::set_state(std::span<const double> positions, std::span<const double> velocities) {
+  state_->set(positions, {}, velocities);
+}
+
+void Simulation::grab(int cloth, int i, int j, const Vec3& target, double stiffness) {
+  state_->grab(cloth, i, j, target, stiffness);
+}
+void Simulation::release() {
+  state_->release();
+}
+void Simulation::carry(int cloth, const Vec3& velocity) {
+  state_->carry(cloth, velocity);
+}
+void Simulation::pin(int cloth, int i, int j) {
+  state_->hold(cloth, i, j, true);
+}
+void Simulation::unpin(int cloth, int i, int j) {
+  state_->hold(cloth, i, j, false);
+}
+
+void Simulation::move_collider(int collider, const Vec3& target) {
+  state_->move_collider(collider, target);
+}
+
+int Simulation::cut(const Vec3& a, const Vec3& b, double width) {
+  return state_->cut(a, b, width);
+}
+
+Report Simulation::report(bool contacts) const {
+  return measure(*state_, contacts);
+}
+std::uint64_t Simulation::hash() const {
+  return state_hash(*state_);
+}
+
+double Simulation::bytes_per_particle() const {
+  std::size_t bytes = 0, particles = 0;
+  for (const auto& step : state_->cloths) {
+    bytes += step->bytes();
+    particles += std::size_t(step->lattice().columns) * step->lattice().rows;
+  }
+  if (state_->sleeping) bytes += state_->sleeping->bytes();
+  return double(bytes + state_->record_bytes()) / double(particles);
+}
+
+}  // namespace weft

@@ -1,0 +1,215 @@
+// What changes while a simulation runs, taken out and put back (Moment).
+#include <algorithm>
+#include <cmath>
+
+#include "physics/frame/measure.h"
+#include "physics/frame/state.h"
+#include "physics/model/lattice/energy.h"
+
+// A moment comes from a caller: every number in it is looked at before anything changes.
+
+namespace weft {
+
+using namespace physics;
+
+std::size_t Moment::bytes() const {
+  std::size_t bytes = sizeof *this;
+  for (const ClothMoment& c : cloths)
+    bytes += sizeof c + (c.positions.size() + c.velocities.size()) * sizeof(float) +
+             c.held.size() * sizeof c.held[0] + c.torn.size() * sizeof(Torn) +
+             c.inside.size() * sizeof(Inside);
+  for (const std::vector<Key>& keys : paths) bytes += keys.size() * sizeof(Key);
+  return bytes;
+}
+
+Moment Simulation::State::moment() const {
+  Moment m;
+  m.time = double(frame) * scene.time.frame;
+  m.origin = origin;
+  for (std::size_t n = 0; n < cloths.size(); ++n) {
+    const Lattice& l = cloths[n]->lattice();
+    Moment::ClothMoment c{l.columns, l.rows, {}, {}, {}, {}, {}};
+    c.positions.reserve(3 * std::size_t(l.columns) * l.rows);
+    c.velocities.reserve(c.positions.capacity());
+    for (const Vec3& v : velocities_now(*this, n))
+      for (const double component : v) c.velocities.push_back(float(component));
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i) {
+        for (int k = 0; k < 3; ++k) c.positions.push_back(l.x.at(k, j, i));
+        if (masses(n)[std::size_t(j) * l.stride + i] == 0) c.held.push_back({i, j});
+      }
+    if (const Tearing* tearing = cloths[n]->tearing())
+      for (const Tearing::Torn& t : tearing->torn_list()) c.torn.push_back({t.di, t.dj, t.j, t.a});
+    for (const StartInside& start : cloths[n]->starts())
+      c.inside.push_back({start.time, start.deepest_particle, start.deepest_triangle});
+    m.cloths.push_back(std::move(c));
+  }
+  for (const Collider& c : where_it_stands().colliders) m.paths.push_back(c.keys);
+  return m;
+}
+
+namespace {
+
+constexpr double kMostFrames = 1e15;  // whole numbers are exact in double precision
+constexpr double kFarthest = 1e9;     // m, of an origin; the range of places in a scene
+
+void require(bool sound, const std::string& what) {
+  if (!sound) throw std::invalid_argument("the moment " + what);
+}
+
+template <class Numbers>
+bool all_finite(const Numbers& numbers) {
+  return std::all_of(numbers.begin(), numbers.end(), [](auto v) { return std::isfinite(v); });
+}
+
+void check_cloth(const Moment::ClothMoment& c, const ClothStep& step, std::size_t colliders) {
+  const Lattice& l = step.lattice();
+  const std::size_t values = 3 * std::size_t(l.columns) * l.rows;
+  require(c.columns == l.columns && c.rows == l.rows && c.positions.size() == values &&
+              c.velocities.size() == values && c.inside.size() == colliders,
+          "is of another scene");
+  require(all_finite(c.positions) && all_finite(c.velocities),
+          "holds a position or velocity that is not finite");
+  for (const auto& [i, j] : c.held)
+    require(i >= 0 && j >= 0 && i < l.columns && j < l.rows,
+            "holds the particle [" + std::to_string(i) + ", " + std::to_string(j) +
+                "] (allowed: [0, 0] to [" + std::to_string(l.columns - 1) + ", " +
+                std::to_string(l.rows - 1) + "])");
+  for (const Moment::Torn& t : c.torn)
+    require(t.dj >= 0 && t.j >= 0 && t.a >= 0 && t.j < l.rows - t.dj &&
+                std::abs(t.di) < l.columns && t.a < l.columns - std::abs(t.di),
+            "has a torn constraint outside of the grid");
+  for (const Moment::Inside& i : c.inside)
+    require(std::isfinite(i.time) && i.particle >= 0 && i.triangle >= 0 &&
+                i.particle <= kFarthest && i.triangle <= kFarthest,
+            "holds a depth inside a collider that is out of range (0 to 1e9 m)");
+}
+
+}  // namespace
+
+void Simulation::State::check(const Moment& m) const {
+  require(m.cloths.size() == cloths.size() && m.paths.size() == scene.colliders.size(),
+          "is of another scene");
+  require(m.time >= 0 && m.time / scene.time.frame < kMostFrames, "has a time out of range");
+  for (const double c : m.origin)
+    require(std::abs(c) <= kFarthest && c == std::round(c),
+            "has an origin that is not in whole meters (allowed: -1e9 to 1e9)");
+  for (std::size_t n = 0; n < cloths.size(); ++n)
+    check_cloth(m.cloths[n], *cloths[n], scene.colliders.size());
+  Scene with_paths = where_it_stands();
+  bool same = true;
+  for (std::size_t n = 0; n < m.paths.size(); ++n) {
+    std::vector<Key>& keys = with_paths.colliders[n].keys;
+    same &= keys == m.paths[n];
+    keys = m.paths[n];
+  }
+  if (same) return;
+  const std::vector<Fault> faults = validate(with_paths);
+  if (!faults.empty())
+    throw std::invalid_argument("the moment's paths: " + faults[0].place + ": " + faults[0].what);
+}
+
+void Simulation::State::restore(const Moment& m) {
+  std::vector<double> positions, velocities;
+  for (std::size_t n = 0; n < cloths.size(); ++n) {
+    const Moment::ClothMoment& c = m.cloths[n];
+    ClothStep& step = *cloths[n];
+    Lattice& l = step.lattice();
+    wake(int(n));
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i) l.w(j)[i] = float(1 / particle_mass(step.cloth(), i, j));
+    for (const auto& [i, j] : c.held) l.w(j)[i] = 0;
+    for (int j = 0; j < l.rows; ++j) l.weigh_row(j);
+    if (sleeping) sleeping->keep_masses(int(n));
+    if (!c.torn.empty()) step.allow_tearing();
+    if (step.tearing()) {
+      std::vector<Tearing::Torn> torn;
+      for (const Moment::Torn& t : c.torn) torn.push_back({t.di, t.dj, t.j, t.a});
+      step.tearing()->set_torn(torn);
+    }
+    positions.insert(positions.end(), c.positions.begin(), c.positions.end());
+    velocities.insert(velocities.end(), c.velocities.begin(), c.velocities.end());
+  }
+  for (std::size_t n = 0; n < m.paths.size(); ++n) {
+    set_path(n, m.paths[n]);
+    for (std::size_t c = 0; c < cloths.size(); ++c) {
+      const Moment::Inside& inside = m.cloths[c].inside[n];
+      cloths[c]->meet(n, {inside.time, 0, 0, inside.particle, inside.triangle});
+    }
+  }
+  frame = std::llround(m.time / scene.time.frame);
+  finer_ = 1;
+  upkeep_.restart();
+  failed_by_hand_ = failed_by_itself_ = was_driven_ = false;
+  since_hand_ = kCalm;
+  take_substeps(began_at_);
+  go_on_as(began_as_, began_with_);
+  lag = is_explicit(method) ? dt / 2 : 0;
+  for (std::size_t n = 0; is_explicit(method) && n < cloths.size(); ++n)
+    spectra[n] = spectrum_of(n);
+  status = Status{};
+  make_self_contact();
+  plan_changed();
+  set(positions, m.origin, velocities);
+}
+
+namespace {
+
+// Pins of the new scene that the old one had not are held, pins it has no more are let go; what a
+// hand held or let go stays so.
+void change_pins(const Cloth& before, const Cloth& after, Moment::ClothMoment& cloth) {
+  const auto pinned = [](const Cloth& c, std::array<int, 2> at) {
+    return std::any_of(c.pins.begin(), c.pins.end(),
+                       [&](const Pin& p) { return p.i == at[0] && p.j == at[1]; });
+  };
+  std::erase_if(cloth.held, [&](const std::array<int, 2>& at) {
+    return pinned(before, at) && !pinned(after, at);
+  });
+  for (const Pin& p : after.pins) {
+    const std::array<int, 2> at{p.i, p.j};
+    if (!pinned(before, at) &&
+        std::find(cloth.held.begin(), cloth.held.end(), at) == cloth.held.end())
+      cloth.held.push_back(at);
+  }
+}
+
+}  // namespace
+
+void Simulation::set_scene(Scene scene) {
+  Simulation next(std::move(scene), state_->options);
+  const Scene &before = this->scene(), after = next.scene();
+  bool same = before.cloths.size() == after.cloths.size();
+  for (std::size_t n = 0; same && n < after.cloths.size(); ++n)
+    same = before.cloths[n].grid.nx == after.cloths[n].grid.nx &&
+           before.cloths[n].grid.ny == after.cloths[n].grid.ny;
+  if (same) {
+    Moment m = state_->moment();
+    for (std::size_t n = 0; n < after.cloths.size(); ++n)
+      if (before.cloths[n].pins != after.cloths[n].pins)
+        change_pins(before.cloths[n], after.cloths[n], m.cloths[n]);
+    m.paths.clear();
+    for (const Collider& c : after.colliders) m.paths.push_back(c.keys);
+    for (Moment::ClothMoment& c : m.cloths) c.inside.resize(after.colliders.size());
+    next.restore(m);
+    for (std::size_t k = 0; k < after.colliders.size(); ++k)
+      if (k >= before.colliders.size() || before.colliders[k] != after.colliders[k])
+        next.state_->meet(k);
+    next.state_->changes += state_->changes;
+  }
+  *this = std::move(next);
+}
+
+Moment Simulation::moment() const {
+  return state_->moment();
+}
+// About the moment's origin, wherever the scene would have its own: cloths stay as fine as they were.
+void Simulation::restore(const Moment& moment) {
+  state_->check(moment);
+  if (moment.origin == state_->origin) return state_->restore(moment);
+  auto next = std::make_unique<State>(scene(), state_->options, moment.origin);
+  next->restore(moment);
+  next->changes += state_->changes;
+  state_ = std::move(next);
+}
+
+}  // namespace weft

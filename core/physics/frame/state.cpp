@@ -1,0 +1,320 @@
+// What a simulation holds: how it is built from a scene, set from outside, saved and put back.
+#include "physics/contact/start_inside.h"
+#include "physics/frame/state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "physics/contact/collider_stage.h"
+#include "physics/contact/contact_reaction.h"
+#include "physics/model/clamp_to_int.h"
+#include "physics/model/lattice/energy.h"
+#include "physics/model/path.h"
+
+namespace weft {
+
+using namespace physics;
+
+namespace {
+
+Simd resolve(Simd simd) {
+  if (simd != Simd::best) return simd;
+  for (Simd s : {Simd::avx512, Simd::avx2})
+    if (simd_available(s)) return s;
+  return Simd::sse2;
+}
+
+// Jacobi adds up corrections that each constraint works out for two ends of like mass; where a light
+// particle has heavy neighbours they add up to more than the whole. And a single sweep with compliance
+// is an explicit spring as stiff as the sweep allows, which large motions feed: two sweeps damp. Puts
+// what is stable into the scene and returns what to tell, "" where nothing changed.
+constexpr double kAlikeMasses = 4;  // greatest over least
+std::string steady_jacobi(Scene& scene) {
+  if (scene.solver.sweep != Sweep::jacobi) return "";
+  const double dt = scene.time.substeps == kAutoSubsteps ? projection_substep(scene)
+                                                         : scene.time.frame / scene.time.substeps;
+  bool stiff = false;
+  for (const Cloth& c : scene.cloths) {
+    double lightest = particle_mass(c, 0, 0), heaviest = lightest;
+    for (const double mass : c.masses) {
+      lightest = std::min(lightest, mass);
+      heaviest = std::max(heaviest, mass);
+    }
+    if (heaviest > kAlikeMasses * lightest) {
+      scene.solver.sweep = Sweep::gauss_seidel;
+      return "Jacobi sweeps do not converge for masses this unequal; gauss_seidel runs in their "
+             "place";
+    }
+    const double k = std::max({c.stiffness.structural, c.stiffness.shear, c.stiffness.bend});
+    stiff |= 2 * k * dt * dt > lightest;
+  }
+  if (!stiff || scene.solver.method != Method::compliant || scene.solver.iterations > 1) return "";
+  scene.solver.iterations = 2;
+  return "one Jacobi sweep of constraints this stiff is not stable in large motions; two run";
+}
+
+// Pins whose paths begin farther than `distance` from their places on the sheet, and the farthest [m].
+struct FarPins {
+  int count = 0;
+  double most = 0;
+};
+FarPins far_pins(const Cloth& cloth, double distance) {
+  const Grid& g = cloth.grid;
+  FarPins far;
+  for (const Pin& pin : cloth.pins) {
+    if (pin.keys.empty()) continue;
+    const Vec3 place = plus(
+        g.origin, plus(times(g.u, pin.i / double(g.nx - 1)), times(g.v, pin.j / double(g.ny - 1))));
+    const Vec3 off = minus(position_at(pin.keys, 0), place);
+    const double length = std::sqrt(dot(off, off));
+    if (length <= distance) continue;
+    ++far.count;
+    far.most = std::max(far.most, length);
+  }
+  return far;
+}
+
+}  // namespace
+
+Simulation::State::State(Scene given, const Options& given_options, const Vec3& about)
+    : scene(std::move(given)),
+      origin(about),
+      options(given_options),
+      simd(resolve(options.simd)),
+      threads(options.threads),
+      one_thread(1),
+      method(scene.solver.method) {
+  const std::string changed = steady_jacobi(scene);
+  if (origin != Vec3{}) {
+    placed = scene;
+    scene = moved(std::move(scene), times(origin, -1));
+  }
+  build_cloths();
+  choose_method_and_substeps();
+  if (threads.count() < threads.asked())
+    plan.notes.push_back("the system starts no more than " + std::to_string(threads.count()) +
+                         " of " + std::to_string(threads.asked()) +
+                         " threads (a limit on processes or memory); the result is the same");
+  began_as_ = method;
+  began_with_ = scene.solver;
+  began_at_ = substeps;
+  if (!changed.empty()) fall_back(changed);
+  began_fallen_back_ = plan.fallback;
+  began_notes_ = plan.notes;
+  began_guard_ = guard_;
+  frame_ms.reserve(std::size_t(clamp_to_int(scene.time.seconds / scene.time.frame, 1, 1000000)) +
+                   1);
+}
+
+void Simulation::State::build_cloths() {
+  cloths.clear();
+  carried_.clear();
+  records_.clear();
+  stage_ns.clear();
+  apart_.reserve(scene.cloths.size());
+  busy_.reserve(std::size_t(threads.count()));
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    cloths.push_back(
+        std::make_unique<ClothStep>(scene, int(c), method, options.seed, kernel_table(simd)));
+    carried_.push_back(nullptr);
+    records_.emplace_back(cloths.back()->lattice(), scene.gravity, kernel_table(simd));
+    stage_ns.emplace_back(cloths.back()->stages().size());
+    if (options.profile) cloths.back()->schedule().profile(stage_ns.back());
+  }
+  make_self_contact();
+  sleeping = Sleeping::make(scene, cloths, kernel_table(simd));
+}
+
+// Contact that remembers nothing.
+void Simulation::State::make_self_contact() {
+  const std::vector<const ClothParts*> parts = parts_of(cloths);
+  self_collision = SelfContact::make(scene, parts, kernel_table(simd));
+  surface = self_collision
+                ? SurfaceContact::make(scene, self_collision->sheets(), kernel_table(simd))
+                : nullptr;
+  untangle = self_collision ? std::make_unique<Untangle>(scene, parts) : nullptr;
+}
+
+// The stages that run, and those that do not, with the reason.
+Plan Simulation::State::describe_stages() const {
+  Plan all = describe(cloths);
+  const auto choose = [&](bool runs, const PlannedStage& stage, const char* why_not) {
+    if (runs)
+      all.stages.push_back(stage);
+    else
+      all.skipped.push_back({stage.name, why_not});
+  };
+  const std::int64_t meeting = self_collision ? std::int64_t(self_collision->particles()) : 0;
+  choose(self_collision != nullptr,
+         {"self_collision", "all cloths together, as often as they move", 0, meeting, "particles"},
+         "off in the scene");
+  choose(surface != nullptr,
+         {"self_surface", "vertices against triangles, edges against edges; nothing passes through",
+          0, meeting, "squares"},
+         self_collision ? "self_collision is particles in all cloths" : "off in the scene");
+  if (!sleeping)
+    all.skipped.push_back(
+        {"sleep", scene.solver.sleep > 0 ? "gusts move the cloth" : "sleep is 0"});
+  return all;
+}
+
+// What is odd about how the cloths start, and what is done about it.
+void Simulation::State::note_starts(std::vector<std::string>& notes) const {
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const std::string which = "cloth " + std::to_string(c);
+    for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+      const StartInside& start = cloths[c]->starts()[k];
+      if (start.particles == 0 && start.triangles == 0) continue;
+      const bool course = scene.colliders[k].friction.model == FrictionModel::course;
+      const double deepest = std::max(start.deepest_particle, start.deepest_triangle);
+      notes.push_back(
+          which + " starts inside collider " + std::to_string(k) + ": " +
+          std::to_string(start.particles) + " particles, " +
+          (start.triangles > 0 ? std::to_string(start.triangles) + " triangles, " : "") + "up to " +
+          number(deepest) + " m deep; " +
+          (course ? "they are put out at once, as the course does"
+                  : "moved out over " + std::to_string(kPulledFrames) + " frames"));
+    }
+    const Cloth& cloth = scene.cloths[c];
+    const double spacing = std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
+    if (const FarPins far = far_pins(cloth, spacing); far.count > 0)
+      notes.push_back(which + ": " + std::to_string(far.count) +
+                      (far.count == 1 ? " pin starts " : " pins start up to ") + number(far.most) +
+                      " m from where the sheet has " + (far.count == 1 ? "it" : "them") +
+                      " (a pin with keys begins where they say); the sheet is stretched there");
+    if (cloth.self_collision.mode != SelfCollisionMode::off &&
+        cloth.self_collision.thickness > spacing)
+      notes.push_back(which + ": the thickness of " + number(cloth.self_collision.thickness) +
+                      " m is above the spacing of " + number(spacing) +
+                      " m; particles nearer than the thickness on the flat sheet do not meet");
+    // Half the diagonal of a square is as far as a particle gets from all others.
+    const double widest = 0.5 * std::hypot(spacing_u(cloth.grid), spacing_v(cloth.grid));
+    if (cloth.self_collision.mode == SelfCollisionMode::particles && !surface &&
+        cloth.self_collision.thickness < widest)
+      notes.push_back(which + ": the thickness of " + number(cloth.self_collision.thickness) +
+                      " m is below " + number(widest) +
+                      " m, half the diagonal of a square: particles can pass between others (mode "
+                      "surface lets nothing through)");
+  }
+  if (!self_collision) return;
+  if (const SelfContact::Overlaps o = self_collision->overlaps(); o.pairs > 0)
+    notes.push_back(std::to_string(o.pairs) +
+                    " pairs of particles start nearer than the thickness, by up to " +
+                    number(o.deepest) + " m; they are pushed apart");
+  if (const std::size_t crossings = untangle->due() ? untangle->crossings() : 0; crossings > 0)
+    notes.push_back(
+        std::to_string(crossings) + " edges pass through triangles of cloth at the start; " +
+        (surface ? "the smaller part of what meets is taken through, row by row"
+                 : "their particles are kept apart on the sides where they are (mode surface takes "
+                   "such sheets apart)"));
+}
+
+// What a cloth's particles are accelerated by as they lie, bodies that they touch included [m/s²].
+// Velocities lie so far behind the positions [s].
+void Simulation::State::accelerations_now(std::size_t cloth, double behind,
+                                          std::vector<Vec3>& a) const {
+  const ClothStep& step = *cloths[cloth];
+  accelerations(scene, step.cloth(), step.stencils(), step.lattice(), step.bend_links(),
+                method == Method::spring_friction, a);
+  support(scene, step.cloth(), double(frame) * scene.time.frame, {dt, behind}, step.lattice(), a);
+}
+
+// v <- v - a lag: velocities of explicit springs are taken to where they lie behind the positions.
+// `now` gives all velocities in double in place of v, so that what velocities() told comes back
+// exactly.
+void Simulation::State::stagger(const double* now) {
+  std::vector<Vec3> a;
+  for (std::size_t n = 0; n < cloths.size(); ++n) {
+    Lattice& l = cloths[n]->lattice();
+    accelerations_now(n, 0, a);
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i)
+        for (int c = 0; c < 3; ++c) {
+          float& v = l.v.at(c, j, i);
+          const double start = now && l.w(j, i) > 0 ? *now : v;
+          v = float(start - a[std::size_t(j) * l.columns + i][c] * lag);
+          if (now) ++now;
+        }
+  }
+}
+
+void Simulation::State::set(std::span<const double> positions, const Vec3& from,
+                            std::span<const double> velocities) {
+  std::size_t particles = 0;
+  for (const auto& step : cloths)
+    particles += std::size_t(step->lattice().columns) * step->lattice().rows;
+  if (positions.size() != 3 * particles || velocities.size() != 3 * particles)
+    throw std::invalid_argument("a state needs " + std::to_string(3 * particles) +
+                                " positions and as many velocities");
+  const auto bad = [](double v) { return !(std::abs(v) <= std::numeric_limits<float>::max()); };
+  if (std::any_of(positions.begin(), positions.end(), bad) ||
+      std::any_of(velocities.begin(), velocities.end(), bad))
+    throw std::invalid_argument("a state holds a value that is not finite");
+  std::size_t p = 0;
+  wake();
+  const Vec3 off = minus(origin, from);
+  for (auto& step : cloths) {
+    Lattice& l = step->lattice();
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i, ++p)
+        for (int c = 0; c < 3; ++c) {
+          l.x.at(c, j, i) = coordinate(positions[3 * p + c] - off[c]);
+          l.v.at(c, j, i) = l.w(j, i) > 0 ? float(velocities[3 * p + c]) : 0;
+        }
+  }
+  restart_stages();
+  if (untangle) untangle->look();
+  if (is_explicit(method)) {
+    stagger(velocities.data());
+    limit_ = stretched_limit();
+    follow_stretch(limit_);
+  }
+  open_guard();
+  ++changes;
+}
+
+// Positions or velocities are others than the stages left.
+void Simulation::State::restart_stages() {
+  for (auto& step : cloths)
+    for (const auto& stage : step->stages()) stage->restart();
+  if (self_collision) self_collision->restart();
+  if (surface) surface->restart();
+  since_collision_ = 0;
+  until_collision_ = 1;
+}
+
+// Somebody changed a cloth, or all of them.
+void Simulation::State::wake(int cloth) {
+  for (std::size_t c = 0; sleeping && c < cloths.size(); ++c)
+    if (cloth < 0 || std::size_t(cloth) == c) sleeping->wake(int(c));
+}
+
+// The passes keep rows as they come to them, unless contact moves them before.
+void Simulation::State::save() {
+  saved_substeps_ = substeps;
+  saved_lag_ = lag;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (asleep(c)) continue;
+    if (self_collision) records_[c].keep();
+    if (Tearing* tearing = cloths[c]->tearing()) tearing->remember();
+  }
+}
+
+void Simulation::State::restore() {
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (asleep(c)) continue;
+    records_[c].restore();
+    if (Tearing* tearing = cloths[c]->tearing()) tearing->go_back();
+  }
+  take_substeps(saved_substeps_);
+  lag = saved_lag_;
+}
+
+std::size_t Simulation::State::record_bytes() const {
+  std::size_t bytes = 0;
+  for (const RollbackBuffer& r : records_) bytes += r.bytes();
+  return bytes;
+}
+
+}  // namespace weft

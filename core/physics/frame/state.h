@@ -1,0 +1,165 @@
+// Everything a simulation holds, and the frame.
+#pragma once
+
+#include <atomic>
+#include <cstdio>
+#include <deque>
+#include <optional>
+
+#include "physics/contact/self/self_contact.h"
+#include "physics/contact/self/surface_contact.h"
+#include "physics/contact/self/untangle.h"
+#include "physics/frame/carry.h"
+#include "physics/frame/cloth_step.h"
+#include "physics/frame/energy_guard.h"
+#include "physics/frame/grab.h"
+#include "physics/frame/rollback_buffer.h"
+#include "physics/frame/sleeping.h"
+#include "physics/model/lattice/stability.h"
+#include "physics/step/threads.h"
+#include "weft/simulation.h"
+
+namespace weft {
+
+inline constexpr float kFarAway = 1e7f;  // m; nothing in a sane scene gets there
+inline constexpr double kCalm = 1;       // s; what a hand did has passed by then
+
+// A number as notes give it.
+inline std::string number(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", v);
+  return text;
+}
+
+struct Simulation::State {
+  State(Scene given, const Options& given_options, const Vec3& about);
+
+  void advance_frame();
+  void grab(int cloth, int i, int j, const Vec3& target, double stiffness);
+  void release();
+  void carry(int cloth, const Vec3& velocity);
+  void hold(int cloth, int i, int j, bool held);
+  int cut(const Vec3& a, const Vec3& b, double width);
+  // Positions are counted from `from`.
+  void set(std::span<const double> positions, const Vec3& from, std::span<const double> velocities);
+  void move_collider(int collider, const Vec3& target);
+  void set_path(std::size_t collider, std::vector<Key> keys);
+  Moment moment() const;
+  // Throws std::invalid_argument for a moment that restore() cannot take. (restore() trusts it.)
+  void check(const Moment& moment) const;
+  void restore(const Moment& moment);
+  // A collider has been put where cloths may be.
+  void meet(std::size_t collider);
+  std::size_t record_bytes() const;
+  void accelerations_now(std::size_t cloth, double behind, std::vector<Vec3>& a) const;
+
+  // As simulated, about the origin; only move_collider(), restore() and go_on_as() change it. And where
+  // it stands, unless that is the same.
+  Scene scene;
+  const Vec3 origin;  // m
+  std::optional<Scene> placed;
+  const Scene& where_it_stands() const { return placed ? *placed : scene; }
+  Options options;
+  Simd simd;
+  physics::Threads threads;
+  physics::Threads one_thread;  // for a cloth that one thread runs, whichever
+  Method method;                // the scene's, or the stable one put in its place
+  std::vector<std::unique_ptr<physics::ClothStep>> cloths;
+  std::unique_ptr<physics::SelfContact> self_collision;  // over all cloths; null when all are off
+  std::unique_ptr<physics::SurfaceContact> surface;      // the same; null unless one asks for it
+  std::unique_ptr<physics::Untangle> untangle;           // null when self_collision is
+  std::unique_ptr<physics::Sleeping> sleeping;           // null when nothing may sleep
+  // Inverse masses of a cloth, of sleeping particles too.
+  const physics::AlignedArray<float>& masses(std::size_t cloth) const {
+    return sleeping ? sleeping->masses(cloth) : cloths[cloth]->lattice().inverse_mass;
+  }
+  Plan plan;
+  Status status;
+  std::int64_t frame = 0, total_substeps = 0;
+  std::uint64_t changes = 0;  // state set from outside
+  int substeps = 1;
+  double dt = 0;
+  double lag = 0;  // s; by which velocities lie behind the positions (explicit springs)
+  std::vector<physics::Spectrum> spectra;  // of every cloth (explicit springs)
+
+  // Wall time of every frame [ms]; reserved ahead for the scene's own length.
+  std::vector<float> frame_ms;
+  double total_ms = 0;
+  std::deque<std::vector<std::atomic<std::int64_t>>> stage_ns;  // per cloth, per stage (profile)
+  std::int64_t self_collision_ns = 0, self_collision_runs = 0;
+
+ private:
+  std::vector<physics::RollbackBuffer> records_;  // of each cloth
+  std::vector<std::size_t> apart_;                // cloths that take a thread each
+  std::vector<std::int64_t> busy_;                // of each thread, with so many particles
+  bool finite_ = true;                            // at the end of the frame
+  int saved_substeps_ = 1;
+  double saved_lag_ = 0;
+  physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
+  int grabbed_ = 0;
+  std::vector<physics::Carry*> carried_;           // in the plan of each cloth; null while it rests
+  int since_collision_ = 0, until_collision_ = 1;  // substeps
+  physics::EnergyGuard guard_;
+  physics::Upkeep upkeep_;
+  bool was_driven_ = false;  // in the frame before
+  double limit_ = 0;         // s; the stability limit at the end of the last frame (explicit)
+  int finer_ = 1;            // times as many substeps as are due, since a frame failed
+  // As the run began, before any of its frames failed.
+  Method began_as_;
+  Solver began_with_;
+  int began_at_ = 1;  // substeps a frame
+  bool began_fallen_back_ = false;
+  std::vector<std::string> began_notes_;
+  physics::EnergyGuard began_guard_;
+  // Frames that failed soon after a hand did something say little of the frames to come.
+  double since_hand_ = kCalm;  // s, at most kCalm
+  bool failed_by_hand_ = false, failed_by_itself_ = false;
+
+  physics::Spectrum spectrum_of(std::size_t cloth) const;
+  void choose_method_and_substeps();
+  void note_starts(std::vector<std::string>& notes) const;
+  void build_cloths();
+  void make_self_contact();
+  void take_substeps(int count);
+  void set_substeps(int count);
+  void stagger(const double* now = nullptr);
+  double stretched_limit() const;
+  int substeps_within(double limit) const;
+  void follow_stretch(double limit);
+  bool carried() const;
+  bool driven() const;
+  void open_guard();
+  bool blown() const { return scene.wind.drag > 0 || scene.wind.lift > 0; }
+  int projection_substeps() const;
+  bool finest() const;
+  bool flies_away() const;
+  bool too_coarse();
+  bool hand_has_passed() const;
+  void begin_again();
+  void go_on_as(Method as, const Solver& solver);
+  bool nothing_else_acts() const;
+  bool overshot() const;
+  bool keeps_on();
+  void calm();
+  void fall_back(const std::string& note);
+  void restart_stages();
+  void wake(int cloth = -1);
+  void touch(int cloth = -1);
+  bool asleep(std::size_t cloth) const { return sleeping && sleeping->rows(cloth).empty(); }
+  void run_frame();
+  void look();
+  void run_with_contact();
+  void begin_surfaces();
+  physics::ClothStep& step_with(int cloth, int i, int j);
+  void plan_changed();
+  Plan describe_stages() const;
+  physics::Substeps substeps_from(int first, int count) const;
+  void run_substeps(int first, int count);
+  int particles(std::size_t cloth) const;
+  bool keep_busy(const std::vector<std::size_t>& each);
+  void save();
+  void restore();
+  void find_fault();
+};
+
+}  // namespace weft

@@ -1,0 +1,186 @@
+// Stage "bending": the curvature energy (kernels/bending.cpp), as a force on the velocities before
+// the springs of an explicit method, or as constraints before the sweeps of one that projects: all
+// rows, then all columns, each line as a whole, then the twist of the cells in four colours.
+#include <algorithm>
+
+#include "physics/kernels/bending.h"
+#include "physics/model/lattice/bending.h"
+#include "physics/model/lattice/line_batches.h"
+#include "physics/model/lattice/stages.h"
+#include "physics/model/lattice/tearing.h"
+
+namespace weft::physics {
+namespace {
+
+// Cost of one second difference and of one twist, for sizing tasks only.
+constexpr double kDifferenceNs = 0.8, kTwistNs = 0.5;
+
+std::int64_t terms(const Lattice& l) {
+  const std::int64_t nx = l.columns, ny = l.rows;
+  return std::max<std::int64_t>(nx - 2, 0) * ny + nx * std::max<std::int64_t>(ny - 2, 0) +
+         (nx - 1) * (ny - 1);
+}
+
+// Which terms are left from lane `at` on; null: all.
+const float* left(const ClothParts& parts, AlignedArray<float> BendLinks::*terms, std::size_t at) {
+  const BendLinks* links = parts.tearing ? parts.tearing->bend_links() : nullptr;
+  return links ? (links->*terms).data() + at : nullptr;
+}
+
+class BendingForce final : public RowStage {
+ public:
+  explicit BendingForce(const ClothParts& parts)
+      : RowStage("bending", "curvature energy as a force", 2, terms(parts.lattice), "constraints"),
+        parts_(parts) {
+    const BendingStiffness k = bending_stiffness(parts.cloth);
+    stiffness_ = {float(k.along), float(k.across), float(k.twist)};
+  }
+
+  void run(int j, const Substep& s) override {
+    Lattice& l = parts_.lattice;
+    BendRow r{};
+    r.columns = l.columns;
+    r.rows = std::min(3, l.rows - j);
+    for (int n = 0; n < r.rows; ++n) {
+      r.x[n] = l.x.row(j + n);
+      r.v[n] = l.v.row(j + n);
+      r.w[n] = l.w(j + n);
+    }
+    r.k = stiffness_;
+    const std::size_t at = std::size_t(j) * l.stride;
+    r.along = left(parts_, &BendLinks::along, at);
+    r.across = left(parts_, &BendLinks::across, at);
+    r.twist = left(parts_, &BendLinks::twist, at);
+    // The leapfrog step that follows takes drag off the velocity that it finds, but not off forces.
+    const double kept = 1 - s.kick * parts_.cloth.drag;
+    r.dt = float(kept > 0.01 ? s.kick / kept : s.kick);
+    parts_.kernels.bend_row(r);
+  }
+
+ private:
+  ClothParts parts_;
+  BendStiffness stiffness_;
+};
+
+class BendingConstraints final : public WholeStage {
+ public:
+  BendingConstraints(const ClothParts& parts, bool compliant)
+      : WholeStage("bending", "curvature energy, rows and columns each solved as a whole, twist",
+                   terms(parts.lattice), "constraints"),
+        parts_(parts),
+        batches_(parts.lattice, parts.kernels, kBendScratch),
+        compliant_(compliant) {
+    if (parts.scene.solver.order == 2) batches_.follow_masses();
+    if (left(parts, &BendLinks::along, 0))
+      torn_ = TurnedLinks<float>(parts.lattice, batches_.row_groups());
+  }
+
+  std::size_t bytes() const override { return batches_.bytes() + torn_.bytes(); }
+  void restart() override {
+    batches_.turn_masses();
+    torn_.forget();
+  }
+
+  Velocities velocities(double dt) const override {
+    return velocity_gain(parts_.scene.solver, compliant_, dt) == 0 ? Velocities::left_alone
+                                                                   : Velocities::used;
+  }
+  void run(const Substep& s, Threads& threads) override {
+    const BendingStiffness k = bending_stiffness(parts_.cloth);
+    const double h = s.dt * implicit_share(parts_.scene.solver);
+    const auto compliance = [&](double stiffness) { return float(1 / (stiffness * h * h)); };
+    inverse_dt_ = velocity_gain(parts_.scene.solver, compliant_, s.dt);
+    batches_.begin(threads);
+    along_rows(compliance(k.along));
+    along_columns(compliance(k.across));
+    twist(compliance(k.twist));
+  }
+
+ private:
+  void along_rows(float compliance) {
+    const Lattice& l = parts_.lattice;
+    batches_.share_out(batches_.row_groups(), kDifferenceNs * kBatchLines * l.columns,
+                       [&](int group, BatchMemory& memory) {
+                         const float* terms = left(parts_, &BendLinks::along, 0);
+                         const float* turned =
+                             terms ? torn_.follow(group, *parts_.tearing, terms) : nullptr;
+                         batches_.turned(group, memory, inverse_dt_, [&](int rows, float gain) {
+                           for (int first = 0; first < rows; first += kBendLines) {
+                             const Row3 x = memory.tile.row(0);
+                             BendLine p{};
+                             p.x = {x.x + first, x.y + first, x.z + first};
+                             const Row3 v = memory.moved.row(0);
+                             p.v = {v.x + first, v.y + first, v.z + first};
+                             p.inverse_dt = gain;
+                             p.w = batches_.masses(group) + first;
+                             p.step = kBatchLines;
+                             p.particles = l.columns;
+                             p.compliance = compliance;
+                             if (turned) p.left = turned + first;
+                             p.scratch = memory.scratch.data();
+                             parts_.kernels.bend_line(p);
+                           }
+                         });
+                       });
+  }
+
+  void along_columns(float compliance) {
+    Lattice& l = parts_.lattice;
+    batches_.share_out((l.columns + kBendLines - 1) / kBendLines,
+                       kDifferenceNs * kBendLines * l.rows, [&](int batch, BatchMemory& memory) {
+                         const Row3 x = l.x.row(0), v = l.v.row(0);
+                         const int first = batch * kBendLines;
+                         BendLine p{};
+                         p.x = {x.x + first, x.y + first, x.z + first};
+                         p.v = {v.x + first, v.y + first, v.z + first};
+                         p.inverse_dt = inverse_dt_;
+                         p.w = l.w(0) + first;
+                         p.step = l.stride;
+                         p.particles = l.rows;
+                         p.compliance = compliance;
+                         p.left = left(parts_, &BendLinks::across, std::size_t(first));
+                         p.scratch = memory.scratch.data();
+                         parts_.kernels.bend_line(p);
+                       });
+  }
+
+  void twist(float compliance) {
+    Lattice& l = parts_.lattice;
+    for (int colour = 0; colour < 2; ++colour)
+      batches_.share_out((l.rows - colour) / 2, kTwistNs * l.columns, [&](int pair, BatchMemory&) {
+        const int j = 2 * pair + colour;
+        TwistRow r{};
+        r.columns = l.columns;
+        r.x = l.x.row(j);
+        r.below = l.x.row(j + 1);
+        r.v = l.v.row(j);
+        r.v_below = l.v.row(j + 1);
+        r.inverse_dt = inverse_dt_;
+        r.w = l.w(j);
+        r.w_below = l.w(j + 1);
+        r.compliance = compliance;
+        r.left = left(parts_, &BendLinks::twist, std::size_t(j) * l.stride);
+        for (const bool odd : {false, true}) {
+          r.odd = odd;
+          parts_.kernels.bend_twist(r);
+        }
+      });
+  }
+
+  ClothParts parts_;
+  LineBatches batches_;
+  TurnedLinks<float> torn_;  // of the rows
+  bool compliant_;           // velocities gain the corrections as computed
+  float inverse_dt_ = 0;     // 1/s, or 0
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_bending(const ClothParts& parts, Method method) {
+  if (parts.cloth.bending == 0) return nullptr;
+  if (method == Method::spring || method == Method::spring_friction)
+    return std::make_unique<BendingForce>(parts);
+  return std::make_unique<BendingConstraints>(parts, method == Method::compliant);
+}
+
+}  // namespace weft::physics

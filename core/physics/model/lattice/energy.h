@@ -1,0 +1,60 @@
+// The physics in double precision, straight from the equations: energies, forces and strains of a
+// lattice. Everything that measures or prepares a run uses this; the kernels are what is measured.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "physics/model/lattice/lattice.h"
+#include "physics/model/lattice/stencil.h"
+
+namespace weft::physics {
+
+// Calls visit(j, a, b, k) for every constraint of a stencil: particle indices a and b (row-major
+// j*columns + i) and stiffness k [N/m].
+template <class Visit>
+void for_each_constraint(const Cloth& cloth, const Stencil& f, Visit&& visit) {
+  const int columns = cloth.grid.nx, rows = cloth.grid.ny;
+  for (int j = 0; j + f.dj < rows; ++j) {
+    const double k = f.stiffness * gradient_factor(cloth, j, f.dj);
+    for (int n = 0; n < f.per_row(columns); ++n)
+      if (f.alive(j, n)) visit(j * columns + n + f.near(), (j + f.dj) * columns + n + f.far(), k);
+  }
+}
+
+struct BendLinks;
+
+// Positions or velocities of a lattice in double, particle after particle.
+std::vector<Vec3> gather(const Lattice& lattice, const Rows& rows);
+
+// E = Σ ½ k (|e| - l)² [J].
+double elastic_energy(const Cloth& cloth, const std::vector<Stencil>& stencils,
+                      const std::vector<Vec3>& x);
+
+// f = -∂E/∂x [N], plus damping along the springs when velocities are given.
+std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Stencil>& stencils,
+                                const std::vector<Vec3>& x, const std::vector<Vec3>* v);
+
+// Accelerations by springs, bending (the terms that are `left`, null: all) and gravity, zero for
+// pinned particles [m/s²]. Into `a`, which allocates nothing when it is large enough already.
+void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Stencil>& stencils,
+                   const Lattice& lattice, const BendLinks* left, bool damped,
+                   std::vector<Vec3>& a);
+
+// Row j of a lattice with positions x and velocities v, as the energy_sum is made of it.
+EnergyRow energy_row(const Lattice& lattice, ConstRow3 x, ConstRow3 v, int j, const Vec3& gravity);
+// What rows have together.
+inline EnergySum& operator+=(EnergySum& all, const EnergySum& more) {
+  all.kinetic += more.kinetic;
+  all.potential += more.potential;
+  all.greatest = std::max(all.greatest, more.greatest);
+  return all;
+}
+
+struct Strain {
+  double max = 0, mean = 0;  // |e|/l - 1
+};
+Strain structural_strain(const Cloth& cloth, const std::vector<Stencil>& stencils,
+                         const std::vector<Vec3>& x);
+
+}  // namespace weft::physics

@@ -1,0 +1,45 @@
+// Stage "keyed_pins": held particles that move along keys are put where their keys say.
+#include "physics/model/lattice/stages.h"
+#include "physics/model/path.h"
+
+namespace weft::physics {
+namespace {
+
+class KeyedPins final : public RowStage {
+ public:
+  KeyedPins(const ClothParts& parts, std::vector<std::vector<const Pin*>> by_row, std::int64_t pins)
+      : RowStage("keyed_pins", "pins put on their paths", 0, pins, "pins"),
+        parts_(parts),
+        by_row_(std::move(by_row)) {}
+  void run(int j, const Substep& s) override {
+    Lattice& l = parts_.lattice;
+    for (const Pin* pin : by_row_[j]) {
+      if (l.w(j, pin->i) > 0) continue;  // let go since
+      const Vec3 x = position_at(pin->keys, s.time), v = velocity_over(pin->keys, s.time, s.dt);
+      for (int k = 0; k < 3; ++k) {
+        l.x.at(k, j, pin->i) = coordinate(x[k]);
+        l.v.at(k, j, pin->i) = float(v[k]);
+      }
+    }
+  }
+
+ private:
+  ClothParts parts_;
+  std::vector<std::vector<const Pin*>> by_row_;
+};
+
+}  // namespace
+
+std::unique_ptr<RowStage> make_keyed_pins(const ClothParts& parts) {
+  std::vector<std::vector<const Pin*>> by_row(parts.lattice.rows);
+  std::int64_t pins = 0;
+  for (const Pin& pin : parts.cloth.pins) {
+    if (pin.keys.empty()) continue;
+    by_row[pin.j].push_back(&pin);
+    ++pins;
+  }
+  if (pins == 0) return nullptr;
+  return std::make_unique<KeyedPins>(parts, std::move(by_row), pins);
+}
+
+}  // namespace weft::physics

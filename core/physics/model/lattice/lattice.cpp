@@ -1,0 +1,58 @@
+// Storage of one cloth, and its particles at the start.
+#include "physics/model/lattice/lattice.h"
+
+#include <cmath>
+
+#include "physics/model/path.h"
+#include "physics/model/random.h"
+
+namespace weft::physics {
+
+void Lattice::set_inverse_mass(int j, int i, float value) {
+  w(j)[i] = value;
+  weigh_row(j);
+}
+
+void Lattice::weigh_row(int j) {
+  const float* const row = w(j);
+  const bool alike = std::all_of(row, row + columns, [&](float value) { return value == row[0]; });
+  row_inverse_mass[static_cast<std::size_t>(j)] = alike ? row[0] : 0.0f;
+}
+
+Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bool keep_previous) {
+  const Grid& g = cloth.grid;
+  Lattice l;
+  l.columns = g.nx;
+  l.rows = g.ny;
+  l.stride = row_stride(g.nx);
+  l.x = Rows(l.rows, l.stride);
+  l.v = Rows(l.rows, l.stride);
+  if (keep_previous) l.previous = Rows(l.rows, l.stride);
+  l.inverse_mass = AlignedArray<float>(static_cast<std::size_t>(l.rows) * l.stride);
+  l.row_inverse_mass = AlignedArray<float>(static_cast<std::size_t>(l.rows));
+
+  Vec3 normal{g.u[1] * g.v[2] - g.u[2] * g.v[1], g.u[2] * g.v[0] - g.u[0] * g.v[2],
+              g.u[0] * g.v[1] - g.u[1] * g.v[0]};
+  const double length = std::hypot(normal[0], normal[1], normal[2]);
+  for (double& c : normal) c /= length;
+  Random random(seed, static_cast<std::uint64_t>(cloth_index));
+  for (int j = 0; j < g.ny; ++j) {
+    for (int i = 0; i < g.nx; ++i) {
+      const double a = i / double(g.nx - 1), b = j / double(g.ny - 1);
+      const double off = g.jitter > 0 ? g.jitter * random.symmetric() : 0;
+      for (int k = 0; k < 3; ++k)
+        l.x.at(k, j, i) = coordinate(g.origin[k] + g.u[k] * a + g.v[k] * b + normal[k] * off);
+      l.w(j)[i] = float(1 / particle_mass(cloth, i, j));
+    }
+  }
+  for (const Pin& pin : cloth.pins) {
+    l.w(pin.j)[pin.i] = 0;
+    if (pin.keys.empty()) continue;
+    const Vec3 start = position_at(pin.keys, 0);
+    for (int k = 0; k < 3; ++k) l.x.at(k, pin.j, pin.i) = coordinate(start[k]);
+  }
+  for (int j = 0; j < g.ny; ++j) l.weigh_row(j);
+  return l;
+}
+
+}  // namespace weft::physics

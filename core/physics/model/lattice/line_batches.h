@@ -1,0 +1,122 @@
+// What stages share that solve whole lines of a lattice: batches of lines given out to threads, the
+// memory of each thread, and rows turned into lanes and back.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "physics/kernels/line.h"
+#include "physics/kernels/transpose.h"
+#include "physics/model/lattice/lattice.h"
+#include "physics/model/lattice/tearing.h"
+#include "physics/step/threads.h"
+
+namespace weft::physics {
+
+// The memory of one thread.
+struct BatchMemory {
+  AlignedArray<float> scratch;
+  Rows tile;   // kBatchLines rows as lanes: [column][kBatchLines] of x, y, z
+  Rows moved;  // by how much the solution has moved them, laid out as the tile
+};
+
+// What is left of the links along the rows, turned into lanes as the tiles are: [column][kBatchLines]
+// for every group of rows, turned anew only where some have died.
+template <class T>
+class TurnedLinks {
+ public:
+  TurnedLinks() = default;
+  TurnedLinks(const Lattice& l, int groups)
+      : columns_(l.columns), lanes_(std::size_t(groups) * size()), torn_(std::size_t(groups), -1) {}
+
+  // The group's lanes, from `links`, laid out as the lattice.
+  const T* follow(int group, const Tearing& tearing, const T* links) {
+    const int begin = group * kBatchLines, end = std::min(begin + kBatchLines, tearing.rows());
+    std::int64_t torn = 0;
+    for (int j = begin; j < end; ++j) torn += tearing.torn(j);
+    T* lanes = lanes_.data() + std::size_t(group) * size();
+    if (torn == torn_[std::size_t(group)]) return lanes;
+    torn_[std::size_t(group)] = torn;
+    for (int j = begin; j < end; ++j)
+      for (int i = 0; i < columns_; ++i)
+        lanes[i * kBatchLines + j - begin] = links[std::size_t(j) * tearing.stride() + i];
+    return lanes;
+  }
+  // The links were set anew: all groups are to be turned again.
+  void forget() { std::fill(torn_.begin(), torn_.end(), -1); }
+  std::size_t bytes() const { return lanes_.size() * sizeof(T); }
+
+ private:
+  std::size_t size() const { return std::size_t(columns_ + 3) * kBatchLines; }
+  int columns_ = 0;
+  AlignedArray<T> lanes_;
+  std::vector<std::int64_t> torn_;  // of each group, when it was turned
+};
+
+class LineBatches {
+ public:
+  // `scratch`: floats for each particle of a batch.
+  LineBatches(Lattice& lattice, const KernelTable& kernels, int scratch);
+
+  int row_groups() const { return (lattice_.rows + kBatchLines - 1) / kBatchLines; }
+  std::size_t bytes() const;
+
+  // Before share_out: for which threads.
+  void begin(Threads& threads) {
+    threads_ = &threads;
+    while (int(memory_.size()) < threads.count()) memory_.push_back(make_memory());
+  }
+
+  // Calls solve(n, memory) for n = 0 … count-1, each worth about `nanoseconds`, in any order.
+  template <class Solve>
+  void share_out(int count, double nanoseconds, const Solve& solve) {
+    if (threads_->count() == 1 || count * nanoseconds < kSharedNanoseconds) {
+      for (int n = 0; n < count; ++n) solve(n, memory_[0]);
+      return;
+    }
+    threads_->share(std::size_t(count), false,
+                    [&](std::size_t n) { solve(int(n), memory_[std::size_t(Threads::index())]); });
+  }
+
+  // Inverse masses of a group's rows as lanes, laid out as the tile.
+  const float* masses(int group) const { return masses_.data() + masses_at(group); }
+  // They are turned once, again when told so, or every time where they may change.
+  void turn_masses();
+  void follow_masses() { masses_change_ = true; }
+
+  // Turns the rows of a group into the lanes of a tile, solves and turns back. solve gets the number
+  // of rows, and what `moved` of the memory, where it adds up its moves, is multiplied by: 0, nothing
+  // is added up, or 1, and velocities then gain inverse_dt times the moves.
+  template <class Solve>
+  void turned(int group, BatchMemory& memory, float inverse_dt, const Solve& solve) {
+    const int begin = group * kBatchLines, rows = std::min(kBatchLines, lattice_.rows - begin);
+    turn_there(group, rows, memory);
+    if (inverse_dt > 0) memory.moved.clear();
+    solve(rows, inverse_dt > 0 ? 1.0f : 0.0f);
+    turn_back(begin, rows, memory, inverse_dt);
+  }
+
+ private:
+  // The least work worth sharing out [ns].
+  static constexpr double kSharedNanoseconds = 40000;
+
+  BatchMemory make_memory() const;
+  TransposeRows turning(int half, int rows) const;
+  void turn_there(int group, int rows, BatchMemory& memory);
+  std::size_t masses_at(int group) const {
+    return std::size_t(group) * turned_columns(lattice_.columns) * kBatchLines;
+  }
+  void turn_masses(int group, int rows);
+  void turn_back(int begin, int rows, BatchMemory& memory, float inverse_dt);
+
+  Lattice& lattice_;
+  const KernelTable& kernels_;
+  int scratch_;
+  AlignedArray<float> masses_;
+  bool masses_change_ = false;
+  Threads* threads_ = nullptr;
+  std::vector<BatchMemory> memory_;  // of every thread
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,53 @@
+// What the stages share that take the six stencils of a plain cloth in one pass over the rows
+// (kernels/plain_rows.h): the rows and the sums carried from row to row.
+#pragma once
+
+#include "physics/model/lattice/stages.h"
+
+namespace weft::physics {
+
+// stencils_of lists the six of a plain cloth in one order, which these stages take for granted.
+inline bool is_plain(const ClothParts& parts) {
+  return parts.cloth.level == 0 && parts.stencils.size() == kPlainStencils;
+}
+
+class PlainRowsStage : public RowStage {
+ public:
+  PlainRowsStage(const std::string& stage_name, const std::string& stage_detail,
+                 const ClothParts& parts)
+      : RowStage(stage_name, stage_detail, 2, parts.constraints(), "constraints"), parts_(parts) {}
+
+  void reserve_slots(int slots) override { carry_ = AlignedArray<float>(slots * carried()); }
+  std::size_t bytes() const override { return carry_.size() * sizeof(float); }
+  void start(const Substep& s) override { std::fill_n(carry(s), carried(), 0.0f); }
+
+ protected:
+  // Everything but the law's own. The first row of a substep finds nothing carried.
+  void fill(PlainRows& r, int begin, int end, const Substep& s) {
+    Lattice& l = parts_.lattice;
+    r.begin = begin;
+    r.end = end;
+    r.rows = l.rows;
+    r.columns = l.columns;
+    r.stride = l.stride;
+    r.x = l.x.row(0);
+    r.v = l.v.row(0);
+    r.w = l.w(0);
+    for (int f = 0; f < kPlainStencils; ++f) {
+      Links* const links = parts_.stencils[std::size_t(f)].links;
+      r.alive[f] = links ? links->row(0) : nullptr;
+    }
+    if (begin == 0) start(s);
+    r.carry = carry(s);
+  }
+
+  ClothParts parts_;
+
+ private:
+  std::size_t carried() const { return 6 * std::size_t(parts_.lattice.stride); }
+  float* carry(const Substep& s) { return carry_.data() + s.slot * carried(); }
+
+  AlignedArray<float> carry_;
+};
+
+}  // namespace weft::physics

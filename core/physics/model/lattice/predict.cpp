@@ -1,0 +1,125 @@
+// Stages "predict" and "velocity" of the methods that project positions: before the sweeps every
+// particle moves by its velocity and gravity, after them the velocity gains what the sweeps moved it
+// by, or both position and velocity the corrections that the sweeps have found. Between substeps where
+// nobody else looks that is left to the next predict (passes.h).
+#include "physics/model/lattice/stages.h"
+
+namespace weft::physics {
+namespace {
+
+// Rows begin … end-1 as one long row, padding and all.
+AdvanceRow rows_of(const ClothParts& parts, int begin, int end) {
+  Lattice& l = parts.lattice;
+  AdvanceRow a{};
+  a.columns = (end - begin) * l.stride;
+  a.x = l.x.row(begin);
+  a.v = l.v.row(begin);
+  a.w = l.w(begin);
+  if (l.previous.bytes() > 0) a.predicted = l.previous.row(begin);
+  return a;
+}
+
+class Predict final : public RowStage {
+ public:
+  Predict(const ClothParts& parts, Multipliers* multipliers, Rows* corrections)
+      : RowStage("predict", "positions by velocity and gravity", 0, parts.particles(), "particles"),
+        parts_(parts),
+        multipliers_(multipliers),
+        corrections_(corrections) {}
+  // Where what the sweeps did is not in them yet, it adds that itself.
+  Velocities velocities(double) const override { return Velocities::left_alone; }
+  bool moves_particles() const override { return true; }
+  void run(int begin, int end, const Substep& s) override {
+    AdvanceRow a = rows_of(parts_, begin, end);
+    a.advance = advance_of(parts_, s);
+    if (!s.velocities_known) {
+      a.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
+      if (corrections_) a.f = corrections_->row(begin);
+    }
+    parts_.kernels.predict(a);
+    if (multipliers_) multipliers_->clear(begin, end);
+  }
+
+ private:
+  ClothParts parts_;
+  Multipliers* multipliers_;
+  Rows* corrections_;
+};
+
+class Velocity final : public RowStage {
+ public:
+  Velocity(const ClothParts& parts, bool compliant)
+      : RowStage("velocity", "by how far the sweeps moved particles", 0, parts.particles(),
+                 "particles"),
+        parts_(parts),
+        compliant_(compliant) {}
+  Velocities velocities(double dt) const override {
+    return velocity_from_positions(parts_.scene.solver, compliant_, dt) ? Velocities::from_sweeps
+                                                                        : Velocities::left_alone;
+  }
+  void run(int begin, int end, const Substep& s) override {
+    if (!s.velocities_wanted) return;
+    if (!velocity_from_positions(parts_.scene.solver, compliant_, s.dt)) return;
+    AdvanceRow a = rows_of(parts_, begin, end);
+    a.inverse_dt = float(1 / s.dt);
+    parts_.kernels.velocity(a);
+  }
+
+ private:
+  ClothParts parts_;
+  bool compliant_;
+};
+
+// What the sweeps of the compliant method have found goes into positions and velocities.
+class Corrections final : public RowStage {
+ public:
+  Corrections(const ClothParts& parts, Rows& corrections)
+      : RowStage("velocity", "positions and velocities gain the corrections", 0, parts.particles(),
+                 "particles"),
+        parts_(parts),
+        corrections_(corrections) {}
+  Velocities velocities(double) const override { return Velocities::from_sweeps; }
+  void run(int begin, int end, const Substep& s) override {
+    if (!s.velocities_wanted) return;
+    AdvanceRow a = rows_of(parts_, begin, end);
+    a.w = nullptr;  // they are weighed already
+    a.f = corrections_.row(begin);
+    a.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
+    parts_.kernels.apply_corrections(a);
+  }
+
+ private:
+  ClothParts parts_;
+  Rows& corrections_;
+};
+
+}  // namespace
+
+Multipliers::Multipliers(const Lattice& lattice, std::size_t stencils_)
+    : rows(lattice.rows),
+      stride(lattice.stride),
+      stencils(stencils_),
+      data(stencils_ * static_cast<std::size_t>(lattice.rows) * lattice.stride) {}
+
+float* Multipliers::row(std::size_t stencil, int j) {
+  return data.data() + (stencil * rows + j) * stride;
+}
+
+void Multipliers::clear(int begin, int end) {
+  for (std::size_t f = 0; f < stencils; ++f) std::fill(row(f, begin), row(f, end), 0.0f);
+}
+
+std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* multipliers,
+                                       Rows* corrections) {
+  return std::make_unique<Predict>(parts, multipliers, corrections);
+}
+
+std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections) {
+  return std::make_unique<Corrections>(parts, corrections);
+}
+
+std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant) {
+  return std::make_unique<Velocity>(parts, compliant);
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,149 @@
+// Stage "springs": all spring forces on a cloth and its leapfrog step, in one pass over the rows.
+// Every spring is evaluated once, in the row of its near end; what it exerts on later rows is
+// carried along, so that a row is finished, and moved in place, as soon as its own springs are done.
+#include "physics/model/lattice/plain_rows.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr int kGuard = 16;  // zero lanes that a stencil's kernel reads before a row
+
+// Rounding of a reciprocal length must not hide that the length is too long.
+constexpr float kAlmost = 1 + 1e-6f;
+
+// The six stencils of a plain cloth in one kernel.
+class PlainSprings final : public PlainRowsStage {
+ public:
+  PlainSprings(const ClothParts& parts, bool damped)
+      : PlainRowsStage("springs",
+                       std::string("structural, shear and bend springs") +
+                           (damped ? " with damping" : "") + ", leapfrog step",
+                       parts),
+        damped_(damped),
+        springs_(std::size_t(parts.lattice.rows) * kPlainStencils) {
+    for (int j = 0; j < parts.lattice.rows; ++j)
+      for (int f = 0; f < kPlainStencils; ++f) {
+        const Stencil& stencil = parts.stencils[f];
+        SpringConstants& c = springs_[std::size_t(j) * kPlainStencils + f];
+        c = spring_constants(parts.cloth, stencil, j);
+        if (parts.overlong) c.taut = kAlmost / tear_length(parts.cloth, stencil);
+      }
+  }
+  std::size_t bytes() const override {
+    return PlainRowsStage::bytes() + springs_.size() * sizeof(SpringConstants);
+  }
+  // Rows of one inverse mass at a time.
+  bool moves_particles() const override { return true; }
+  void run(int begin, int end, const Substep& s) override {
+    const auto& weights = parts_.lattice.row_inverse_mass;
+    for (int first = begin; first < end;) {
+      int last = first + 1;
+      while (last < end && weights[last] == weights[first]) ++last;
+      run_alike(first, last, weights[first], s);
+      first = last;
+    }
+  }
+
+ private:
+  void run_alike(int begin, int end, float alike, const Substep& s) {
+    SpringRows r{};
+    fill(r, begin, end, s);
+    r.constants = springs_.data();
+    r.damped = damped_;
+    r.alike = alike;
+    r.overlong = parts_.overlong;
+    if (r.overlong) std::fill(r.overlong + begin, r.overlong + end, std::uint8_t{0});
+    r.advance = advance_of(parts_, s);
+    parts_.kernels.spring_rows(r);
+  }
+
+  bool damped_;
+  std::vector<SpringConstants> springs_;
+};
+
+// Any stencils, one kernel call each: levels, subsets.
+class StencilSprings final : public RowStage {
+ public:
+  StencilSprings(const ClothParts& parts, int reach, bool damped)
+      : RowStage("springs",
+                 std::to_string(parts.stencils.size()) + " spring stencils" +
+                     (damped ? " with damping" : "") + ", leapfrog step",
+                 reach, parts.constraints(), "constraints"),
+        parts_(parts),
+        kernel_(damped ? parts.kernels.damped_spring_stencil : parts.kernels.spring_stencil) {}
+
+  void reserve_slots(int slots) override {
+    force_ = Rows((reach + 1) * slots, parts_.lattice.stride);
+    scratch_ = AlignedArray<float>(kGuard + std::size_t(slots) * 3 * parts_.lattice.stride);
+  }
+  std::size_t bytes() const override { return force_.bytes() + scratch_.size() * sizeof(float); }
+
+  void start(const Substep& s) override {
+    for (int k = 0; k <= reach; ++k)
+      zero(force_.row(s.slot * (reach + 1) + k), parts_.lattice.stride);
+  }
+
+  bool moves_particles() const override { return true; }
+  void run(int j, const Substep& s) override {
+    Lattice& l = parts_.lattice;
+    const auto force = [&](int row) {
+      return force_.row(s.slot * (reach + 1) + row % (reach + 1));
+    };
+    for (const Stencil& stencil : parts_.stencils) {
+      if (j + stencil.dj >= l.rows) continue;
+      StencilRow r = stencil_row(l, stencil, j);
+      r.f = force(j);
+      r.f_far = force(j + stencil.dj);
+      r.scratch = scratch_.data() + kGuard + std::size_t(s.slot) * 3 * l.stride;
+      r.stride = l.stride;
+      r.spring = spring_constants(parts_.cloth, stencil, j);
+      kernel_(r);
+    }
+    AdvanceRow a{};
+    a.columns = l.columns;
+    a.x = l.x.row(j);
+    a.v = l.v.row(j);
+    a.w = l.w(j);
+    a.f = force(j);
+    a.advance = advance_of(parts_, s);
+    parts_.kernels.integrate(a);
+  }
+
+ private:
+  ClothParts parts_;
+  void (*kernel_)(const StencilRow&);
+  Rows force_;  // reach+1 rows in turn per slot: row j's is complete when row j is moved
+  AlignedArray<float> scratch_;
+};
+
+}  // namespace
+
+std::int64_t ClothParts::constraints() const {
+  std::int64_t n = 0;
+  for (const Stencil& f : stencils)
+    n += std::int64_t(f.per_row(lattice.columns)) * (lattice.rows - f.dj);
+  return n;
+}
+
+int greatest_reach(const ClothParts& parts) {
+  int reach = 0;
+  for (const Stencil& f : parts.stencils) reach = std::max(reach, f.dj);
+  return reach;
+}
+
+Advance advance_of(const ClothParts& parts, const Substep& s) {
+  const Vec3& g = parts.scene.gravity;
+  return {float(s.dt),
+          float(s.kick),
+          float(std::max(0.0, 1 - s.kick * parts.cloth.drag)),
+          float(g[0] * s.kick),
+          float(g[1] * s.kick),
+          float(g[2] * s.kick)};
+}
+
+std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped) {
+  if (is_plain(parts)) return std::make_unique<PlainSprings>(parts, damped);
+  return std::make_unique<StencilSprings>(parts, greatest_reach(parts), damped);
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,62 @@
+// The seams of a torn cloth: what each side keeps of the triangles that a tear passes through.
+//
+// A tear crosses the edges whose constraints are gone in their middles. Each particle draws its own
+// share of such a triangle, up to where the middle of the edge would lie if the sheet on its side went
+// on as it is, so that a tear shows as a line that opens, not as a row of missing triangles:
+//
+// Of a triangle a, b, c without edge ab each of a and b has a half, up to c; without ab and ca the
+// share of a is cut off from what b and c keep; without any edge each corner has its third.
+//
+// Points are x_p + Σ weight (x_to - x_from), the steps taken along constraints that are alive.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "physics/model/lattice/tearing.h"
+
+namespace weft::physics {
+
+class TearBoundary {
+ public:
+  // Follows the tearing, if its version has changed, and puts all points where they are now.
+  void update(const Tearing& tearing, const Lattice& lattice);
+
+  const std::vector<std::array<float, 3>>& points() const { return places_; }  // m
+  const std::vector<std::uint32_t>& particles() const {
+    return owners_;
+  }  // of points, j*stride + i
+  const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
+  std::size_t bytes() const;
+
+ private:
+  struct Site {
+    int i, j;
+  };
+  struct Step {
+    std::uint32_t from = 0, to = 0;
+    float weight = 0;
+  };
+  struct Point {
+    std::uint32_t particle;
+    Step steps[2];  // along the row, along the column
+  };
+
+  void rebuild(const Tearing& tearing);
+  void add_triangle(const Tearing& tearing, const Site (&corner)[3], unsigned gone);
+  // A point `along` and `down` steps from a particle, as the sheet lies on its side; none where it has
+  // no constraint to tell.
+  std::optional<std::uint32_t> point(const Tearing& tearing, Site p, float along, float down);
+  void add(std::optional<std::uint32_t> a, std::optional<std::uint32_t> b,
+           std::optional<std::uint32_t> c);
+
+  std::uint64_t version_ = 0;
+  std::vector<Point> points_;
+  std::vector<std::uint32_t> owners_;
+  std::vector<std::array<float, 3>> places_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,46 @@
+// Stage "tear": constraints beyond their tear strain end.
+#include <cmath>
+
+#include "physics/model/lattice/stages.h"
+#include "physics/model/lattice/tearing.h"
+
+namespace weft::physics {
+namespace {
+
+// Where the springs say which rows had a constraint too long at the start of the substep, the others
+// need no look.
+class TearStage final : public RowStage {
+ public:
+  TearStage(const ClothParts& parts, Tearing& tearing)
+      : RowStage("tear", "constraints beyond their tear strain end", greatest_reach(parts),
+                 parts.constraints(), "constraints"),
+        parts_(parts),
+        tearing_(tearing) {}
+  void run(int j, const Substep&) override {
+    if (parts_.overlong && !parts_.overlong[j]) return;
+    Lattice& l = parts_.lattice;
+    const auto from = [&](int row, int column) {
+      const Row3 r = l.x.row(row);
+      return ConstRow3{r.x + column, r.y + column, r.z + column};
+    };
+    for (const Stencil& f : parts_.stencils) {
+      if (j + f.dj >= l.rows) continue;
+      const int torn =
+          parts_.kernels.tear({f.per_row(l.columns), from(j, f.near()), from(j + f.dj, f.far()),
+                               f.links->row(j), tear_length(parts_.cloth, f)});
+      if (torn > 0) tearing_.died(j, torn);
+    }
+  }
+
+ private:
+  ClothParts parts_;
+  Tearing& tearing_;
+};
+
+}  // namespace
+
+std::unique_ptr<RowStage> make_tear(const ClothParts& parts, Tearing& tearing) {
+  return std::make_unique<TearStage>(parts, tearing);
+}
+
+}  // namespace weft::physics

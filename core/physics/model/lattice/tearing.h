@@ -1,0 +1,91 @@
+// What holds together of a cloth that can tear: which constraints, bending terms and triangles are
+// left.
+//
+// A constraint dies past its tear strain, where a cutter passes, or where a caller cuts. With the
+// constraints along a line die the longer ones that span it, with a structural one the bending over
+// it, and with an edge the triangles at it, of which each side keeps its part (seams.h). Looked at
+// again is only what lies about the rows where something died.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "physics/model/lattice/bending.h"
+#include "physics/model/lattice/stencil.h"
+
+namespace weft::physics {
+
+class Tearing {
+ public:
+  // Gives every stencil of a whole cloth its links; `bends`: it has bending too.
+  Tearing(const Lattice& lattice, std::vector<Stencil>& stencils, bool bends);
+
+  // Notes that constraints of row j died. Rows may be worked on side by side.
+  void died(int j, int count) { died_[static_cast<std::size_t>(j)] += count; }
+  // Ends constraint a of row j of a stencil, if it is alive.
+  void end(const Stencil& stencil, int j, int a) {
+    std::int32_t& lane = stencil.links->row(j)[a];
+    if (lane != 0) died(j, 1);
+    lane = 0;
+  }
+  // Follows what died since the last call: spanning constraints, bending, triangles. Returns whether
+  // any did.
+  bool update();
+
+  // Remembers which links there are; go_back() undoes what died since.
+  void remember();
+  void go_back();
+  // One constraint that is gone: its stencil's offset, its row and its place in the row.
+  struct Torn {
+    int di, dj, j, a;
+  };
+  std::vector<Torn> torn_list() const;
+  // Exactly these are gone, and what spans them; those of stencils not here are passed over.
+  void set_torn(const std::vector<Torn>& torn);
+
+  std::int64_t torn() const { return torn_; }  // constraints that are gone
+  std::int64_t torn(int j) const { return died_[static_cast<std::size_t>(j)]; }  // of row j
+  std::uint64_t version() const { return version_; }  // rises when triangles change
+  // Triangles that are left whole, corners as j*stride + i; empty while the cloth is whole.
+  const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
+  // Null without bending.
+  const BendLinks* bend_links() const { return bend_links_.get(); }
+  std::size_t bytes() const;
+
+  // Edges of the first and the second triangle of square (i, j) that are gone: bits 0 to 2 and 3 to
+  // 5, edge n from corner n to the next. Corners: (i,j) (i+1,j) (i,j+1) and (i+1,j) (i+1,j+1) (i,j+1).
+  std::uint8_t gone(int i, int j) const {
+    return squares_[static_cast<std::size_t>(j) * (columns_ - 1) + i];
+  }
+  // Whether the constraint (di, dj) from particle (i, j) is there; true when the cloth has none such.
+  bool alive(int di, int dj, int i, int j) const;
+  // The same, false when the cloth has none such.
+  bool joined(int di, int dj, int i, int j) const;
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  int stride() const { return stride_; }
+
+ private:
+  void make_whole();
+  const Stencil* stencil_at(int di, int dj) const;
+  void end_spanning(int row);
+  void end_bending(int row);
+  bool look_at_squares(int row);
+  void end_pinches(int j);
+  void list_triangles();
+
+  int columns_, rows_, stride_;
+  std::vector<Stencil>& stencils_;
+  std::vector<std::unique_ptr<Links>> links_, remembered_;
+  std::unique_ptr<BendLinks> bend_links_;
+  std::vector<std::int64_t> died_, followed_;  // per row, ever
+  std::vector<int> rows_about_;                // where something died
+  std::int64_t torn_ = 0;
+  std::uint64_t version_ = 0;
+  std::vector<std::uint8_t> squares_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+};
+
+}  // namespace weft::physics

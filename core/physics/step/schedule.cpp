@@ -1,0 +1,109 @@
+// The passes over a cloth's stages (schedule.h).
+#include "physics/step/schedule.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "physics/step/threads.h"
+
+namespace weft::physics {
+namespace {
+
+// Rough cost of a constraint or particle, for sizing tasks only [ns].
+constexpr double kItemNs = 0.5;
+
+// Particles times substeps, and particles, from which several threads are faster than one.
+constexpr double kSharedRun = 150000;
+constexpr double kSharedStandingBy = 30000;
+constexpr int kSharedSubstep = 15000;
+
+double row_nanoseconds(const std::vector<RowStage*>& stages, int rows) {
+  double ns = 0;
+  for (const RowStage* s : stages) ns += double(s->items) * kItemNs;
+  return ns / rows;
+}
+
+}  // namespace
+
+Schedule::Schedule(const Stages& stages, int rows, std::size_t row_bytes)
+    : stages_(stages), rows_(rows) {
+  std::vector<RowStage*> together;
+  const auto close = [&](std::size_t end) {
+    if (together.empty()) return;
+    passes_.push_back(
+        {end - together.size(), nullptr,
+         std::make_unique<Wavefront>(together, rows, row_bytes, row_nanoseconds(together, rows)),
+         together.size()});
+    together.clear();
+  };
+  for (std::size_t q = 0; q < stages.size(); ++q) {
+    if (RowStage* const row_stage = stages[q]->as_row_stage()) {
+      together.push_back(row_stage);
+      continue;
+    }
+    close(q);
+    passes_.push_back({q, stages[q]->as_whole_stage(), nullptr, 1});
+    ++whole_stages_;
+  }
+  close(stages.size());
+}
+
+// Threads meet at the end of the frame, or in every substep.
+bool Schedule::worth_sharing(int particles, int substeps, bool standing_by) const {
+  if (!rows_only()) return particles >= kSharedSubstep;
+  return worth_running_apart(particles, substeps, standing_by);
+}
+bool Schedule::worth_running_apart(std::int64_t particles, int substeps, bool standing_by) {
+  return double(particles) * substeps >= (standing_by ? kSharedStandingBy : kSharedRun);
+}
+
+void Schedule::run(const Substeps& given, Threads& threads, std::span<const RowSpan> awake,
+                   RowObserver* observer) {
+  if (given.dt != prepared_dt_) prepare(given.dt);
+  Substeps substeps = given;
+  substeps.velocities_between = velocities_between_;
+  const RowSpan all{0, rows_};
+  threads.together([&] {
+    if (rows_only() && !passes_.empty())
+      return passes_.front().wavefront->run(substeps, threads, awake, observer);
+    if (observer) observer->before(all);
+    for (int s = 0; s < substeps.count; ++s) run_substep(substeps, s, threads, awake);
+    if (observer) observer->after(all);
+  });
+}
+
+// What velocities gain from the sweeps at the end of a substep, where nobody looks at them but what
+// predicts the next, need not be added: it can do that itself.
+void Schedule::prepare(double dt) {
+  prepared_dt_ = dt;
+  for (Pass& p : passes_)
+    if (p.whole) p.whole->prepare(dt);
+  velocities_between_ =
+      stages_.empty() || stages_.back()->velocities(dt) != Velocities::from_sweeps ||
+      !std::all_of(stages_.begin(), stages_.end() - 1, [&](const std::unique_ptr<Stage>& s) {
+        return s->velocities(dt) == Velocities::left_alone;
+      });
+}
+
+void Schedule::run_substep(const Substeps& substeps, int s, Threads& threads,
+                           std::span<const RowSpan> awake) {
+  for (Pass& p : passes_) {
+    if (p.wavefront) {
+      p.wavefront->run(substeps.only(s), threads, awake);
+      continue;
+    }
+    const auto before = std::chrono::steady_clock::now();
+    p.whole->run(substeps.at(s), threads);
+    if (profile_.empty()) continue;
+    const auto spent = std::chrono::steady_clock::now() - before;
+    profile_[p.first] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+  }
+}
+
+void Schedule::profile(std::span<std::atomic<std::int64_t>> nanoseconds) {
+  profile_ = nanoseconds;
+  for (Pass& p : passes_)
+    if (p.wavefront) p.wavefront->profile(nanoseconds.subspan(p.first, p.count));
+}
+
+}  // namespace weft::physics

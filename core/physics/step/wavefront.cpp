@@ -1,0 +1,273 @@
+// The wavefront over rows and substeps (wavefront.h).
+#include "physics/step/wavefront.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "physics/step/threads.h"
+
+namespace weft::physics {
+namespace {
+
+// A core's share of the second-level cache that a tile may fill.
+constexpr std::size_t kTileBytes = 384 * 1024;
+constexpr std::size_t kSecondLevelBytes = 1024 * 1024;
+constexpr int kLeastHeight = 8;   // rows
+constexpr int kMostSubsteps = 8;  // of a chunk
+// So many stages that their rows are better kept in the first-level cache: measured with sweeps.
+constexpr std::size_t kManyStages = 5;
+constexpr std::size_t kFirstLevelBytes = 40 * 1024;
+constexpr int kManyStagesLeast = 4, kManyStagesMost = 16;  // rows
+constexpr int kSharedHeight = 16;  // so that all threads are busy to the end of a frame
+// The least work worth a task [ns].
+constexpr double kTaskNanoseconds = 12000;
+constexpr double kSharedNanoseconds = 4000;  // and sharing out where nobody has to be woken
+
+// Substeps of a chunk: shorter ones have threads hand rows to each other too often.
+constexpr int kShortChunk = 2;
+// Each thread follows the one before by what a chunk leans and two tiles: little of a sheet that is this
+// many times as tall as all of that.
+constexpr int kTallSheet = 4;
+
+constexpr int kNone = -1;  // no tile
+
+}  // namespace
+
+struct Wavefront::Run {
+  const Substeps& substeps;
+  std::span<const RowSpan> awake;
+  RowObserver* observer;
+};
+
+Wavefront::Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes,
+                     double row_nanoseconds)
+    : stages_(std::move(stages)),
+      rows_(rows),
+      row_bytes_(row_bytes),
+      row_nanoseconds_(row_nanoseconds) {
+  for (const RowStage* s : stages_) reach_ += s->reach;
+}
+
+// One thread and a lattice that fits the cache: one tile a substep. Else tiles as tall as the cache
+// allows, or as a task is worth, and many substeps a chunk: that its lean leaves the cache costs less
+// than to come by more often.
+void Wavefront::choose_tiles(int count, int threads) {
+  const int reach = std::max(reach_, 1);
+  const std::size_t bytes = row_bytes_ * std::size_t(rows_);
+  chunk_substeps_ = 1;
+  height_ = rows_ + reach;
+  if (threads == 1 && bytes <= kSecondLevelBytes && stages_.size() >= kManyStages) {
+    const int rows = int(kFirstLevelBytes / std::max<std::size_t>(row_bytes_, 1));
+    height_ = std::min(height_, std::clamp(rows, kManyStagesLeast, kManyStagesMost));
+  } else if (threads > 1 || bytes > kTileBytes) {
+    const int cache_rows = int(kTileBytes / std::max<std::size_t>(row_bytes_, 1));
+    // A tile and its lean share the cache; several tiles per thread keep all threads busy.
+    height_ = std::max({2 * reach, cache_rows / 2, kLeastHeight});
+    if (threads > 1)
+      height_ = std::min(height_, std::max(std::min(rows_ / (4 * threads), kSharedHeight), reach));
+    height_ = std::clamp(height_, 1, rows_);
+    chunk_substeps_ =
+        bytes > kSecondLevelBytes ? kMostSubsteps : std::clamp(height_ / reach, 1, kMostSubsteps);
+    if (threads > 1) {
+      const double tile = row_nanoseconds_ * height_;
+      const int worth = std::min(kMostSubsteps, int(std::ceil(kTaskNanoseconds / tile)));
+      chunk_substeps_ = std::max(chunk_substeps_, worth);
+      // At both ends of a frame threads wait for each other, the longer the longer chunks are.
+      const int most = std::min(count / threads, kMostSubsteps);
+      tall_ = kTallSheet * threads * (most * reach + 2 * height_) <= rows_;
+      if (!tall_)
+        chunk_substeps_ = std::min(chunk_substeps_, std::max(count / (2 * threads), kShortChunk));
+    }
+    chunk_substeps_ = std::clamp(count / threads, 1, chunk_substeps_);
+  }
+  offset_.clear();
+  int offset = 0;
+  for (int s = 0; s < chunk_substeps_; ++s)
+    for (std::size_t q = 0; q < stages_.size(); ++q) {
+      if (s + q > 0) offset += stages_[q]->reach;
+      offset_.push_back(offset);
+    }
+  ring_ = threads > 1 ? threads + 1 : 1;
+}
+
+Wavefront::Chunk Wavefront::chunk(int number, int first, int count) const {
+  const int offset = offset_[count * stages_.size() - 1];
+  const int tiles = (rows_ + offset + height_ - 1) / height_;
+  const int span = (offset + stages_.front()->reach + height_ - 1) / height_;
+  const int slot = number % ring_ * chunk_substeps_;
+  return {first, count, slot, tiles, span, std::max(0, tiles - 1 - span)};
+}
+
+// The first chunks grow evenly up to the longest, and the last shrink. A thread begins when the one
+// before it is span + 1 tiles ahead, the last of T threads so when (span + 1) T tiles of the mean
+// length (first + longest)/2 are done; the first chunk, of t tiles, is to last just as long:
+//
+//   first/longest = (span + 1) T / (2 t - (span + 1) T).
+//
+// The chunks between are as long as each other, as many for every thread. A tall sheet has no others:
+// coming by once more would take longer.
+void Wavefront::choose_chunks(int count, int threads) {
+  chunks_.clear();
+  most_tiles_ = 0;
+  auto add = [&, first = 0](int length) mutable {
+    chunks_.push_back(chunk(int(chunks_.size()), first, length));
+    most_tiles_ = std::max(most_tiles_, chunks_.back().tiles);
+    first += length;
+  };
+  const Chunk whole = chunk(0, 0, chunk_substeps_);
+  const double ahead = (whole.span + 1) * threads;
+  const double first_share = std::min(1.0, ahead / std::max(2 * whole.tiles - ahead, 1.0));
+  const auto length = [&](int n) {
+    const double share = first_share + (1 - first_share) * (n - 1) / (threads - 1);
+    return std::max(1, int(std::lround(chunk_substeps_ * share)));
+  };
+  int rising = 1;
+  for (; !tall_ && rising < threads && count >= 2 * length(rising) + chunk_substeps_; ++rising) {
+    add(length(rising));
+    count -= 2 * length(rising);
+  }
+  int between = (count + chunk_substeps_ - 1) / chunk_substeps_;
+  between = std::min(count, (between + threads - 1) / threads * threads);
+  for (int n = 0; n < between; ++n) add(count / between + (n < count % between));
+  while (--rising > 0) add(length(rising));
+}
+
+void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake,
+                    RowObserver* observer) {
+  // Tiles of one substep follow one on the other, unless no row reaches another.
+  const bool apart = reach_ == 0 && substeps.count == 1;
+  const int at_once = substeps.count > 1 || apart ? threads.count() : 1;
+  choose_tiles(substeps.count, at_once);
+  if (substeps.dt != prepared_dt_)
+    for (RowStage* s : stages_) s->prepare(substeps.dt);
+  prepared_dt_ = substeps.dt;
+  const Run r{substeps, awake, observer};
+  if (const int slots = chunk_substeps_ * ring_; slots > slots_) {
+    for (RowStage* s : stages_) s->reserve_slots(slots);
+    slots_ = slots;
+  }
+  if (apart) {
+    const Chunk only = chunk(0, 0, 1);
+    return threads.share(std::size_t(only.tiles),
+                         at_once == 1 || row_nanoseconds_ * rows_ < kSharedNanoseconds,
+                         [&](std::size_t k) { run_tile(r, int(k), only); });
+  }
+  if (at_once > 1 && rows_ > height_) return run_parallel(r, threads);
+  for (int first = 0; first < substeps.count; first += chunk_substeps_) {
+    const Chunk next = chunk(0, first, std::min(chunk_substeps_, substeps.count - first));
+    for (int k = 0; k < next.tiles; ++k) run_tile(r, k, next);
+  }
+}
+
+void Wavefront::run_rows(const Run& r, RowStage& stage, RowSpan rows, const Substep& substep) {
+  if (r.awake.empty()) return stage.run(rows.begin, rows.end, substep);
+  for (const RowSpan& span : r.awake) {
+    const int begin = std::max(rows.begin, span.begin), end = std::min(rows.end, span.end);
+    if (begin >= end) continue;
+    if (begin == span.begin) stage.start(substep);
+    stage.run(begin, end, substep);
+  }
+}
+
+RowSpan Wavefront::tile_rows(int tile, int offset) const {
+  return {std::clamp(tile * height_ - offset, 0, rows_),
+          std::clamp((tile + 1) * height_ - offset, 0, rows_)};
+}
+
+void Wavefront::run_tile(const Run& r, int tile, const Chunk& chunk) const {
+  // The first stage reaches ahead of the tile.
+  const int ahead = stages_.front()->reach;
+  if (r.observer && chunk.first == 0)
+    r.observer->before(
+        {tile == 0 ? 0 : tile_rows(tile, -ahead).begin, tile_rows(tile, -ahead).end});
+  std::size_t level = 0;
+  for (int s = 0; s < chunk.count; ++s) {
+    const Substep substep = r.substeps.at(chunk.first + s, chunk.slot + s);
+    for (std::size_t q = 0; q < stages_.size(); ++q, ++level) {
+      const RowSpan rows = tile_rows(tile, offset_[level]);
+      if (rows.begin == rows.end) continue;
+      RowStage& stage = *stages_[q];
+      if (profile_.empty()) {
+        run_rows(r, stage, rows, substep);
+        continue;
+      }
+      const auto before = std::chrono::steady_clock::now();
+      run_rows(r, stage, rows, substep);
+      const auto spent = std::chrono::steady_clock::now() - before;
+      profile_[q] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+    }
+  }
+  // What the last stage leaves behind is final.
+  if (r.observer && chunk.first + chunk.count == r.substeps.count)
+    r.observer->after(tile_rows(tile, offset_[level - 1]));
+}
+
+// Every tile counts the tiles it still waits for. Whoever finishes the last of them goes on with it,
+// and puts others that have become ready into a queue, for whoever comes next.
+void Wavefront::run_parallel(const Run& r, Threads& threads) {
+  choose_chunks(r.substeps.count, threads.count());
+  const int chunks = int(chunks_.size());
+  if (const int room = chunks * most_tiles_; room > room_) {
+    waits_ = std::make_unique<std::atomic<int>[]>(room);
+    queue_ = std::make_unique<std::atomic<int>[]>(room);
+    room_ = room;
+  }
+  all_ = 0;
+  for (int c = 0; c < chunks; ++c)
+    for (int k = 0; k < chunks_[c].tiles; ++k, ++all_) {
+      const bool left = k > 0;
+      const bool before = c > 0 && k <= chunks_[c - 1].last;
+      const bool slot = c >= ring_ && k == 0;
+      waits_[c * most_tiles_ + k].store(left + before + slot, std::memory_order_relaxed);
+      queue_[all_].store(kNone, std::memory_order_relaxed);
+    }
+  left_.store(all_, std::memory_order_relaxed);
+  taken_.store(0, std::memory_order_relaxed);
+  queue_[0].store(0, std::memory_order_relaxed);
+  queued_.store(1, std::memory_order_relaxed);
+  threads.share(std::size_t(threads.count()), false, [&](std::size_t) { work(r); });
+}
+
+// One thread's part: tiles from the queue, in the order in which they became ready.
+void Wavefront::work(const Run& r) {
+  for (int place; (place = taken_.fetch_add(1, std::memory_order_relaxed)) < all_;) {
+    int tile;
+    for (Patience patience; (tile = queue_[place].load(std::memory_order_acquire)) == kNone;) {
+      if (left_.load(std::memory_order_acquire) == 0) return;
+      patience.wait();
+    }
+    while (tile != kNone) tile = run_and_release(r, tile);
+  }
+}
+
+// Runs a tile, and returns one that has become ready by that, or kNone.
+int Wavefront::run_and_release(const Run& r, int tile) {
+  const int k = tile % most_tiles_, c = tile / most_tiles_;
+  const Chunk& chunk = chunks_[c];
+  run_tile(r, k, chunk);
+  int next = kNone;
+  const auto release = [&](int kk, int cc) {
+    const int waiting = cc * most_tiles_ + kk;
+    if (waits_[waiting].fetch_sub(1, std::memory_order_acq_rel) > 1) return;
+    if (next == kNone)
+      next = waiting;
+    else
+      queue_[queued_.fetch_add(1, std::memory_order_relaxed)].store(waiting,
+                                                                    std::memory_order_release);
+  };
+  const int chunks = int(chunks_.size());
+  const bool last = k == chunk.tiles - 1;
+  if (!last) release(k + 1, c);
+  if (c + 1 < chunks) {
+    if (last)
+      release(chunk.last, c + 1);
+    else if (k >= chunk.span && k - chunk.span < chunk.last)
+      release(k - chunk.span, c + 1);
+  }
+  if (last && c + ring_ < chunks) release(0, c + ring_);
+  left_.fetch_sub(1, std::memory_order_acq_rel);
+  return next;
+}
+
+}  // namespace weft::physics
