@@ -67,12 +67,16 @@ bool driven(const Scene& scene) {
          });
 }
 
-// Particles keep the offset from every collider, now.
+// Particles and the triangles between them keep the offset from every collider, now. A triangle lies
+// within a diagonal of its corners; above a plane it is where they are.
 bool outside_of_all(const Simulation& simulation) {
   bool outside = true;
-  for_each_cloth(simulation, [&](const Cloth&, const auto& x, const auto&) {
-    for (const Collider& c : simulation.scene().colliders)
-      for (const Vec3& p : x) outside &= signed_distance(c, simulation.time(), p) >= c.offset;
+  for_each_cloth(simulation, [&](const Cloth& cloth, const auto& x, const auto&) {
+    const double diagonal = spacing_u(cloth.grid) + spacing_v(cloth.grid) + 2 * cloth.grid.jitter;
+    for (const Collider& c : simulation.scene().colliders) {
+      const double least = c.offset + (std::holds_alternative<Plane>(c.shape) ? 0 : diagonal);
+      for (const Vec3& p : x) outside &= signed_distance(c, simulation.time(), p) >= least;
+    }
   });
   return outside;
 }
