@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "program.h"
+#include "weft/read_scene.h"
+#include "weft/recording.h"
 
 namespace weft {
 namespace {
@@ -36,6 +38,47 @@ TEST(Recording, ADifferenceIsNamedByItsFrame) {
   const std::size_t first = outcome.err.find("its hash is ") + 12;
   const std::size_t second = outcome.err.find("in the recording ") + 17;
   EXPECT_NE(outcome.err.substr(first, 16), outcome.err.substr(second, 16)) << outcome.err;
+}
+
+// Frames of another length count the time so far anew.
+TEST(Recording, FramesOfAnotherLengthReplay) {
+  const Folder folder;
+  Scene scene = read_scene("swing").scene;
+  scene.cloths[0].grid.nx = scene.cloths[0].grid.ny = 8;
+  scene.cloths[0].pins = {{0, 0, {}}, {7, 0, {}}};
+  const std::string path = folder.path() + "/a.rec";
+  std::vector<std::uint64_t> hashes;
+  {
+    Simulation simulation(scene);
+    Recorder recorder(path, simulation);
+    const auto frames = [&](int count) {
+      for (int n = 0; n < count; ++n) {
+        simulation.advance_frame();
+        recorder.frame(simulation);
+        hashes.push_back(simulation.hash());
+      }
+    };
+    for (const double length : {scene.time.frame, 0.5 * scene.time.frame, 3 * scene.time.frame}) {
+      Input other;
+      other.kind = Input::Kind::set_scene;
+      Scene changed = scene;
+      changed.time.frame = length;
+      other.scene = std::make_shared<const Scene>(changed);
+      recorder.input(simulation.frame(), other);
+      apply(other, simulation);
+      frames(4);
+    }
+    recorder.finish();
+  }
+  const Recording recording = read_recording(path);
+  Simulation again(recording.scene, {.seed = recording.seed});
+  std::size_t next = 0;
+  for (const std::uint64_t hash : hashes) {
+    while (const Input* input = next_input(recording, next, again)) apply(*input, again);
+    again.advance_frame();
+    compare_hash(recording, next, again);
+    EXPECT_EQ(again.hash(), hash);
+  }
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -115,13 +115,14 @@ Recording::Event event_of(const Value& line) {
   return event;
 }
 
-// Frames come one after the other; they may begin anew with another scene.
+// Frames come one after the other. After another scene they go on from any number: it may begin anew, or
+// have frames of another length, in which the time so far is counted.
 class Order {
  public:
   void check(const Recording::Event& event) {
     const bool is_hash = !event.input;
     const std::int64_t before = event.frame - (is_hash ? 1 : 0);
-    if (before == 0 && anew_) done_ = 0;
+    if (anew_ && before >= 0) done_ = before;
     if (before != done_)
       fail("/frame", std::to_string(event.frame) + " is out of order: lines are missing or doubled",
            std::to_string(done_ + (is_hash ? 1 : 0)) + " comes here");

@@ -56,19 +56,19 @@ void TearBoundary::add_triangle(const Tearing& t, const Site (&corner)[3], unsig
     const Site a = corner[n], b = corner[(n + 1) % 3], c = corner[(n + 2) % 3];
     const bool ab = gone >> n & 1, bc = gone >> (n + 1) % 3 & 1, ca = gone >> (n + 2) % 3 & 1;
     if (ab && !bc && !ca) {
-      add(own(a), middle(a, b), own(c));
-      add(middle(b, a), own(b), own(c));
+      add({own(a), middle(a, b), own(c)});
+      add({middle(b, a), own(b), own(c)});
     } else if (ab && ca && !bc) {
-      add(own(a), middle(a, b), middle(a, c));
+      add({own(a), middle(a, b), middle(a, c)});
       const auto near_b = middle(b, a);
-      add(near_b, own(b), own(c));
-      add(near_b, own(c), middle(c, a));
+      add({near_b, own(b), own(c)});
+      add({near_b, own(c), middle(c, a)});
     } else if (ab && bc && ca) {
       const auto [along_b, down_b] = far(a, b, 1 / 3.0f);
       const auto [along_c, down_c] = far(a, c, 1 / 3.0f);
       const auto center = point(t, a, along_b + along_c, down_b + down_c);
-      add(own(a), middle(a, b), center);
-      add(own(a), center, middle(a, c));
+      add({own(a), middle(a, b), center});
+      add({own(a), center, middle(a, c)});
     }
   }
 }
@@ -100,9 +100,9 @@ std::optional<std::uint32_t> TearBoundary::point(const Tearing& t, Site p, float
   return static_cast<std::uint32_t>(points_.size() - 1);
 }
 
-void TearBoundary::add(std::optional<std::uint32_t> a, std::optional<std::uint32_t> b,
-                       std::optional<std::uint32_t> c) {
-  if (a && b && c) triangles_.push_back({*a, *b, *c});
+// (In braces the corners are made in their order; the arguments of a call are not.)
+void TearBoundary::add(const std::array<std::optional<std::uint32_t>, 3>& c) {
+  if (c[0] && c[1] && c[2]) triangles_.push_back({*c[0], *c[1], *c[2]});
 }
 
 std::size_t TearBoundary::bytes() const {

@@ -49,8 +49,7 @@ class TearBoundary {
   // A point `along` and `down` steps from a particle, as the sheet lies on its side; none where it has
   // no constraint to tell.
   std::optional<std::uint32_t> point(const Tearing& tearing, Site p, float along, float down);
-  void add(std::optional<std::uint32_t> a, std::optional<std::uint32_t> b,
-           std::optional<std::uint32_t> c);
+  void add(const std::array<std::optional<std::uint32_t>, 3>& corners);
 
   std::uint64_t version_ = 0;
   std::vector<Point> points_;
