@@ -35,5 +35,9 @@ elseif(WEFT_HARDENING)
   target_link_options(weft_hardening INTERFACE LINKER:-z,relro LINKER:-z,now)
 endif()
 # Every index into the standard library's containers is checked where speed does not matter.
-target_compile_definitions(weft_options INTERFACE
-  $<$<OR:$<CONFIG:Debug>,$<BOOL:${WEFT_SANITIZE}>>:_GLIBCXX_ASSERTIONS>)
+# (The names of sanitizers hold commas, which a generator expression takes for the next parameter.)
+if(WEFT_SANITIZE)
+  target_compile_definitions(weft_options INTERFACE _GLIBCXX_ASSERTIONS)
+else()
+  target_compile_definitions(weft_options INTERFACE $<$<CONFIG:Debug>:_GLIBCXX_ASSERTIONS>)
+endif()
