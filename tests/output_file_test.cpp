@@ -253,7 +253,7 @@ TEST(Printable, IsOneLineOfUtf8) {
   EXPECT_EQ(printable("a\nb\tc\rd\x1b[31m\x7f"), "a\\nb\\tc\\rd\\x1b[31m\\x7f");
   // Lone, overlong, cut off, a surrogate, beyond Unicode, a control character of two bytes.
   EXPECT_EQ(printable("\xff \xc0\xaf \xe2\x80 \xed\xa0\x80 \xf4\x90\x80\x80 \xc2\x85"),
-            "\\xff \\xc0\\xaf \\xe2\\x80 \\xed\\xa0\\x80 \\xf4\\x90\\x80\\x80 \\xc2\\x85");
+            "\\xff \\xc0\\xaf \\xe2\\x80 \\xed\\xa0\\x80 \\xf4\\x90\\x80\\x80 \\u{85}");
   EXPECT_EQ(printable(std::string_view("a\0b", 3)), "a\\x00b");
 }
 

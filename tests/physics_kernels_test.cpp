@@ -214,7 +214,6 @@ void add_projections(std::vector<Case>& cases) {
 
 // In the order of weft::Shape.
 constexpr int kPlane = 1, kBox = 3;
-constexpr const char* kShapeNames[kShapes] = {"sphere", "plane", "capsule", "box"};
 
 void add_contacts(std::vector<Case>& cases) {
   const auto touch = [](int shape, int model, float friction, bool moving) {
@@ -242,7 +241,7 @@ void add_contacts(std::vector<Case>& cases) {
       if (moving) r.ux = 0.3f, r.uy = -0.2f, r.uz = 0.1f;
       r.friction_static = friction;
       r.friction_dynamic = 0.8f * friction;
-      k.collide[shape][model](r);
+      k.collider[shape]->collide[model](r);
     };
   };
   for (const float friction : {0.0f, 0.4f})

@@ -150,9 +150,14 @@ LoadedScene scene_to_run(const RunArguments& arguments, const std::optional<Reco
 }
 
 // All frames, or those until a signal; then the files.
-Report advance(Simulation& simulation, std::int64_t frames, Recordings& recordings, Files& files) {
+Report advance(Simulation& simulation, std::int64_t frames, Recordings& recordings, Files& files,
+               Takeover& takeover) {
   std::int64_t done = 0;
-  Takeover takeover([&] { end_within_frame(files, done, frames); });
+  takeover.on_interrupt([&] { end_within_frame(files, done, frames); });
+  const struct Stop {
+    Takeover& takeover;
+    ~Stop() { takeover.stop(); }
+  } stop{takeover};  // an exception too leaves nothing that `end` could work on
   Progress progress(frames, simulation.scene().time.frame);
   while (done < frames && interrupted() == 0) {
     {
@@ -191,10 +196,11 @@ int run(const RunArguments& arguments) {
                   {{"--tolerance", "a recording carries its own solver", "not with --replay"}}};
   if (arguments.tolerance)
     choose(loaded, *arguments.tolerance, double(frames) * loaded.scene.time.frame, options);
-  Simulation simulation = simulate(loaded, options);
   catch_interrupts();  // before there is a temporary file that a signal could leave behind
+  Takeover takeover;
+  Simulation simulation = simulate(loaded, options);
   Files files(arguments.files, simulation, frames, recordings);
-  const Report report = advance(simulation, frames, recordings, files);
+  const Report report = advance(simulation, frames, recordings, files, takeover);
   std::cout << summary(report, simulation.plan().notes, files.written());
   if (!simulation.status().ok) {
     const std::string why = "the simulation stopped itself: " + simulation.status().text;

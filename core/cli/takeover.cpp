@@ -2,6 +2,8 @@
 #include "takeover.h"
 
 #include <chrono>
+#include <cstdlib>
+#include <system_error>
 
 #include "output/interrupt.h"
 
@@ -13,11 +15,21 @@ constexpr std::chrono::seconds kGrace{2};
 
 }  // namespace
 
-Takeover::Takeover(std::function<void()> end) : end_(std::move(end)), thread_([this] { wait(); }) {}
+Takeover::Takeover() : end_([] { std::_Exit(128 + interrupted()); }) {
+  try {
+    thread_ = std::thread([this] { wait(); });
+  } catch (const std::system_error&) {
+  }
+}
 
 Takeover::~Takeover() {
   stop();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Takeover::on_interrupt(std::function<void()> end) {
+  const auto lock = hold();
+  end_ = std::move(end);
 }
 
 void Takeover::stop() {

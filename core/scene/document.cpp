@@ -18,7 +18,7 @@ class FieldWriter {
   }
 
   void operator()(Shape& shape) {
-    std::visit([&](auto& one) { put(object_, kShapeKeys[shape.index()], write(one)); }, shape);
+    std::visit([&](auto& one) { put(object_, kShapeNames[shape.index()], write(one)); }, shape);
   }
 
   // Whole numbers without a fraction; the sign of zero is kept.

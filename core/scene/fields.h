@@ -153,7 +153,4 @@ void fields(Walk& walk, Scene& scene) {
   walk("wind", scene.wind);
 }
 
-// The key of a collider for each alternative of Shape.
-constexpr std::array<const char*, 4> kShapeKeys{"sphere", "plane", "capsule", "box"};
-
 }  // namespace weft::text

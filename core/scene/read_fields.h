@@ -23,10 +23,9 @@ class FieldReader {
   }
 
   void operator()(Shape& shape) {
-    read_shape<Sphere>(kShapeKeys[0], shape);
-    read_shape<Plane>(kShapeKeys[1], shape);
-    read_shape<Capsule>(kShapeKeys[2], shape);
-    read_shape<Box>(kShapeKeys[3], shape);
+#define WEFT_READ_SHAPE(Type, name) read_shape<Type>(#name, shape);
+    WEFT_SHAPES(WEFT_READ_SHAPE)
+#undef WEFT_READ_SHAPE
   }
 
   static void read(const Json& value, double& field) {
@@ -111,7 +110,9 @@ class FieldReader {
   }
 
   template <class T>
-  requires requires(FieldReader& walk, T& field) { fields(walk, field); }
+  requires requires(FieldReader& walk, T& field) {
+    fields(walk, field);
+  }
   static void read(const Json& value, T& field) {
     FieldReader walk(value);
     fields(walk, field);

@@ -253,10 +253,9 @@ void Parameters::draw(Workspace& workspace) {
   top("wind", false);
   top("time", false);
   const Json& collider = schema["properties"]["colliders"]["items"];
-  constexpr const char* kShapes[] = {"sphere", "plane", "capsule", "box"};
   for (std::size_t n = 0; n < std::min<std::size_t>(json["colliders"].size(), 50); ++n) {
     std::string title = "collider " + std::to_string(n);
-    for (const char* shape : kShapes)
+    for (const char* shape : kShapeNames)
       if (json["colliders"][n].contains(shape))
         title = std::string(shape) + " " + std::to_string(n);
     if (passes("collider", collider))

@@ -131,7 +131,24 @@ struct Friction {
   friend bool operator==(const Friction&, const Friction&) = default;
 };
 
-using Shape = std::variant<Sphere, Plane, Capsule, Box>;
+// The shapes of colliders: the type, and the name that scene files and messages have for it. All that goes
+// by shape is made from this list: the variant, the reader and the kernels.
+#define WEFT_SHAPES(apply) \
+  apply(Sphere, sphere) apply(Plane, plane) apply(Capsule, capsule) apply(Box, box)
+
+template <class, class... Shapes>
+struct OneOf {
+  using type = std::variant<Shapes...>;
+};
+#define WEFT_TYPE_OF_SHAPE(Type, name) , Type
+using Shape = OneOf<void WEFT_SHAPES(WEFT_TYPE_OF_SHAPE)>::type;
+#undef WEFT_TYPE_OF_SHAPE
+
+// Their names, in the order of Shape.
+#define WEFT_NAME_OF_SHAPE(Type, name) #name,
+inline constexpr std::array<const char*, std::variant_size_v<Shape>> kShapeNames{
+    WEFT_SHAPES(WEFT_NAME_OF_SHAPE)};
+#undef WEFT_NAME_OF_SHAPE
 
 struct Collider {
   Shape shape;

@@ -4,8 +4,6 @@
 namespace weft::physics {
 namespace {
 
-const char* const kShapeNames[kShapes] = {"sphere", "plane", "capsule", "box"};
-
 std::string detail_of(const Collider& c) {
   return std::string(kShapeNames[c.shape.index()]) +
          (c.friction.model == FrictionModel::course ? ", course friction" : ", Coulomb friction") +
@@ -19,8 +17,8 @@ class ColliderStage final : public RowStage {
         parts_(parts),
         collider_(parts, collider, start),
         far_(parts, collider_.fastest()),
-        kernel_(
-            parts.kernels.collide[collider.shape.index()][std::size_t(collider.friction.model)]) {}
+        kernel_(parts.kernels.collider[collider.shape.index()]
+                    ->collide[std::size_t(collider.friction.model)]) {}
 
   void run(int j, const Substep& s) override {
     if (far_.skip(j, s)) return;

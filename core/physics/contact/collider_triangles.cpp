@@ -83,7 +83,7 @@ class ColliderTriangles final : public RowStage {
     f.bound[0] = bound.x;
     f.bound[1] = bound.y;
     f.room = room_.data() + room() * std::size_t(s.slot);
-    RowReach reach = parts_.kernels.below_faces[collider_.shape()](f);
+    RowReach reach = parts_.kernels.collider[collider_.shape()]->below_faces(f);
     // The way of a substep matters only where it is long against the collider.
     const float way = reach.speed * f.row.dt;
     const float near = way > 0.5f * f.row.shape.thin ? way : float(-kSlack * edge_);

@@ -340,6 +340,6 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
     return below_faces_row<Shape>(f);       \
   }                                         \
   }                                         \
-  const ColliderKernels name = {{coulomb, course}, below_faces};
+  const physics::ColliderKernels name = {{coulomb, course}, below_faces};
 
 }  // namespace weft::WEFT_KERNELS

@@ -238,7 +238,13 @@ struct RowReach {
 };
 
 // Shapes and responses, in the order of weft::Shape and weft::FrictionModel.
-inline constexpr int kShapes = 4, kFrictionModels = 2;
+inline constexpr int kShapes = std::variant_size_v<Shape>, kFrictionModels = 2;
+
+// A collider's kernels: its own file in contact/colliders defines them by WEFT_COLLIDER (collide.h).
+struct ColliderKernels {
+  RowReach (*collide[kFrictionModels])(const CollideRow&);
+  RowReach (*below_faces)(const FacesRow&);
+};
 
 // A run of particles that follow each other.
 struct Run {
@@ -337,8 +343,7 @@ struct KernelTable {
   void (*bend_row)(const BendRow&);     // v += dt force/mass of the bending energy
   void (*bend_line)(const BendLine&);   // implicit bending along a batch of lines
   void (*bend_twist)(const TwistRow&);  // and of every second cell between two rows
-  RowReach (*collide[kShapes][kFrictionModels])(const CollideRow&);
-  RowReach (*below_faces[kShapes])(const FacesRow&);
+  const ColliderKernels* collider[kShapes];
   void (*wind)(const WindRow&);
   void (*push)(const PushRow&);
   void (*block_bounds)(const BlockRows&);  // how a block lies and moves

@@ -128,11 +128,8 @@ void scatter_bodies(const physics::BodyBlock&);
 int squares_within(const physics::SquaresWithin&);
 int surface_pairs(const physics::SurfacePairs&);
 
-// A collider's kernels: its own file in colliders/ defines them by WEFT_COLLIDER (collide.h).
-struct ColliderKernels {
-  RowReach (*collide[physics::kFrictionModels])(const CollideRow&);
-  RowReach (*below_faces)(const FacesRow&);
-};
-extern const ColliderKernels kSphere, kPlane, kCapsule, kBox;
+#define WEFT_KERNELS_OF_SHAPE(Type, name) extern const physics::ColliderKernels k##Type;
+WEFT_SHAPES(WEFT_KERNELS_OF_SHAPE)
+#undef WEFT_KERNELS_OF_SHAPE
 
 }  // namespace weft::WEFT_KERNELS

@@ -13,6 +13,8 @@ Rows::Rows(int rows, int stride)
       stride_(stride),
       // Components 80 floats further apart than their size, so that they do not share cache sets.
       plane_(static_cast<std::size_t>(rows) * stride + 80),
-      data_(3 * plane_) {}
+      data_(3 * plane_) {
+  assert(stride % 16 == 0);  // kernels work on whole groups of 16 lanes, aligned
+}
 
 }  // namespace weft::physics

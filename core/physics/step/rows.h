@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <span>
 
@@ -22,10 +23,12 @@ class Rows {
   Rows() = default;
   Rows(int rows, int stride);
   Row3 row(int j) {
+    assert(j >= 0 && j < rows_);
     float* base = data_.data() + static_cast<std::size_t>(j) * stride_;
     return {base, base + plane_, base + 2 * plane_};
   }
   ConstRow3 row(int j) const {
+    assert(j >= 0 && j < rows_);
     const float* base = data_.data() + static_cast<std::size_t>(j) * stride_;
     return {base, base + plane_, base + 2 * plane_};
   }
@@ -33,15 +36,20 @@ class Rows {
     return {data_.data() + axis * plane_, static_cast<std::size_t>(rows_) * stride_};
   }
   float& at(int axis, int j, int i) {
+    assert(axis >= 0 && axis < 3 && j >= 0 && j < rows_ && i >= 0 && i < stride_);
     return data_[axis * plane_ + static_cast<std::size_t>(j) * stride_ + i];
   }
   float at(int axis, int j, int i) const {
+    assert(axis >= 0 && axis < 3 && j >= 0 && j < rows_ && i >= 0 && i < stride_);
     return data_[axis * plane_ + static_cast<std::size_t>(j) * stride_ + i];
   }
   std::size_t bytes() const { return data_.size() * sizeof(float); }
   void clear() { std::fill_n(data_.data(), data_.size(), 0.0f); }
   // Takes over the values of rows of the same shape.
-  void copy(const Rows& from) { std::copy_n(from.data_.data(), data_.size(), data_.data()); }
+  void copy(const Rows& from) {
+    assert(from.rows_ == rows_ && from.stride_ == stride_);
+    std::copy_n(from.data_.data(), data_.size(), data_.data());
+  }
   void scale(float factor) {
     for (std::size_t i = 0; i < data_.size(); ++i) data_[i] *= factor;
   }

@@ -2,6 +2,7 @@
 #include "physics/step/wavefront.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 #include <cmath>
 
@@ -135,6 +136,11 @@ void Wavefront::choose_chunks(int count, int threads) {
 
 void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake,
                     RowObserver* observer) {
+  // Spans are in order, apart, and within the rows.
+  assert(std::adjacent_find(awake.begin(), awake.end(), [](const RowSpan& a, const RowSpan& b) {
+           return a.end > b.begin;
+         }) == awake.end());
+  assert(awake.empty() || (awake.front().begin >= 0 && awake.back().end <= rows_));
   // Tiles of one substep follow one on the other, unless no row reaches another.
   const bool apart = reach_ == 0 && substeps.count == 1;
   const int at_once = substeps.count > 1 || apart ? threads.count() : 1;

@@ -49,7 +49,7 @@ RowReach course(const CollideRow& r) {
 }
 
 }  // namespace
-const ColliderKernels kPlane = {{coulomb, course}, below_faces};
+const physics::ColliderKernels kPlane = {{coulomb, course}, below_faces};
 }  // namespace weft::WEFT_KERNELS
 
 #else

@@ -30,7 +30,7 @@ struct Core {
   double radius = 0;
 };
 
-#define WEFT_SHAPE(Shape)                                    \
+#define WEFT_SHAPE(Shape, name)                              \
   ShapeConstants constants_of(const Shape& shape);           \
   Vec3 place_of(const Shape& shape);                         \
   void move(Shape& shape, const Vec3& by);                   \
@@ -42,10 +42,7 @@ struct Core {
 // constants_of: for the kernels; place_of: where it stands without keys; move: to elsewhere;
 // nearest_of, core_of: seen from p, in double; overlap_of: of the core and a triangle; feature_of: its smallest radius of
 // curvature, infinite for a plane [m]; mesh_of: triangles for drawing.
-WEFT_SHAPE(Sphere)
-WEFT_SHAPE(Plane)
-WEFT_SHAPE(Capsule)
-WEFT_SHAPE(Box)
+WEFT_SHAPES(WEFT_SHAPE)
 #undef WEFT_SHAPE
 
 // Adds a surface of `across` by `along` quads between points point(u, v), 0 <= u, v <= 1, with

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <utility>
 
 #include "physics/model/clamp_to_int.h"
@@ -116,7 +117,10 @@ void CellGrid::count(ConstRow3 x, int share) {
   // to read.
   constexpr std::size_t kTurns = 4;
   std::int32_t counts[kTurns][kParts + 1] = {};
-  for (std::size_t p = begin; p < end; ++p) ++counts[p % kTurns][key_[p] >> shift_];
+  for (std::size_t p = begin; p < end; ++p) {
+    assert(key_[p] >= 0 && key_[p] < table_);
+    ++counts[p % kTurns][key_[p] >> shift_];
+  }
   for (int p = 0; p <= kParts; ++p)
     dealt_to_[p][share] = counts[0][p] + counts[1][p] + counts[2][p] + counts[3][p];
 }

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -26,6 +27,7 @@ class Tearing {
   void died(int j, int count) { died_[static_cast<std::size_t>(j)] += count; }
   // Ends constraint a of row j of a stencil, if it is alive.
   void end(const Stencil& stencil, int j, int a) {
+    assert(j >= 0 && j + stencil.dj < rows_ && a >= 0 && a < stencil.per_row(columns_));
     std::int32_t& lane = stencil.links->row(j)[a];
     if (lane != 0) died(j, 1);
     lane = 0;
