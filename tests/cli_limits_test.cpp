@@ -34,6 +34,7 @@ Ended run_with(const Folder& folder, const std::vector<std::string>& words, rlim
       if (geteuid() == 0 && (setgroups(0, nullptr) != 0 || setgid(kNobody) != 0 ||
                              setuid(kNobody) != 0 || chdir("/") != 0))
         _exit(kNotStarted);
+      setenv("ASAN_OPTIONS", "detect_leaks=0", 1);  // looking for leaks takes a process of its own
       const rlimit limit{processes, processes};
       setrlimit(RLIMIT_NPROC, &limit);
     }

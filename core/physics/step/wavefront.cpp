@@ -184,9 +184,8 @@ RowSpan Wavefront::tile_rows(int tile, int offset) const {
 void Wavefront::run_tile(const Run& r, int tile, const Chunk& chunk) const {
   // The first stage reaches ahead of the tile.
   const int ahead = stages_.front()->reach;
-  if (r.observer && chunk.first == 0)
-    r.observer->before(
-        {tile == 0 ? 0 : tile_rows(tile, -ahead).begin, tile_rows(tile, -ahead).end});
+  const RowSpan reached{tile == 0 ? 0 : tile_rows(tile, -ahead).begin, tile_rows(tile, -ahead).end};
+  if (r.observer && chunk.first == 0 && reached.begin < reached.end) r.observer->before(reached);
   std::size_t level = 0;
   for (int s = 0; s < chunk.count; ++s) {
     const Substep substep = r.substeps.at(chunk.first + s, chunk.slot + s);
