@@ -59,6 +59,21 @@ TEST(Extremes, StrainLimitsOfSheetsThroughZero) {
                       30);
 }
 
+// Constraints at their limit but for rounding, beside others that are far beyond it: which of them share
+// a block hangs on the width of the kernels.
+TEST(Extremes, StrainLimitsToTheLastBit) {
+  expect_one_result(R"({"weft": 1, "solver": {"method": "spring_friction"}, "cloths": [{"grid": {
+      "points": [3, 32], "origin": [0, -0.0548308908434885, 0.02245375576726037],
+      "u": [0.0014177793754346572, 0, 0], "v": [0, 0, 0.09358362304203564]},
+      "density": 1.5805113752541025, "stiffness": {"structural": 312.36144780921325,
+      "shear": 1.7405639790830985, "bend": 0}, "spring_damping": {"shear": 0.21231449811628672},
+      "stiffness_gradient": 0.5866986479491524, "drag": 0.03,
+      "strain_limit": 0.00018793441161280746, "tear_strain": 1, "pins": [
+      {"at": [0, 0], "keys": [[0, 0, 0, 0]]}, {"at": [2, 2], "keys": [[0, 0.08697658258894193,
+      -0.0548308908434885, 0.08283028676212208]]}]}]})",
+                    2);
+}
+
 TEST(Extremes, CollidersThatPassAtAnySpeed) {
   for (const char* shape : {R"("sphere": {"center": [0, 0, 0], "radius": 0.01})",
                             R"("box": {"center": [0, 0, 0], "half": [0.01, 0.01, 0.01]})",

@@ -87,6 +87,7 @@ void Recorder::input(std::int64_t frame, const Input& input) {
 }
 
 void Recorder::frame(const Simulation& simulation) {
+  if (!simulation.status().ok) return;  // it has stopped itself: this frame is none
   file_.write(Json{{"frame", simulation.frame()}, {"hash", hex16(simulation.hash())}}.dump() +
               "\n");
 }

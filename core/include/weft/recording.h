@@ -37,7 +37,7 @@ class Recorder {
   Recorder(const std::string& path, const Simulation& simulation);
   // An input that was applied when the simulation stood at a frame.
   void input(std::int64_t frame, const Input& input);
-  // Right after advance_frame().
+  // Right after advance_frame(); a simulation that has stopped itself adds nothing.
   void frame(const Simulation& simulation);
   // Gives the file its name: complete(), then commit(), which are those of OutputFile.
   void finish();

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/contact/start_inside.h"
 #include "physics/contact/colliders/shapes.h"
+#include "physics/contact/start_inside.h"
 #include "physics/frame/state.h"
 #include "physics/model/path.h"
 

@@ -70,6 +70,9 @@ void check_cloth(const Moment::ClothMoment& c, const ClothStep& step, std::size_
           "is of another scene");
   require(all_finite(c.positions) && all_finite(c.velocities),
           "holds a position or velocity that is not finite");
+  require(std::all_of(c.positions.begin(), c.positions.end(),
+                      [](float x) { return std::abs(x) < kFarAway; }),
+          "holds a position more than 1e7 m away");
   for (const auto& [i, j] : c.held)
     require(i >= 0 && j >= 0 && i < l.columns && j < l.rows,
             "holds the particle [" + std::to_string(i) + ", " + std::to_string(j) +

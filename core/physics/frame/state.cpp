@@ -1,5 +1,4 @@
 // What a simulation holds: how it is built from a scene, set from outside, saved and put back.
-#include "physics/contact/start_inside.h"
 #include "physics/frame/state.h"
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 
 #include "physics/contact/collider_stage.h"
 #include "physics/contact/contact_reaction.h"
+#include "physics/contact/start_inside.h"
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/lattice/energy.h"
 #include "physics/model/path.h"
@@ -251,9 +251,12 @@ void Simulation::State::set(std::span<const double> positions, const Vec3& from,
   if (std::any_of(positions.begin(), positions.end(), bad) ||
       std::any_of(velocities.begin(), velocities.end(), bad))
     throw std::invalid_argument("a state holds a value that is not finite");
+  const Vec3 off = minus(origin, from);
+  for (std::size_t n = 0; n < positions.size(); ++n)
+    if (!(std::abs(positions[n] - off[n % 3]) < kFarAway))
+      throw std::invalid_argument("a state holds a position more than 1e7 m away");
   std::size_t p = 0;
   wake();
-  const Vec3 off = minus(origin, from);
   for (auto& step : cloths) {
     Lattice& l = step->lattice();
     for (int j = 0; j < l.rows; ++j)

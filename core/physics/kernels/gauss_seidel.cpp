@@ -35,8 +35,10 @@ WEFT_INLINE Wide3 solve_block(const ProjectRows& p, const ProjectedRow& near,
                               WideInt active) {
   const Wide3 e = position<displaced(R)>(far, a) - position<displaced(R)>(near, a);
   if constexpr (R == Rule::limit) {
-    // Most blocks have nothing too long: the root is not worth taking there.
-    if (!any(active & (dot(e, e) > p.rest * p.rest))) return Wide3{};
+    // Most blocks have nothing too long: the root is not worth taking there. Each lane is asked, so that
+    // it does not matter which others are in its block.
+    active = active & (dot(e, e) > p.rest * p.rest);
+    if (!any(active)) return Wide3{};
   }
   Wide lambda{};
   float* at = nullptr;
@@ -55,10 +57,14 @@ WEFT_INLINE void move_end(const ProjectRows& p, const ProjectedRow& r, int i, Wi
   if constexpr (R == Rule::limit) {
     const WideInt some = (change.x != 0.0f) | (change.y != 0.0f) | (change.z != 0.0f);
     if (!any(some)) return;
+    // Adding zero would make +0 of -0 in lanes that only their block brings here.
     float* const v = p.v.x + (r.x + i - p.x.x);
-    store_planes(v, r.plane, load_planes(v, r.plane) + change * wide(p.inverse_dt));
+    const Wide3 v0 = load_planes(v, r.plane), x0 = load_planes(r.x + i, r.plane);
+    store_planes(v, r.plane, select(some, v0 + change * wide(p.inverse_dt), v0));
+    store_planes(r.x + i, r.plane, select(some, x0 + change, x0));
+  } else {
+    shift<displaced(R)>(r, i, change);
   }
-  shift<displaced(R)>(r, i, change);
 }
 
 // One colour along row j, whatever the offset: the lanes of the other colour stand by.
