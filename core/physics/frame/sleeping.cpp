@@ -1,4 +1,4 @@
-// Sleeping row-blocks (rest.h).
+// Sleeping row-blocks (sleeping.h).
 #include "physics/frame/sleeping.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Self-collision among particles (self_collision.h): when to look, and the list of pairs.
+// Self-collision among particles (self_contact.h): when to look, and the list of pairs.
 #include "physics/contact/self/self_contact.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Self-collision (self_collision.h): pairs pushed apart, chunk by chunk (kernels/separate.cpp).
+// Self-collision (self_contact.h): pairs pushed apart, chunk by chunk (kernels/separate.cpp).
 #include <algorithm>
 #include <cmath>
 #include <numeric>

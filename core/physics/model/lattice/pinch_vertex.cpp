@@ -1,4 +1,4 @@
-// Hinges of a torn sheet (hinge.h).
+// Pinch vertices of a torn sheet (pinch_vertex.h).
 #include "physics/model/lattice/pinch_vertex.h"
 
 #include <bit>

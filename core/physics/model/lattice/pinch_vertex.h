@@ -23,7 +23,7 @@ inline constexpr std::array<Direction, 8> kAround{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
 // The directions (bits, in the order of kAround) in which constraints of particle (i, j) are to end; 0
-// where it is no hinge.
+// where it is no pinch vertex.
 unsigned pinched(const Tearing& tearing, int i, int j);
 
 }  // namespace weft::physics

@@ -1,7 +1,7 @@
 // Stages "predict" and "velocity" of the methods that project positions: before the sweeps every
 // particle moves by its velocity and gravity, after them the velocity gains what the sweeps moved it
 // by, or both position and velocity the corrections that the sweeps have found. Between substeps where
-// nobody else looks that is left to the next predict (passes.h).
+// nobody else looks that is left to the next predict (step/schedule.h).
 #include "physics/model/lattice/stages.h"
 
 namespace weft::physics {

@@ -1,4 +1,4 @@
-// The seams of a torn cloth (seams.h).
+// The tear boundary of a torn cloth (tear_boundary.h).
 #include "physics/model/lattice/tear_boundary.h"
 
 namespace weft::physics {

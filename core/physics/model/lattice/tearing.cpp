@@ -153,7 +153,7 @@ void Tearing::end_pinches(int j) {
   }
 }
 
-// What dies by a hinge may make another one.
+// What dies at a pinch vertex may make another one.
 bool Tearing::update() {
   if (died_ == followed_) return false;
   bool changed = false;

@@ -3,7 +3,7 @@
 //
 // A constraint dies past its tear strain, where a cutter passes, or where a caller cuts. With the
 // constraints along a line die the longer ones that span it, with a structural one the bending over
-// it, and with an edge the triangles at it, of which each side keeps its part (seams.h). Looked at
+// it, and with an edge the triangles at it, of which each side keeps its part (tear_boundary.h). Looked at
 // again is only what lies about the rows where something died.
 #pragma once
 
