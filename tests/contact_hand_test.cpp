@@ -22,7 +22,7 @@ TEST(ContactHand, GrabDrawsAParticleToItsTarget) {
     for (const double stiffness : {50.0, 1e7}) {
       Simulation simulation(sheet(method));
       const std::size_t stages = simulation.plan().stages.size();
-      simulation.grab(0, 6, 11, {0.1, 0.1, 0.2}, stiffness);
+      simulation.grab(0, 11 * 12 + 6, {0.1, 0.1, 0.2}, stiffness);
       EXPECT_EQ(simulation.plan().stages.size(), stages + 1);
       advance(simulation, 3);
       const Vec3 x = at(simulation.positions(), 11 * 12 + 6);
@@ -33,18 +33,19 @@ TEST(ContactHand, GrabDrawsAParticleToItsTarget) {
       EXPECT_LT(at(simulation.positions(), 11 * 12 + 6)[1], -0.3);
     }
   Simulation simulation(sheet(Method::spring));
-  EXPECT_THROW(simulation.grab(0, 12, 0, {0, 0, 0}, 1), std::out_of_range);
-  EXPECT_THROW(simulation.grab(1, 0, 0, {0, 0, 0}, 1), std::out_of_range);
-  EXPECT_THROW(simulation.grab(0, 0, 0, {NAN, 0, 0}, 1), std::invalid_argument);
+  for (const int particle : {-1, 144, 1 << 30})
+    EXPECT_THROW(simulation.grab(0, particle, {0, 0, 0}, 1), std::out_of_range);
+  EXPECT_THROW(simulation.grab(1, 0, {0, 0, 0}, 1), std::out_of_range);
+  EXPECT_THROW(simulation.grab(0, 0, {NAN, 0, 0}, 1), std::invalid_argument);
 }
 
 TEST(ContactHand, PinsComeAndGo) {
   Simulation simulation(sheet(Method::spring));
-  simulation.pin(0, 5, 5);
+  simulation.pin(0, 65);
   const Vec3 held = at(simulation.positions(), 65);
   advance(simulation, 0.5);
   EXPECT_EQ(at(simulation.positions(), 65), held);
-  for (const auto& [i, j] : {std::pair{5, 5}, {0, 0}, {11, 0}}) simulation.unpin(0, i, j);
+  for (const int particle : {65, 0, 11}) simulation.unpin(0, particle);
   advance(simulation, 1.5);
   EXPECT_LT(at(simulation.positions(), 65)[1], -1);
   EXPECT_TRUE(simulation.status().ok);
@@ -61,7 +62,7 @@ TEST(ContactHand, EveryMethodTakesPushesAlike) {
     scene.cloths[0].stiffness = {100, 100, 20};
     if (wind) scene.wind = {{3, 4, 0}, 0.6, 0.3, 0};
     Simulation simulation(scene);
-    if (!wind) simulation.grab(0, 5, 5, {0, 1, 0}, 5);
+    if (!wind) simulation.grab(0, 60, {0, 1, 0}, 5);
     advance(simulation, 4.0 / 60);
     double sum = 0;
     for (std::size_t p = 0; p < 121; ++p) sum += at(simulation.velocities(), p)[1] / 121;
@@ -105,7 +106,7 @@ struct Person {
   void move(Does does, const Vec3& offset, const Vec3& velocity) {
     const Grid& g = scene.cloths[0].grid;
     const Vec3 target{start[0] + offset[0], start[1] + offset[1], start[2] + offset[2]};
-    if (does == kPull) simulation.grab(0, g.nx / 3, g.ny / 2, target);
+    if (does == kPull) simulation.grab(0, particle_number(g, g.nx / 3, g.ny / 2), target);
     if (does == kPush) simulation.move_collider(0, target);
     if (does == kCarry) simulation.carry(0, velocity);
     simulation.advance_frame();

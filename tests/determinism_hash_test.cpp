@@ -53,10 +53,10 @@ TEST_P(Shipped, HasOneResult) {
   expect_one_result(read_scene(GetParam()).scene);
 }
 
-// From a moment on there is one way, whatever was before: for what has run longer, and what is new.
-class Moments : public testing::TestWithParam<std::string> {};
+// From a snapshot on there is one way, whatever was before: for what has run longer, and what is new.
+class Snapshots : public testing::TestWithParam<std::string> {};
 
-TEST_P(Moments, GoOnInOneWay) {
+TEST_P(Snapshots, GoOnInOneWay) {
   const Scene scene = read_scene(GetParam()).scene;
   const auto run = [](Simulation& simulation, int frames) {
     for (int frame = 0; frame < frames; ++frame) simulation.advance_frame();
@@ -64,10 +64,10 @@ TEST_P(Moments, GoOnInOneWay) {
   };
   Simulation old(scene, threads(1)), fresh(scene, threads(2));
   run(old, 10);
-  const Moment moment = old.moment();
+  const Snapshot snapshot = old.snapshot();
   run(old, 4);
   for (Simulation* simulation : {&old, &fresh}) {
-    simulation->restore(moment);
+    simulation->restore(snapshot);
     run(*simulation, 4);
   }
   EXPECT_EQ(old.hash(), fresh.hash());
@@ -77,7 +77,7 @@ TEST_P(Moments, GoOnInOneWay) {
 INSTANTIATE_TEST_SUITE_P(, Shipped, testing::ValuesIn(scene_names()),
                          [](const auto& test) { return test.param; });
 // But for the larger of two alike.
-INSTANTIATE_TEST_SUITE_P(, Moments, testing::ValuesIn(scene_names({"huge", "fold316"})),
+INSTANTIATE_TEST_SUITE_P(, Snapshots, testing::ValuesIn(scene_names({"huge", "fold316"})),
                          [](const auto& test) { return test.param; });
 
 // Large enough to be shared out by every method, even in frames of ten substeps (passes.cpp).

@@ -90,7 +90,7 @@ inline std::vector<Feature> features() {
        [](Scene& s) { drop_a_sheet(s, SelfCollisionMode::surface, 0.01171875); }},
       {"pull", [](Scene&) {},
        [](Simulation& s) {
-         s.grab(0, 6, 8, {0.3125, -0.0625, 0.3125}, 3);
+         s.grab(0, particle_number(s.scene().cloths[0].grid, 6, 8), {0.3125, -0.0625, 0.3125}, 3);
        }},
       {"carried pins", [](Scene&) {},
        [](Simulation& s) {

@@ -247,10 +247,10 @@ TEST(LineRuns, PressedChainHangsByOtherSweepsWithFewSubsteps) {
   });
 }
 
-// A run that goes back to an earlier moment begins with the sweeps that the scene asks for.
-TEST(LineRuns, LinesComeBackWithAnEarlierMoment) {
+// A run that goes back to an earlier snapshot begins with the sweeps that the scene asks for.
+TEST(LineRuns, LinesComeBackWithAnEarlierSnapshot) {
   Simulation simulation(pressed_chain(1e7, 2, 1));
-  const Moment start = simulation.moment();
+  const Snapshot start = simulation.snapshot();
   const auto has_line = [&] {
     const auto& stages = simulation.plan().stages;
     return std::any_of(stages.begin(), stages.end(),

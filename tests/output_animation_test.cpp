@@ -113,9 +113,9 @@ TEST(Obj, ShowsWhatIsLeftOfTornCloth) {
   const std::vector<std::uint32_t> owners{1, 17, 16};
   view.cloths[0].topology_version = 1;
   view.cloths[0].triangles = left;
-  view.cloths[0].seams = seams;
-  view.cloths[0].seam_points = points;
-  view.cloths[0].seam_particles = owners;
+  view.cloths[0].tear_triangles = seams;
+  view.cloths[0].tear_points = points;
+  view.cloths[0].tear_particles = owners;
   const auto animation = open_animation(folder / "run.obj", view);
   animation->append(view);
   animation->finish();

@@ -41,7 +41,7 @@ Scene busy_scene(Method method) {
 Simulation after_a_busy_second(Method method, const Vec3& where) {
   Simulation simulation(moved(busy_scene(method), where));
   for (int frame = 0; frame < 60; ++frame) {
-    if (frame == 10) simulation.grab(0, 12, 19, plus(where, {0.75, 1.5, 1}));
+    if (frame == 10) simulation.grab(0, 19 * 24 + 12, plus(where, {0.75, 1.5, 1}));
     if (frame == 30) simulation.release();
     if (frame == 35) simulation.move_collider(2, plus(where, {0.25, 0.75, 0.75}));
     if (frame == 45) {
@@ -108,11 +108,11 @@ TEST(OriginOf, ASceneIsShownAsItWasGiven) {
   EXPECT_EQ(Simulation(busy_scene(Method::spring)).view().origin, Vec3{});
 }
 
-TEST(OriginOf, MomentsAndStatesGoFromOneToAnother) {
+TEST(OriginOf, SnapshotsAndStatesGoFromOneToAnother) {
   Simulation far(moved(busy_scene(Method::spring), kFar));
   for (int frame = 0; frame < 20; ++frame) far.advance_frame();
   Simulation again(moved(busy_scene(Method::spring), kFar));
-  again.restore(far.moment());
+  again.restore(far.snapshot());
   EXPECT_EQ(again.hash(), far.hash());
   again.set_state(far.positions(), far.velocities());
   EXPECT_EQ(again.hash(), far.hash());
@@ -121,11 +121,11 @@ TEST(OriginOf, MomentsAndStatesGoFromOneToAnother) {
   far.set_scene(busy_scene(Method::spring));
   EXPECT_EQ(far.positions(), x);
   EXPECT_EQ(far.scene(), busy_scene(Method::spring));
-  // A moment of a scene somewhere else is put where it was, as finely.
+  // A snapshot of a scene somewhere else is put where it was, as finely.
   Simulation near(busy_scene(Method::spring));
-  near.restore(again.moment());
+  near.restore(again.snapshot());
   EXPECT_EQ(near.positions(), x);
-  EXPECT_EQ(near.scene().cloths, busy_scene(Method::spring).cloths);  // paths are the moment's
+  EXPECT_EQ(near.scene().cloths, busy_scene(Method::spring).cloths);  // paths are the snapshot's
   EXPECT_EQ(near.hash(), again.hash());
 }
 

@@ -142,7 +142,7 @@ TEST(Rest, HandsWakeIt) {
     return simulation;
   };
   Simulation grabbed = sleeping();
-  grabbed.grab(0, 5, 5, {0, 0.5, 0}, 50);
+  grabbed.grab(0, 5 * kColumns + 5, {0, 0.5, 0}, 50);
   advance(grabbed, 2.5);
   EXPECT_GT(at(grabbed.positions(), 5 * kColumns + 5)[1], 0.1);
   grabbed.release();
@@ -150,11 +150,11 @@ TEST(Rest, HandsWakeIt) {
   EXPECT_EQ(asleep(grabbed), kRows * kColumns);
 
   Simulation pinned = sleeping();
-  pinned.pin(0, 3, 3);
+  pinned.pin(0, 3 * kColumns + 3);
   EXPECT_EQ(asleep(pinned), 0);
   advance(pinned, 4);
   EXPECT_EQ(asleep(pinned), kRows * kColumns);
-  pinned.unpin(0, 3, 3);
+  pinned.unpin(0, 3 * kColumns + 3);
   EXPECT_GT(
       pinned.view().cloths[0].inverse_mass[std::size_t(3 * pinned.view().cloths[0].stride + 3)], 0);
 

@@ -35,8 +35,8 @@ class Person {
     input.kind = static_cast<Input::Kind>(one_of(static_cast<int>(Input::Kind::set_scene)));
     input.cloth = one_of(static_cast<int>(shown.cloths.size()));
     const ClothCopy& cloth = shown.cloths[static_cast<std::size_t>(input.cloth)];
-    input.i = one_of(cloth.columns), input.j = one_of(cloth.rows);
-    const Vec3f shown_at = cloth.position(input.i, input.j);
+    input.particle = one_of(cloth.columns * cloth.rows);
+    const Vec3f shown_at = cloth.position(input.particle);
     const Vec3 at{shown.origin[0] + shown_at.x, shown.origin[1] + shown_at.y,
                   shown.origin[2] + shown_at.z};
     input.a = input.kind == Input::Kind::carry ? near({}, 0.5) : near(at, 0.1);
@@ -106,9 +106,9 @@ void expect_whole(const Shown& shown) {
     ASSERT_EQ(cloth.inverse_mass.size(), all);
     for (const auto& triangle : cloth.triangles)
       for (const std::uint32_t p : triangle) ASSERT_LT(p, all);
-    ASSERT_EQ(cloth.seam_points.size(), cloth.seam_particles.size());
-    for (const auto& triangle : cloth.seams)
-      for (const std::uint32_t p : triangle) ASSERT_LT(p, cloth.seam_points.size());
+    ASSERT_EQ(cloth.tear_points.size(), cloth.tear_particles.size());
+    for (const auto& triangle : cloth.tear_triangles)
+      for (const std::uint32_t p : triangle) ASSERT_LT(p, cloth.tear_points.size());
   }
 }
 

@@ -95,8 +95,8 @@ TEST(Stress, WhatNoSubstepResolvesGoesOnByTheCompliantMethod) {
   }
 }
 
-// A run that goes back to an earlier moment begins with the springs that the scene asks for.
-TEST(Stress, SpringsComeBackWithAnEarlierMoment) {
+// A run that goes back to an earlier snapshot begins with the springs that the scene asks for.
+TEST(Stress, SpringsComeBackWithAnEarlierSnapshot) {
   const Scene scene = bench::random_case(2118).scene;
   Simulation simulation(scene);
   const auto runs_springs = [&] {
@@ -108,7 +108,7 @@ TEST(Stress, SpringsComeBackWithAnEarlierMoment) {
   for (std::size_t k = 3 * std::size_t(scene.cloths[0].grid.nx); k < x.size(); ++k)
     x[k] = 1e-3 * double(k % 3);
   simulation.set_state(x, std::vector<double>(x.size(), 0));
-  const Moment start = simulation.moment();
+  const Snapshot start = simulation.snapshot();
   std::uint64_t hashes[2];
   for (std::uint64_t& hash : hashes) {
     EXPECT_TRUE(runs_springs());

@@ -129,8 +129,8 @@ void replay(const Case& c, const Trace& expected, const std::string& folder) {
   std::filesystem::remove(path);
 }
 
-Trace go_on(Simulation& simulation, const Moment& moment, int frames) {
-  simulation.restore(moment);
+Trace go_on(Simulation& simulation, const Snapshot& snapshot, int frames) {
+  simulation.restore(snapshot);
   Trace trace{{hash_of(simulation)}, {}};
   for (int n = 0; n < frames; ++n) {
     simulation.advance_frame();
@@ -145,9 +145,9 @@ void restore(const Case& c, int frames) {
   Simulation first(c.scene, options_of(c, Simd::best, 1));
   Simulation second(c.scene, options_of(c, Simd::best, 2));
   for (int n = 0; n < frames; ++n) first.advance_frame();
-  const Moment moment = first.moment();
-  const Trace expected = go_on(first, moment, frames);
-  require_equal(expected, go_on(second, moment, frames));
+  const Snapshot snapshot = first.snapshot();
+  const Trace expected = go_on(first, snapshot, frames);
+  require_equal(expected, go_on(second, snapshot, frames));
 }
 
 std::vector<Simd> available() {

@@ -25,35 +25,30 @@ int odd_index(Draw& draw) {
                   std::numeric_limits<int>::min()});
 }
 
-void mangle_cloth(Moment::ClothMoment& c, Draw& draw) {
+void mangle_cloth(Snapshot::ClothState& c, Draw& draw) {
   const auto any = [&](std::size_t size) { return std::size_t(draw.uniform(0, double(size))); };
-  switch (draw.between(0, 8)) {
+  switch (draw.between(0, 7)) {
     case 0:
       c.columns = odd_index(draw);
       break;
     case 1:
-      c.rows = odd_index(draw);
-      break;
-    case 2:
       c.positions.resize(any(2 * c.positions.size()));
       break;
-    case 3:
+    case 2:
       c.velocities.resize(any(2 * c.velocities.size()));
       break;
-    case 4:
+    case 3:
       if (!c.positions.empty()) c.positions[any(c.positions.size())] = float(odd_value(draw));
       break;
-    case 5:
+    case 4:
       if (!c.velocities.empty()) c.velocities[any(c.velocities.size())] = float(odd_value(draw));
       break;
-    case 6: {
-      const int i = odd_index(draw);
-      c.held.push_back({i, odd_index(draw)});
+    case 5:
+      c.held.push_back(odd_index(draw));
       break;
-    }
-    case 7: {
-      const int di = draw.between(-9, 9), dj = draw.between(-9, 9), j = odd_index(draw);
-      c.torn.push_back({di, dj, j, odd_index(draw)});
+    case 6: {
+      const int a = odd_index(draw);
+      c.torn.push_back({a, draw.chance(0.5) ? odd_index(draw) : a});
       break;
     }
     default: {
@@ -77,7 +72,7 @@ void mangle_path(std::vector<Key>& keys, Draw& draw) {
   }
 }
 
-void mangle(Moment& m, Draw& draw) {
+void mangle(Snapshot& m, Draw& draw) {
   for (int n = draw.between(1, 3); n > 0; --n) {
     const double what = draw.uniform(0, 1);
     if (what < 0.08)
@@ -134,8 +129,7 @@ void mistreat_input(Simulation& simulation, Draw& draw) {
   Input input;
   input.kind = static_cast<Input::Kind>(draw.between(0, 6));
   input.cloth = draw.chance(0.5) ? 0 : odd_index(draw);
-  input.i = odd_index(draw);
-  input.j = odd_index(draw);
+  input.particle = odd_index(draw);
   input.collider = odd_index(draw);
   input.a = {0, draw.chance(0.5) ? 0 : odd_value(draw), 0};
   input.b = {0, draw.chance(0.5) ? 1 : odd_value(draw), 0};
@@ -151,7 +145,7 @@ void mistreat(const Case& c, const Options& options, int rounds) {
   Draw draw(c.seed, kHostileStream);
   Simulation simulation(c.scene, options);
   simulation.advance_frame();
-  const Moment sound = simulation.moment();
+  const Snapshot sound = simulation.snapshot();
   for (int round = 0; round < rounds; ++round) {
     const int kind = draw.between(0, 3);
     if (kind == 0) {
@@ -159,7 +153,7 @@ void mistreat(const Case& c, const Options& options, int rounds) {
     } else if (kind == 1) {
       mistreat_input(simulation, draw);
     } else {
-      Moment broken = sound;
+      Snapshot broken = sound;
       mangle(broken, draw);
       const std::uint64_t before = hash_of(simulation);
       const bool no =

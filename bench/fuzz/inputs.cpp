@@ -18,8 +18,8 @@ constexpr std::uint64_t kChoiceStream = 1'000'000, kHandStream = 2'000'000,
 void aim(Input& input, const Scene& scene, Draw& draw) {
   input.cloth = draw.between(0, int(scene.cloths.size()) - 1);
   const Grid& g = scene.cloths[std::size_t(input.cloth)].grid;
-  input.i = draw.between(0, g.nx - 1);
-  input.j = draw.between(0, g.ny - 1);
+  const int column = draw.between(0, g.nx - 1), row = draw.between(0, g.ny - 1);
+  input.particle = particle_number(g, column, row);
 }
 
 Input random_input(const Scene& scene, Draw& draw) {
@@ -69,7 +69,7 @@ void Hand::act_on_state(Simulation& simulation, int kind) {
     const double off = draw.chance(0.5) ? 0 : draw.decades(1e-6, 1);
     throw_cloth(simulation, speed, off, draw);
   }
-  if (kind == 1) kept_ = simulation.moment();
+  if (kind == 1) kept_ = simulation.snapshot();
   // A snapshot of a scene with other colliders is refused.
   if (kind == 2 && kept_ && kept_->paths.size() == simulation.scene().colliders.size())
     simulation.restore(*std::exchange(kept_, std::nullopt));

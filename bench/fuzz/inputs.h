@@ -13,7 +13,7 @@ namespace fuzz {
 enum class Inputs {
   none,
   recorded,  // those that recordings hold
-  all,       // and set_state(), moment(), restore()
+  all,       // and set_state(), snapshot(), restore()
 };
 Inputs inputs_of(std::uint64_t seed);
 
@@ -35,7 +35,7 @@ class Hand {
   Inputs inputs_;
   std::uint64_t step_ = 0;  // calls of act()
   double busy_ = 0;         // share of the frames with an input
-  std::optional<weft::Moment> kept_;
+  std::optional<weft::Snapshot> kept_;
 };
 
 }  // namespace fuzz

@@ -43,11 +43,11 @@ void check_spans(const ClothView& c) {
     for (const std::uint32_t corner : t)
       require(corner < floats && corner % std::uint32_t(c.stride) < std::uint32_t(c.columns),
               "view", "a triangle's corner " + std::to_string(corner));
-  require(c.seam_points.size() == c.seam_particles.size(), "view", "points of seams");
-  for (const auto& t : c.seams)
+  require(c.tear_points.size() == c.tear_particles.size(), "view", "points of seams");
+  for (const auto& t : c.tear_triangles)
     for (const std::uint32_t corner : t)
-      require(corner < c.seam_points.size(), "view", "a seam's corner " + std::to_string(corner));
-  for (const std::uint32_t p : c.seam_particles)
+      require(corner < c.tear_points.size(), "view", "a seam's corner " + std::to_string(corner));
+  for (const std::uint32_t p : c.tear_particles)
     require(p < floats && p % std::uint32_t(c.stride) < std::uint32_t(c.columns), "view",
             "a seam's particle " + std::to_string(p));
 }

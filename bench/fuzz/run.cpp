@@ -36,9 +36,9 @@ void add_cloth(const ClothView& c, Hash& hash) {
         hash.add((*component)[std::size_t(j) * std::size_t(c.stride) + std::size_t(i)]);
   for (const auto& t : c.triangles)
     for (const std::uint32_t corner : t) hash.add(std::uint64_t{corner});
-  for (const auto& t : c.seams)
+  for (const auto& t : c.tear_triangles)
     for (const std::uint32_t corner : t) hash.add(std::uint64_t{corner});
-  for (const auto& p : c.seam_points)
+  for (const auto& p : c.tear_points)
     for (const float component : p) hash.add(component);
 }
 

@@ -36,7 +36,7 @@ void append_vertex(std::string& text, const std::array<float, 3>& at) {
 void append_vertices(std::string& text, const View& view, const ClothView& cloth) {
   for_each_particle(cloth,
                     [&](float x, float y, float z) { append_vertex(text, placed(view, x, y, z)); });
-  for (const auto& [x, y, z] : cloth.seam_points) append_vertex(text, placed(view, x, y, z));
+  for (const auto& [x, y, z] : cloth.tear_points) append_vertex(text, placed(view, x, y, z));
 }
 
 // Corners in the order that makes u × v the face normal. OBJ counts vertices from 1 over the whole
@@ -74,7 +74,7 @@ void append_torn(std::string& text, const ClothView& cloth, std::int64_t first) 
   };
   for (const auto& t : cloth.triangles) face({particle(t[0]), particle(t[1]), particle(t[2])});
   const std::int64_t points = first + static_cast<std::int64_t>(cloth.columns) * cloth.rows;
-  for (const auto& t : cloth.seams) face({points + t[0], points + t[1], points + t[2]});
+  for (const auto& t : cloth.tear_triangles) face({points + t[0], points + t[1], points + t[2]});
 }
 
 // run.obj -> run_0012.obj; beyond 9999 the number grows a digit.
@@ -104,7 +104,7 @@ class ObjSequence final : public Animation {
         append_quads(text_, cloth, first);
       file.write(text_);
       first += static_cast<std::int64_t>(cloth.columns) * cloth.rows +
-               static_cast<std::int64_t>(cloth.seam_points.size());
+               static_cast<std::int64_t>(cloth.tear_points.size());
     }
     file.complete(false);
     ++samples_;

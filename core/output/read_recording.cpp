@@ -49,12 +49,13 @@ struct Value {
     if (!json->is_number()) fail(place, text::brief(*json) + " is out of place", "a number");
     return json->get<double>();
   }
-  void need_three() const {
-    if (!json->is_array() || json->size() != 3)
-      fail(place, text::brief(*json) + " is out of place", "a list of 3 numbers");
+  void need_list(std::size_t size) const {
+    if (!json->is_array() || json->size() != size)
+      fail(place, text::brief(*json) + " is out of place",
+           "a list of " + std::to_string(size) + " numbers");
   }
   Vec3 vector() const {
-    need_three();
+    need_list(3);
     return {at(0).number(), at(1).number(), at(2).number()};
   }
   std::uint64_t hash() const {
@@ -72,16 +73,33 @@ struct Value {
   }
 };
 
-Input input_of(Kind kind, const Value& value) {
+// What a line is read with: the file's version, and the scene that runs when it comes.
+struct Context {
+  int version;
+  const Scene* scene;
+};
+
+// Version 1 names the particles of grids by column and row.
+void read_particle(const Value& value, const Context& context, Input& input) {
+  if (context.version > 1) {
+    value.need_list(2);
+    input.cloth = value.at(0).whole<int>();
+    input.particle = value.at(1).whole<int>();
+    return;
+  }
+  value.need_list(3);
+  const std::size_t cloths = context.scene->cloths.size();
+  input.cloth = value.at(0).whole<int>(static_cast<int>(cloths) - 1);
+  const Grid& grid = context.scene->cloths[static_cast<std::size_t>(input.cloth)].grid;
+  input.particle = particle_number(grid, value.at(1).whole<int>(grid.nx - 1),
+                                   value.at(2).whole<int>(grid.ny - 1));
+}
+
+Input input_of(Kind kind, const Value& value, const Context& context) {
   Input input;
   input.kind = kind;
-  if (kind == Kind::grab || kind == Kind::pin || kind == Kind::unpin) {
-    const Value particle = value.at("particle");
-    particle.need_three();
-    input.cloth = particle.at(0).whole<int>();
-    input.i = particle.at(1).whole<int>();
-    input.j = particle.at(2).whole<int>();
-  }
+  if (kind == Kind::grab || kind == Kind::pin || kind == Kind::unpin)
+    read_particle(value.at("particle"), context, input);
   if (kind == Kind::grab) {
     input.a = value.at("target").vector();
     input.amount = value.at("stiffness").number();
@@ -101,7 +119,7 @@ Input input_of(Kind kind, const Value& value) {
   return input;
 }
 
-Recording::Event event_of(const Value& line) {
+Recording::Event event_of(const Value& line, const Context& context) {
   Recording::Event event;
   event.frame = line.at("frame").whole<std::int64_t>();
   if (text::member(*line.json, "hash") != nullptr) {
@@ -110,7 +128,7 @@ Recording::Event event_of(const Value& line) {
   }
   for (std::size_t k = 0; k < kInputNames.size(); ++k)
     if (text::member(*line.json, kInputNames[k]) != nullptr)
-      event.input = input_of(static_cast<Kind>(k), line.at(kInputNames[k]));
+      event.input = input_of(static_cast<Kind>(k), line.at(kInputNames[k]), context);
   if (!event.input) fail("", "it has neither a hash nor an input", "hash, grab, release, pin, …");
   return event;
 }
@@ -135,12 +153,17 @@ class Order {
   bool anew_ = false;
 };
 
-void read_header(const Value& line, Recording& recording) {
-  if (!line.json->is_object() || text::member(*line.json, "weft_recording") == nullptr ||
-      line.at("weft_recording").whole<int>() != 1)
-    fail("", "this is no recording", "weft_recording 1");
+constexpr int kNewestVersion = 2;
+
+// Returns the version.
+int read_header(const Value& line, Recording& recording) {
+  const bool known = line.json->is_object() && text::member(*line.json, "weft_recording") != nullptr;
+  const int version = known ? line.at("weft_recording").whole<int>() : 0;
+  if (version < 1 || version > kNewestVersion)
+    fail("", "this is no recording", "weft_recording 1 or " + std::to_string(kNewestVersion));
   recording.seed = line.at("seed").whole<std::uint64_t>();
   recording.scene = line.at("scene").scene();
+  return version;
 }
 
 Json parsed(const std::string& line) {
@@ -175,17 +198,20 @@ Recording read_recording(const std::string& path) {
   std::string text;
   std::int64_t number = 0;
   Order order;
+  Context context{0, &recording.scene};
   while (next_line(in, text)) {
     ++number;
     try {
       const Json json = parsed(text);
       const Value line{&json, ""};
       if (number == 1) {
-        read_header(line, recording);
+        context.version = read_header(line, recording);
         continue;
       }
-      recording.events.push_back(event_of(line));
-      order.check(recording.events.back());
+      recording.events.push_back(event_of(line, context));
+      const Recording::Event& event = recording.events.back();
+      order.check(event);
+      if (event.input && event.input->scene) context.scene = event.input->scene.get();
     } catch (const RecordingError& error) {
       throw RecordingError(path + ":" + std::to_string(number) + ": " + error.what());
     }

@@ -22,12 +22,12 @@ Json scene_json(const Scene& scene) {
 Json input_json(const Input& input) {
   switch (input.kind) {
     case Kind::grab:
-      return {{"particle", {input.cloth, input.i, input.j}},
+      return {{"particle", {input.cloth, input.particle}},
               {"target", input.a},
               {"stiffness", input.amount}};
     case Kind::pin:
     case Kind::unpin:
-      return {{"particle", {input.cloth, input.i, input.j}}};
+      return {{"particle", {input.cloth, input.particle}}};
     case Kind::carry:
       return {{"cloth", input.cloth}, {"velocity", input.a}};
     case Kind::cut:
@@ -47,16 +47,16 @@ Json input_json(const Input& input) {
 void apply(const Input& input, Simulation& simulation) {
   switch (input.kind) {
     case Kind::grab:
-      simulation.grab(input.cloth, input.i, input.j, input.a, input.amount);
+      simulation.grab(input.cloth, input.particle, input.a, input.amount);
       break;
     case Kind::release:
       simulation.release();
       break;
     case Kind::pin:
-      simulation.pin(input.cloth, input.i, input.j);
+      simulation.pin(input.cloth, input.particle);
       break;
     case Kind::unpin:
-      simulation.unpin(input.cloth, input.i, input.j);
+      simulation.unpin(input.cloth, input.particle);
       break;
     case Kind::carry:
       simulation.carry(input.cloth, input.a);
@@ -74,7 +74,7 @@ void apply(const Input& input, Simulation& simulation) {
 }
 
 Recorder::Recorder(const std::string& path, const Simulation& simulation) : file_(path) {
-  const Json header{{"weft_recording", 1},
+  const Json header{{"weft_recording", 2},
                     {"seed", simulation.options().seed},
                     {"scene", scene_json(simulation.scene())}};
   file_.write(header.dump() + "\n");

@@ -98,7 +98,7 @@ void Hands::grab(Workspace& workspace, const Ray& ray) {
   if (target == target_ && !(target == held_.point)) return;
   target_ = target;
   Input input{.kind = Input::Kind::grab};
-  input.cloth = held_.cloth, input.i = held_.i, input.j = held_.j;
+  input.cloth = held_.cloth, input.particle = held_.particle;
   input.a = workspace.in_scene(target);
   input.amount = kPull;
   workspace.give(input);
@@ -119,9 +119,9 @@ void Hands::cut(Workspace& workspace) {
 
 void Hands::toggle_pin(Workspace& workspace, const ClothHit& hit) const {
   const ClothCopy& cloth = workspace.snapshot().cloths[static_cast<std::size_t>(hit.cloth)];
-  const bool held = cloth.inverse_mass[cloth.at(hit.i, hit.j)] == 0;
+  const bool held = cloth.inverse_mass[cloth.at(hit.particle)] == 0;
   Input input{.kind = held ? Input::Kind::unpin : Input::Kind::pin};
-  input.cloth = hit.cloth, input.i = hit.i, input.j = hit.j;
+  input.cloth = hit.cloth, input.particle = hit.particle;
   workspace.give(input);
 }
 
@@ -167,7 +167,7 @@ void Hands::draw(const Workspace& workspace, const Area& area, ImDrawList& list)
       }
   if (drag_ == Drag::cloth) {
     const ClothCopy& cloth = workspace.snapshot().cloths[static_cast<std::size_t>(held_.cloth)];
-    const ScreenPoint a = project(cloth.position(held_.i, held_.j)), b = project(target_);
+    const ScreenPoint a = project(cloth.position(held_.particle)), b = project(target_);
     if (a.seen && b.seen) list.AddLine({a.x, a.y}, {b.x, b.y}, IM_COL32(255, 255, 255, 160), 1.5f);
     if (a.seen) list.AddCircle({a.x, a.y}, 7, IM_COL32(255, 255, 255, 220), 0, 2);
   }

@@ -52,7 +52,9 @@ class ClothPick {
     const float w = 1 - hit->u - hit->v;
     const std::size_t nearest = w >= hit->u && w >= hit->v ? a : hit->u >= hit->v ? b : c;
     const auto stride = static_cast<std::size_t>(copy.stride);
-    best = ClothHit{cloth, static_cast<int>(nearest % stride), static_cast<int>(nearest / stride),
+    const std::size_t particle =
+        nearest / stride * static_cast<std::size_t>(copy.columns) + nearest % stride;
+    best = ClothHit{cloth, static_cast<int>(particle),
                     ray_.origin + ray_.direction * hit->distance, hit->distance};
   }
 

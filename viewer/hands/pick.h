@@ -36,7 +36,7 @@ class Projector {
 };
 
 struct ClothHit {
-  int cloth = 0, i = 0, j = 0;  // the nearest particle of the triangle
+  int cloth = 0, particle = 0;  // the nearest of the triangle
   Vec3f point;
   float distance = 0;  // m along the ray
 };

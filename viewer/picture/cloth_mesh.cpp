@@ -52,7 +52,7 @@ ClothMesh::ClothMesh()
       vertices_(make_buffer()),
       coordinates_(make_buffer()),
       indices_(make_buffer()),
-      seam_indices_(make_buffer()),
+      tear_indices_(make_buffer()),
       line_indices_(make_buffer()) {}
 
 void ClothMesh::update(const ClothCopy& whole, std::uint64_t scene, const Cloth& description,
@@ -70,7 +70,7 @@ void ClothMesh::update(const ClothCopy& whole, std::uint64_t scene, const Cloth&
     build_surface(cloth, surface_);
   if (look.forces) add_forces(whole, description, sampling.step, surface_);
   if (look.strains) add_strains(whole, description, sampling.step, surface_);
-  add_seams(cloth, surface_);
+  add_tear_boundary(cloth, surface_);
   glBindVertexArray(array_.id());
   upload_vertices();
   if (same) return;
@@ -114,7 +114,7 @@ void ClothMesh::upload_coordinates(const ClothCopy& cloth) {
       uv.push_back(static_cast<float>(i) / static_cast<float>(columns - 1));
       uv.push_back(static_cast<float>(j) / static_cast<float>(rows - 1));
     }
-  for (const std::uint32_t particle : cloth.seam_particles) {
+  for (const std::uint32_t particle : cloth.tear_particles) {
     const std::size_t v = vertex_of(cloth, surface_, particle);
     uv.insert(uv.end(), {uv[2 * v], uv[2 * v + 1]});
   }
@@ -144,10 +144,10 @@ void ClothMesh::upload_triangles() {
                       now.data() + first);
   }
   uploaded_ = now;
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, seam_indices_.id());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, tear_indices_.id());
   glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-               static_cast<GLsizeiptr>(surface_.seam_indices.size() * sizeof(std::uint32_t)),
-               surface_.seam_indices.data(), GL_DYNAMIC_DRAW);
+               static_cast<GLsizeiptr>(surface_.tear_indices.size() * sizeof(std::uint32_t)),
+               surface_.tear_indices.data(), GL_DYNAMIC_DRAW);
 }
 
 void ClothMesh::upload_lines(const ClothCopy& cloth, const Cloth& description) {
@@ -169,9 +169,9 @@ void ClothMesh::draw_surface() const {
   glBindVertexArray(array_.id());
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(uploaded_.size()), GL_UNSIGNED_INT, nullptr);
-  if (surface_.seam_indices.empty()) return;
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, seam_indices_.id());
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(surface_.seam_indices.size()), GL_UNSIGNED_INT,
+  if (surface_.tear_indices.empty()) return;
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, tear_indices_.id());
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(surface_.tear_indices.size()), GL_UNSIGNED_INT,
                  nullptr);
 }
 

@@ -43,7 +43,7 @@ class ClothMesh {
 
   ClothSurface surface_;
   VertexArray array_;
-  Buffer vertices_, coordinates_, indices_, seam_indices_, line_indices_;
+  Buffer vertices_, coordinates_, indices_, tear_indices_, line_indices_;
   std::vector<std::uint32_t> uploaded_;  // triangles that the card has
   Range lines_[3];
   int columns_ = 0, rows_ = 0;

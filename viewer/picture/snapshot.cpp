@@ -53,9 +53,9 @@ void copy_view(const View& view, const Scene& scene, Snapshot& to) {
     cloth.topology_version = from.topology_version;
     cloth.triangles.assign(from.triangles.begin(), from.triangles.end());
     if (!cloth.torn) cloth.triangles.clear();
-    cloth.seam_points.assign(from.seam_points.begin(), from.seam_points.end());
-    cloth.seam_particles.assign(from.seam_particles.begin(), from.seam_particles.end());
-    cloth.seams.assign(from.seams.begin(), from.seams.end());
+    cloth.tear_points.assign(from.tear_points.begin(), from.tear_points.end());
+    cloth.tear_particles.assign(from.tear_particles.begin(), from.tear_particles.end());
+    cloth.tear_triangles.assign(from.tear_triangles.begin(), from.tear_triangles.end());
   }
 }
 

@@ -23,15 +23,20 @@ struct ClothCopy {
   bool torn = false;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // corners as at(i, j); unless torn: empty
   // What is left beside the tears (weft/view.h): points, the particle of each, triangles of them.
-  std::vector<std::array<float, 3>> seam_points;
-  std::vector<std::uint32_t> seam_particles;
-  std::vector<std::array<std::uint32_t, 3>> seams;
+  std::vector<std::array<float, 3>> tear_points;
+  std::vector<std::uint32_t> tear_particles;
+  std::vector<std::array<std::uint32_t, 3>> tear_triangles;
 
   std::size_t at(int i, int j) const {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(stride) +
            static_cast<std::size_t>(i);
   }
-  Vec3f position(int i, int j) const { return {x[at(i, j)], y[at(i, j)], z[at(i, j)]}; }
+  // Of the particle with this number.
+  std::size_t at(int particle) const { return at(particle % columns, particle / columns); }
+  Vec3f position(int particle) const {
+    const std::size_t p = at(particle);
+    return {x[p], y[p], z[p]};
+  }
 };
 
 // Everything is about the view's origin: the scene, the cloths and the bodies.

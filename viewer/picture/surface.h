@@ -21,7 +21,7 @@ struct ClothSurface {
   // triangulate().
   std::vector<std::uint32_t> indices;
   // Triangles beside the tears; their vertices come after those of the lattice.
-  std::vector<std::uint32_t> seam_indices;
+  std::vector<std::uint32_t> tear_indices;
 };
 
 // How many vertices there are for a square of the grid, or squares for a vertex: a coarse grid is
@@ -49,7 +49,7 @@ void triangulate(const ClothCopy& cloth, ClothSurface& surface);
 void build_torn_surface(const ClothCopy& cloth, ClothSurface& surface);
 
 // Adds the vertices beside the tears to a surface that is complete otherwise.
-void add_seams(const ClothCopy& cloth, ClothSurface& surface);
+void add_tear_boundary(const ClothCopy& cloth, ClothSurface& surface);
 // The vertex of the lattice for a particle, j*stride + i.
 std::size_t vertex_of(const ClothCopy& cloth, const ClothSurface& surface, std::uint32_t particle);
 

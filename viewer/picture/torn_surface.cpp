@@ -127,17 +127,17 @@ std::size_t vertex_of(const ClothCopy& cloth, const ClothSurface& surface, std::
 }
 
 // A point has the force and strain of its particle, and of the normal a share of its own triangles.
-void add_seams(const ClothCopy& cloth, ClothSurface& s) {
-  const std::size_t first = s.x.size(), count = cloth.seam_points.size();
+void add_tear_boundary(const ClothCopy& cloth, ClothSurface& s) {
+  const std::size_t first = s.x.size(), count = cloth.tear_points.size();
   for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t v = vertex_of(cloth, s, cloth.seam_particles[k]);
-    const auto& [x, y, z] = cloth.seam_points[k];
+    const std::size_t v = vertex_of(cloth, s, cloth.tear_particles[k]);
+    const auto& [x, y, z] = cloth.tear_points[k];
     s.x.push_back(x), s.y.push_back(y), s.z.push_back(z);
     for (auto* values : {&s.nx, &s.ny, &s.nz, &s.fx, &s.fy, &s.fz, &s.strain})
       if (!values->empty()) values->push_back((*values)[v]);
   }
-  s.seam_indices.clear();
-  for (const auto& [a, b, c] : cloth.seams) {
+  s.tear_indices.clear();
+  for (const auto& [a, b, c] : cloth.tear_triangles) {
     const auto at = [&](std::size_t p) {
       return Vec3f{s.x[first + p], s.y[first + p], s.z[first + p]};
     };
@@ -146,7 +146,7 @@ void add_seams(const ClothCopy& cloth, ClothSurface& s) {
       s.nx[first + p] += n.x;
       s.ny[first + p] += n.y;
       s.nz[first + p] += n.z;
-      s.seam_indices.push_back(static_cast<std::uint32_t>(first + p));
+      s.tear_indices.push_back(static_cast<std::uint32_t>(first + p));
     }
   }
 }

@@ -46,7 +46,7 @@ void Player::start(Scene scene) {
   simulation_ = std::move(simulation);
   restart_clock();
   rewind_.clear();
-  rewind_.keep(simulation_->moment());
+  rewind_.keep(simulation_->snapshot());
   back_ = 0;
   ++serial_;
   show_scene();
@@ -90,7 +90,7 @@ void Player::change(Scene scene) {
     if (!same || simulation_->frame() == 0) rewind_.clear();
     scene_ = std::move(scene);
     if (clock_.step() != scene_.time.frame) restart_clock();
-    if (rewind_.size() == 0) rewind_.keep(simulation_->moment());
+    if (rewind_.size() == 0) rewind_.keep(simulation_->snapshot());
     show_scene();
     ++serial_;
     next_measure_ = 0;
@@ -103,7 +103,7 @@ void Player::set_options(int threads, Simd simd) {
     options.threads = threads;
     options.simd = simd;
     auto next = std::make_unique<Simulation>(simulation_->scene(), options);
-    next->restore(simulation_->moment());
+    next->restore(simulation_->snapshot());
     // What stages carry does not survive: a recording would not replay to the same bits.
     finish_recording();
     simulation_ = std::move(next);
@@ -229,7 +229,7 @@ void Player::keep_state() {
   constexpr double kFree = 2;  // ms
   if (--until_keep_ > 0) return;
   const double start = cpu_ms();
-  rewind_.keep(simulation_->moment());
+  rewind_.keep(simulation_->snapshot());
   until_keep_ = 1 + static_cast<int>((cpu_ms() - start) / kFree);
 }
 

@@ -4,28 +4,28 @@
 namespace weft::viewer {
 
 void Rewind::clear() {
-  moments_.clear();
+  snapshots_.clear();
   bytes_ = 0;
 }
 
-void Rewind::keep(Moment moment) {
-  bytes_ += moment.bytes();
-  moments_.push_back(std::move(moment));
+void Rewind::keep(weft::Snapshot snapshot) {
+  bytes_ += snapshot.bytes();
+  snapshots_.push_back(std::move(snapshot));
   while (size() > 1 && (size() > kMostStates || bytes_ > kMostBytes)) {
-    bytes_ -= moments_.front().bytes();
-    moments_.pop_front();
+    bytes_ -= snapshots_.front().bytes();
+    snapshots_.pop_front();
   }
 }
 
 void Rewind::cut(int back) {
   for (; back > 0 && size() > 1; --back) {
-    bytes_ -= moments_.back().bytes();
-    moments_.pop_back();
+    bytes_ -= snapshots_.back().bytes();
+    snapshots_.pop_back();
   }
 }
 
 double Rewind::seconds() const {
-  return moments_.empty() ? 0 : moments_.back().time - moments_.front().time;
+  return snapshots_.empty() ? 0 : snapshots_.back().time - snapshots_.front().time;
 }
 
 }  // namespace weft::viewer

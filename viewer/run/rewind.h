@@ -14,15 +14,15 @@ class Rewind {
 
   void clear();
   // Keeps the state as the newest; forgets the oldest ones beyond the bounds.
-  void keep(Moment moment);
+  void keep(weft::Snapshot snapshot);
   // Forgets all states after the one that lies `back` before the newest.
   void cut(int back);
-  const Moment& at(int back) const { return moments_[moments_.size() - 1 - std::size_t(back)]; }
-  int size() const { return static_cast<int>(moments_.size()); }
+  const weft::Snapshot& at(int back) const { return snapshots_[snapshots_.size() - 1 - std::size_t(back)]; }
+  int size() const { return static_cast<int>(snapshots_.size()); }
   double seconds() const;  // from the oldest to the newest
 
  private:
-  std::deque<Moment> moments_;
+  std::deque<weft::Snapshot> snapshots_;
   std::size_t bytes_ = 0;
 };
 

@@ -1,9 +1,10 @@
 // A run as it can be told again: the scene, every input of a person between two frames, and the hash
 // of each frame. A replay gives the same bits, or names the first frame that differs.
 //
-// The file has one JSON object a line: first {"weft_recording": 1, "seed": …, "scene": {…}}, then
+// The file has one JSON object a line: first {"weft_recording": 2, "seed": …, "scene": {…}}, then
 // inputs {"frame": f, "grab": {…}} in order, given before frame f + 1 is computed, and hashes
-// {"frame": f, "hash": "16 hex digits"} of the state after frame f.
+// {"frame": f, "hash": "16 hex digits"} of the state after frame f. Particles are [cloth, number]; files of version 1,
+// where they are [cloth, column, row], are read as well.
 #pragma once
 
 #include <memory>
@@ -20,7 +21,7 @@ namespace weft {
 struct Input {
   enum class Kind { grab, release, pin, unpin, carry, cut, move_collider, set_scene };
   Kind kind = Kind::release;
-  int cloth = 0, i = 0, j = 0;  // grab, pin, unpin; carry: cloth
+  int cloth = 0, particle = 0;  // grab, pin, unpin; carry: cloth
   int collider = 0;             // move_collider
   Vec3 a{}, b{};                // grab, move_collider: a the target; carry: a the velocity; cut
   double amount = 0;            // grab: stiffness [N/m]; cut: width [m]

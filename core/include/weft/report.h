@@ -39,8 +39,7 @@ struct Status {
   bool ok = true;
   std::int64_t frame = 0;
   std::string stage;
-  int cloth = 0;
-  int i = 0, j = 0;
+  int cloth = 0, particle = 0;
   std::string text = "ok";
 };
 

@@ -222,6 +222,11 @@ double spacing_v(const Grid& grid);
 // The scene with all that has a place, and all paths, moved by so much [m].
 Scene moved(Scene scene, const Vec3& by);
 
+// The number of particle (i,j): row after row.
+inline int particle_number(const Grid& grid, int i, int j) {
+  return j * grid.nx + i;
+}
+
 // Mass of particle (i,j) [kg] by the cloth's masses, particle_mass or density.
 double particle_mass(const Cloth& cloth, int i, int j);
 

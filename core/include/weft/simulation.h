@@ -44,26 +44,26 @@ struct SceneError : std::invalid_argument {
 
 // All that changes while a simulation runs: kept to go back to, or to go on with after the scene has
 // changed. What is left out is what stages carry from one substep to the next; they start anew.
-struct Moment {
-  struct Torn {  // a constraint that is gone, by its family's offset on the grid
-    int di, dj, j, a;
-  };
+//
+// Particles have numbers 0, 1, 2 … within their cloth, in the order of positions(); of a grid:
+// particle_number() (weft/scene.h).
+struct Snapshot {
   // How far the deepest particle and triangle of a cloth lay inside a collider when the two met [m], and
   // when that was [s]: for ten frames from then the collider grows to its size.
   struct Inside {
     double time = 0, particle = 0, triangle = 0;
   };
-  struct ClothMoment {
-    int columns = 0, rows = 0;
-    // x,y,z per particle, row-major: from the origin [m], [m/s]
+  struct ClothState {
+    int columns = 0;  // particles along u of a grid
+    // x,y,z per particle: from the origin [m], [m/s]
     std::vector<float> positions, velocities;
-    std::vector<std::array<int, 2>> held;  // particles [i, j] that cannot move
-    std::vector<Torn> torn;
+    std::vector<int> held;                 // particles that cannot move
+    std::vector<std::array<int, 2>> torn;  // constraints that are gone, each by its two particles
     std::vector<Inside> inside;  // of every collider
   };
   double time = 0;  // s
   Vec3 origin{};    // m, what positions are counted from
-  std::vector<ClothMoment> cloths;
+  std::vector<ClothState> cloths;
   std::vector<std::vector<Key>> paths;  // of the colliders
   std::size_t bytes() const;
 };
@@ -103,13 +103,13 @@ class Simulation {
   // std::invalid_argument when the sizes differ or a value is not finite.
   void set_state(std::span<const double> positions, std::span<const double> velocities);
 
-  // Draws a particle to a target by a spring of so many N/m, critically damped, until release();
+  // Draws a particle of a cloth to a target by a spring of so many N/m, critically damped, until release();
   // another grab moves the target or takes another particle. Any stiffness is stable.
-  void grab(int cloth, int i, int j, const Vec3& target, double stiffness = 200);
+  void grab(int cloth, int particle, const Vec3& target, double stiffness = 200);
   void release();
   // Holds a particle where it is; lets a held one go, be it held by the scene or by pin().
-  void pin(int cloth, int i, int j);
-  void unpin(int cloth, int i, int j);
+  void pin(int cloth, int particle);
+  void unpin(int cloth, int particle);
   // Moves all held particles of a cloth that have no keys at a velocity [m/s], until told another;
   // zero lets them rest.
   void carry(int cloth, const Vec3& velocity);
@@ -123,9 +123,10 @@ class Simulation {
 
   // The state as it is now, and back to one: positions, velocities, time (to the nearest frame),
   // what is held and torn, paths of the colliders. restore() throws std::invalid_argument for a
-  // moment of other grids; what it has no room for (constraints of absent families) is left out.
-  Moment moment() const;
-  void restore(const Moment& moment);
+  // snapshot of other cloths; what it has no room for (constraints that the scene does not have) is left
+  // out.
+  Snapshot snapshot() const;
+  void restore(const Snapshot& snapshot);
   // Goes on with another scene: cloths whose grids have the same points keep their state, pins that
   // differ between the scenes are set, colliders that differ take the new scene's place and keys; what
   // they meet there is moved out gently, as at a start.

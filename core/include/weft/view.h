@@ -28,9 +28,9 @@ struct ClothView {
   // seen: triangles of points of their own, corners as numbers of points. Each point goes with a
   // particle (j*stride + i), whose colour and force are its own. They change with topology_version;
   // none with the scene's tears "holes".
-  std::span<const std::array<std::uint32_t, 3>> seams;
-  std::span<const std::array<float, 3>> seam_points;  // from the view's origin [m]
-  std::span<const std::uint32_t> seam_particles;
+  std::span<const std::array<std::uint32_t, 3>> tear_triangles;
+  std::span<const std::array<float, 3>> tear_points;  // from the view's origin [m]
+  std::span<const std::uint32_t> tear_particles;
 };
 
 struct View {

@@ -68,14 +68,14 @@ void ClothStep::choose_anew(Method method) {
 
 void ClothStep::make_tearing() {
   tearing_ = std::make_unique<Tearing>(lattice_, stencils_, cloth_.bending > 0);
-  if (cloth_.tears == Tears::split) seams_ = std::make_unique<TearBoundary>();
+  if (cloth_.tears == Tears::split) tear_boundary_ = std::make_unique<TearBoundary>();
   parts_.tearing = tearing_.get();
 }
 
-const TearBoundary* ClothStep::seams() {
-  if (!seams_ || tearing_->version() == 0) return nullptr;
-  seams_->update(*tearing_, lattice_);
-  return seams_.get();
+const TearBoundary* ClothStep::tear_boundary() {
+  if (!tear_boundary_ || tearing_->version() == 0) return nullptr;
+  tear_boundary_->update(*tearing_, lattice_);
+  return tear_boundary_.get();
 }
 
 void ClothStep::make_schedule() {
@@ -204,7 +204,7 @@ std::size_t ClothStep::bytes() const {
                       (corrections_ ? corrections_->bytes() : 0) +
                       (history_ ? history_->bytes() : 0);
   if (tearing_) bytes += tearing_->bytes() + overlong_.size();
-  if (seams_) bytes += seams_->bytes();
+  if (tear_boundary_) bytes += tear_boundary_->bytes();
   for (const auto& s : stages_) bytes += s->bytes();
   return bytes;
 }

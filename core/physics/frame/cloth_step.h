@@ -58,7 +58,7 @@ class ClothStep {
   const Tearing* tearing() const { return tearing_.get(); }
   void allow_tearing();
   // The seams of the tears as they lie now; null unless the cloth has torn and shows its tears split.
-  const TearBoundary* seams();
+  const TearBoundary* tear_boundary();
   // Bending terms that are left; null: all.
   const BendLinks* bend_links() const { return tearing_ ? tearing_->bend_links() : nullptr; }
   std::size_t bytes() const;
@@ -88,7 +88,7 @@ class ClothStep {
   std::vector<SkippedStage> skipped_;
   std::vector<const Stage*> added_;
   std::unique_ptr<Tearing> tearing_;
-  std::unique_ptr<TearBoundary> seams_;
+  std::unique_ptr<TearBoundary> tear_boundary_;
   std::unique_ptr<Schedule> schedule_;
 };
 

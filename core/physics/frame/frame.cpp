@@ -190,8 +190,7 @@ void Simulation::State::find_fault() {
               if (!(std::abs(l.x.at(k, j, i)) < kFarAway) || !std::isfinite(l.v.at(k, j, i))) {
                 status.stage = stage->name;
                 status.cloth = int(c);
-                status.i = i;
-                status.j = j;
+                status.particle = j * l.columns + i;
                 status.text = "not finite in frame " + std::to_string(status.frame) + ", substep " +
                               std::to_string(s + 1) + ", stage " + stage->name + ", cloth " +
                               std::to_string(c) + ", particle [" + std::to_string(i) + "," +

@@ -11,13 +11,15 @@ namespace weft {
 
 using namespace physics;
 
-ClothStep& Simulation::State::step_with(int cloth, int i, int j) {
+ClothStep& Simulation::State::step_with(int cloth, int particle) {
   if (cloth < 0 || std::size_t(cloth) >= cloths.size())
     throw std::out_of_range("there is no cloth " + std::to_string(cloth));
   ClothStep& step = *cloths[std::size_t(cloth)];
-  if (i < 0 || j < 0 || i >= step.lattice().columns || j >= step.lattice().rows)
-    throw std::out_of_range("cloth " + std::to_string(cloth) + " has no particle [" +
-                            std::to_string(i) + ", " + std::to_string(j) + "]");
+  const int count = particles(std::size_t(cloth));
+  if (particle < 0 || particle >= count)
+    throw std::out_of_range("cloth " + std::to_string(cloth) + " has no particle " +
+                            std::to_string(particle) + " (allowed: 0 to " +
+                            std::to_string(count - 1) + ")");
   return step;
 }
 
@@ -44,8 +46,9 @@ void Simulation::State::plan_changed() {
   take_substeps(substeps);
 }
 
-void Simulation::State::grab(int cloth, int i, int j, const Vec3& target, double stiffness) {
-  ClothStep& step = step_with(cloth, i, j);
+void Simulation::State::grab(int cloth, int particle, const Vec3& target,
+                             double stiffness) {
+  ClothStep& step = step_with(cloth, particle);
   if (!(stiffness >= 0) ||
       !std::all_of(target.begin(), target.end(), [](double t) { return std::isfinite(t); }))
     throw std::invalid_argument("a grab needs a finite target and a stiffness of at least 0");
@@ -58,9 +61,10 @@ void Simulation::State::grab(int cloth, int i, int j, const Vec3& target, double
     plan_changed();
   }
   touch(cloth);
-  const double stored = grab_->column == i && grab_->row == j ? grab_->energy() : 0;
-  grab_->column = i;
-  grab_->row = j;
+  const int row = particle / step.lattice().columns, column = particle % step.lattice().columns;
+  const double stored = grab_->column == column && grab_->row == row ? grab_->energy() : 0;
+  grab_->column = column;
+  grab_->row = row;
   grab_->target = minus(target, origin);
   grab_->stiffness = stiffness;
   guard_.put_in(std::max(0.0, grab_->energy() - stored));
@@ -76,7 +80,7 @@ void Simulation::State::release() {
 }
 
 void Simulation::State::carry(int cloth, const Vec3& velocity) {
-  ClothStep& step = step_with(cloth, 0, 0);
+  ClothStep& step = step_with(cloth, 0);
   if (!std::all_of(velocity.begin(), velocity.end(), [](double u) { return std::isfinite(u); }))
     throw std::invalid_argument("held particles are carried at a finite velocity");
   touch(cloth);
@@ -103,9 +107,10 @@ void Simulation::State::carry(int cloth, const Vec3& velocity) {
   plan_changed();
 }
 
-void Simulation::State::hold(int cloth, int i, int j, bool held) {
-  ClothStep& step = step_with(cloth, i, j);
+void Simulation::State::hold(int cloth, int particle, bool held) {
+  ClothStep& step = step_with(cloth, particle);
   Lattice& l = step.lattice();
+  const int i = particle % l.columns, j = particle / l.columns;
   touch(cloth);
   l.set_inverse_mass(j, i, held ? 0 : float(1 / particle_mass(step.cloth(), i, j)));
   if (held)

@@ -103,10 +103,10 @@ View Simulation::view() const {
       c.topology_version = t->version();
       c.triangles = t->triangles();
       c.torn = t->torn() > 0;
-      if (const TearBoundary* s = step->seams()) {
-        c.seam_points = s->points();
-        c.seam_particles = s->particles();
-        c.seams = s->triangles();
+      if (const TearBoundary* s = step->tear_boundary()) {
+        c.tear_points = s->points();
+        c.tear_particles = s->particles();
+        c.tear_triangles = s->triangles();
       }
     }
     view.cloths.push_back(c);
@@ -133,8 +133,8 @@ void Simulation::set_state(std::span<const double> positions, std::span<const do
   state_->set(positions, {}, velocities);
 }
 
-void Simulation::grab(int cloth, int i, int j, const Vec3& target, double stiffness) {
-  state_->grab(cloth, i, j, target, stiffness);
+void Simulation::grab(int cloth, int particle, const Vec3& target, double stiffness) {
+  state_->grab(cloth, particle, target, stiffness);
 }
 void Simulation::release() {
   state_->release();
@@ -142,11 +142,11 @@ void Simulation::release() {
 void Simulation::carry(int cloth, const Vec3& velocity) {
   state_->carry(cloth, velocity);
 }
-void Simulation::pin(int cloth, int i, int j) {
-  state_->hold(cloth, i, j, true);
+void Simulation::pin(int cloth, int particle) {
+  state_->hold(cloth, particle, true);
 }
-void Simulation::unpin(int cloth, int i, int j) {
-  state_->hold(cloth, i, j, false);
+void Simulation::unpin(int cloth, int particle) {
+  state_->hold(cloth, particle, false);
 }
 
 void Simulation::move_collider(int collider, const Vec3& target) {

@@ -1,4 +1,4 @@
-// What changes while a simulation runs, taken out and put back (Moment).
+// What changes while a simulation runs, taken out and put back (Snapshot).
 #include <algorithm>
 #include <cmath>
 
@@ -6,29 +6,29 @@
 #include "physics/frame/state.h"
 #include "physics/model/lattice/energy.h"
 
-// A moment comes from a caller: every number in it is looked at before anything changes.
+// A snapshot comes from a caller: every number in it is looked at before anything changes.
 
 namespace weft {
 
 using namespace physics;
 
-std::size_t Moment::bytes() const {
+std::size_t Snapshot::bytes() const {
   std::size_t bytes = sizeof *this;
-  for (const ClothMoment& c : cloths)
+  for (const ClothState& c : cloths)
     bytes += sizeof c + (c.positions.size() + c.velocities.size()) * sizeof(float) +
-             c.held.size() * sizeof c.held[0] + c.torn.size() * sizeof(Torn) +
+             c.held.size() * sizeof c.held[0] + c.torn.size() * sizeof c.torn[0] +
              c.inside.size() * sizeof(Inside);
   for (const std::vector<Key>& keys : paths) bytes += keys.size() * sizeof(Key);
   return bytes;
 }
 
-Moment Simulation::State::moment() const {
-  Moment m;
+Snapshot Simulation::State::snapshot() const {
+  Snapshot m;
   m.time = double(frame) * scene.time.frame;
   m.origin = origin;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     const Lattice& l = cloths[n]->lattice();
-    Moment::ClothMoment c{l.columns, l.rows, {}, {}, {}, {}, {}};
+    Snapshot::ClothState c{l.columns, {}, {}, {}, {}, {}};
     c.positions.reserve(3 * std::size_t(l.columns) * l.rows);
     c.velocities.reserve(c.positions.capacity());
     for (const Vec3& v : velocities_now(*this, n))
@@ -36,10 +36,10 @@ Moment Simulation::State::moment() const {
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i) {
         for (int k = 0; k < 3; ++k) c.positions.push_back(l.x.at(k, j, i));
-        if (masses(n)[std::size_t(j) * l.stride + i] == 0) c.held.push_back({i, j});
+        if (masses(n)[std::size_t(j) * l.stride + i] == 0) c.held.push_back(j * l.columns + i);
       }
     if (const Tearing* tearing = cloths[n]->tearing())
-      for (const Tearing::Torn& t : tearing->torn_list()) c.torn.push_back({t.di, t.dj, t.j, t.a});
+      for (const Tearing::Torn& t : tearing->torn_list()) c.torn.push_back({t.a, t.b});
     for (const StartInside& start : cloths[n]->starts())
       c.inside.push_back({start.time, start.deepest_particle, start.deepest_triangle});
     m.cloths.push_back(std::move(c));
@@ -54,7 +54,7 @@ constexpr double kMostFrames = 1e15;  // whole numbers are exact in double preci
 constexpr double kFarthest = 1e9;     // m, of an origin; the range of places in a scene
 
 void require(bool sound, const std::string& what) {
-  if (!sound) throw std::invalid_argument("the moment " + what);
+  if (!sound) throw std::invalid_argument("the snapshot " + what);
 }
 
 template <class Numbers>
@@ -62,10 +62,10 @@ bool all_finite(const Numbers& numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](auto v) { return std::isfinite(v); });
 }
 
-void check_cloth(const Moment::ClothMoment& c, const ClothStep& step, std::size_t colliders) {
+void check_cloth(const Snapshot::ClothState& c, const ClothStep& step, std::size_t colliders) {
   const Lattice& l = step.lattice();
   const std::size_t values = 3 * std::size_t(l.columns) * l.rows;
-  require(c.columns == l.columns && c.rows == l.rows && c.positions.size() == values &&
+  require(c.columns == l.columns && c.positions.size() == values &&
               c.velocities.size() == values && c.inside.size() == colliders,
           "is of another scene");
   require(all_finite(c.positions) && all_finite(c.velocities),
@@ -73,16 +73,17 @@ void check_cloth(const Moment::ClothMoment& c, const ClothStep& step, std::size_
   require(std::all_of(c.positions.begin(), c.positions.end(),
                       [](float x) { return std::abs(x) < kFarAway; }),
           "holds a position more than 1e7 m away");
-  for (const auto& [i, j] : c.held)
-    require(i >= 0 && j >= 0 && i < l.columns && j < l.rows,
-            "holds the particle [" + std::to_string(i) + ", " + std::to_string(j) +
-                "] (allowed: [0, 0] to [" + std::to_string(l.columns - 1) + ", " +
-                std::to_string(l.rows - 1) + "])");
-  for (const Moment::Torn& t : c.torn)
-    require(t.dj >= 0 && t.j >= 0 && t.a >= 0 && t.j < l.rows - t.dj &&
-                std::abs(t.di) < l.columns && t.a < l.columns - std::abs(t.di),
-            "has a torn constraint outside of the grid");
-  for (const Moment::Inside& i : c.inside)
+  const int particles = l.columns * l.rows;
+  const auto is_there = [&](int particle) { return particle >= 0 && particle < particles; };
+  for (const int particle : c.held)
+    require(is_there(particle), "holds the particle " + std::to_string(particle) +
+                                    " (allowed: 0 to " + std::to_string(particles - 1) + ")");
+  for (const auto& [a, b] : c.torn)
+    require(is_there(a) && is_there(b) && a != b,
+            "has a torn constraint from particle " + std::to_string(a) + " to " +
+                std::to_string(b) + " (allowed: two of 0 to " + std::to_string(particles - 1) +
+                ")");
+  for (const Snapshot::Inside& i : c.inside)
     require(std::isfinite(i.time) && i.particle >= 0 && i.triangle >= 0 &&
                 i.particle <= kFarthest && i.triangle <= kFarthest,
             "holds a depth inside a collider that is out of range (0 to 1e9 m)");
@@ -90,7 +91,7 @@ void check_cloth(const Moment::ClothMoment& c, const ClothStep& step, std::size_
 
 }  // namespace
 
-void Simulation::State::check(const Moment& m) const {
+void Simulation::State::check(const Snapshot& m) const {
   require(m.cloths.size() == cloths.size() && m.paths.size() == scene.colliders.size(),
           "is of another scene");
   require(m.time >= 0 && m.time / scene.time.frame < kMostFrames, "has a time out of range");
@@ -109,25 +110,25 @@ void Simulation::State::check(const Moment& m) const {
   if (same) return;
   const std::vector<Fault> faults = validate(with_paths);
   if (!faults.empty())
-    throw std::invalid_argument("the moment's paths: " + faults[0].place + ": " + faults[0].what);
+    throw std::invalid_argument("the snapshot's paths: " + faults[0].place + ": " + faults[0].what);
 }
 
-void Simulation::State::restore(const Moment& m) {
+void Simulation::State::restore(const Snapshot& m) {
   std::vector<double> positions, velocities;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
-    const Moment::ClothMoment& c = m.cloths[n];
+    const Snapshot::ClothState& c = m.cloths[n];
     ClothStep& step = *cloths[n];
     Lattice& l = step.lattice();
     wake(int(n));
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i) l.w(j)[i] = float(1 / particle_mass(step.cloth(), i, j));
-    for (const auto& [i, j] : c.held) l.w(j)[i] = 0;
+    for (const int p : c.held) l.w(p / l.columns)[p % l.columns] = 0;
     for (int j = 0; j < l.rows; ++j) l.weigh_row(j);
     if (sleeping) sleeping->keep_masses(int(n));
     if (!c.torn.empty()) step.allow_tearing();
     if (step.tearing()) {
       std::vector<Tearing::Torn> torn;
-      for (const Moment::Torn& t : c.torn) torn.push_back({t.di, t.dj, t.j, t.a});
+      for (const auto& [a, b] : c.torn) torn.push_back({a, b});
       step.tearing()->set_torn(torn);
     }
     positions.insert(positions.end(), c.positions.begin(), c.positions.end());
@@ -136,7 +137,7 @@ void Simulation::State::restore(const Moment& m) {
   for (std::size_t n = 0; n < m.paths.size(); ++n) {
     set_path(n, m.paths[n]);
     for (std::size_t c = 0; c < cloths.size(); ++c) {
-      const Moment::Inside& inside = m.cloths[c].inside[n];
+      const Snapshot::Inside& inside = m.cloths[c].inside[n];
       cloths[c]->meet(n, {inside.time, 0, 0, inside.particle, inside.triangle});
     }
   }
@@ -160,16 +161,15 @@ namespace {
 
 // Pins of the new scene that the old one had not are held, pins it has no more are let go; what a
 // hand held or let go stays so.
-void change_pins(const Cloth& before, const Cloth& after, Moment::ClothMoment& cloth) {
-  const auto pinned = [](const Cloth& c, std::array<int, 2> at) {
-    return std::any_of(c.pins.begin(), c.pins.end(),
-                       [&](const Pin& p) { return p.i == at[0] && p.j == at[1]; });
+void change_pins(const Cloth& before, const Cloth& after, Snapshot::ClothState& cloth) {
+  const auto pinned = [](const Cloth& c, int particle) {
+    return std::any_of(c.pins.begin(), c.pins.end(), [&](const Pin& p) {
+      return particle_number(c.grid, p.i, p.j) == particle;
+    });
   };
-  std::erase_if(cloth.held, [&](const std::array<int, 2>& at) {
-    return pinned(before, at) && !pinned(after, at);
-  });
+  std::erase_if(cloth.held, [&](int at) { return pinned(before, at) && !pinned(after, at); });
   for (const Pin& p : after.pins) {
-    const std::array<int, 2> at{p.i, p.j};
+    const int at = particle_number(after.grid, p.i, p.j);
     if (!pinned(before, at) &&
         std::find(cloth.held.begin(), cloth.held.end(), at) == cloth.held.end())
       cloth.held.push_back(at);
@@ -186,13 +186,13 @@ void Simulation::set_scene(Scene scene) {
     same = before.cloths[n].grid.nx == after.cloths[n].grid.nx &&
            before.cloths[n].grid.ny == after.cloths[n].grid.ny;
   if (same) {
-    Moment m = state_->moment();
+    Snapshot m = state_->snapshot();
     for (std::size_t n = 0; n < after.cloths.size(); ++n)
       if (before.cloths[n].pins != after.cloths[n].pins)
         change_pins(before.cloths[n], after.cloths[n], m.cloths[n]);
     m.paths.clear();
     for (const Collider& c : after.colliders) m.paths.push_back(c.keys);
-    for (Moment::ClothMoment& c : m.cloths) c.inside.resize(after.colliders.size());
+    for (Snapshot::ClothState& c : m.cloths) c.inside.resize(after.colliders.size());
     next.restore(m);
     for (std::size_t k = 0; k < after.colliders.size(); ++k)
       if (k >= before.colliders.size() || before.colliders[k] != after.colliders[k])
@@ -202,15 +202,15 @@ void Simulation::set_scene(Scene scene) {
   *this = std::move(next);
 }
 
-Moment Simulation::moment() const {
-  return state_->moment();
+Snapshot Simulation::snapshot() const {
+  return state_->snapshot();
 }
-// About the moment's origin, wherever the scene would have its own: cloths stay as fine as they were.
-void Simulation::restore(const Moment& moment) {
-  state_->check(moment);
-  if (moment.origin == state_->origin) return state_->restore(moment);
-  auto next = std::make_unique<State>(scene(), state_->options, moment.origin);
-  next->restore(moment);
+// About the snapshot's origin, wherever the scene would have its own: cloths stay as fine as they were.
+void Simulation::restore(const Snapshot& snapshot) {
+  state_->check(snapshot);
+  if (snapshot.origin == state_->origin) return state_->restore(snapshot);
+  auto next = std::make_unique<State>(scene(), state_->options, snapshot.origin);
+  next->restore(snapshot);
   next->changes += state_->changes;
   state_ = std::move(next);
 }

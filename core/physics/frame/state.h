@@ -35,19 +35,19 @@ struct Simulation::State {
   State(Scene given, const Options& given_options, const Vec3& about);
 
   void advance_frame();
-  void grab(int cloth, int i, int j, const Vec3& target, double stiffness);
+  void grab(int cloth, int particle, const Vec3& target, double stiffness);
   void release();
   void carry(int cloth, const Vec3& velocity);
-  void hold(int cloth, int i, int j, bool held);
+  void hold(int cloth, int particle, bool held);
   int cut(const Vec3& a, const Vec3& b, double width);
   // Positions are counted from `from`.
   void set(std::span<const double> positions, const Vec3& from, std::span<const double> velocities);
   void move_collider(int collider, const Vec3& target);
   void set_path(std::size_t collider, std::vector<Key> keys);
-  Moment moment() const;
-  // Throws std::invalid_argument for a moment that restore() cannot take. (restore() trusts it.)
-  void check(const Moment& moment) const;
-  void restore(const Moment& moment);
+  Snapshot snapshot() const;
+  // Throws std::invalid_argument for a snapshot that restore() cannot take. (restore() trusts it.)
+  void check(const Snapshot& snapshot) const;
+  void restore(const Snapshot& snapshot);
   // A collider has been put where cloths may be.
   void meet(std::size_t collider);
   std::size_t record_bytes() const;
@@ -150,7 +150,7 @@ struct Simulation::State {
   void look();
   void run_with_contact();
   void begin_surfaces();
-  physics::ClothStep& step_with(int cloth, int i, int j);
+  physics::ClothStep& step_with(int cloth, int particle);
   void plan_changed();
   Plan describe_stages() const;
   physics::Substeps substeps_from(int first, int count) const;

@@ -188,7 +188,7 @@ void Simulation::State::begin_again() {
   plan.notes.push_back("up to frame " + std::to_string(frame) +
                        " what a hand did took more substeps, or another method");
   plan.fallback = began_fallen_back_;
-  restore(moment());
+  restore(snapshot());
 }
 
 // Whether something was so fast at the frame's start that it leaves all bounds by any method.

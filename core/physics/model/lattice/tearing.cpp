@@ -43,14 +43,19 @@ std::vector<Tearing::Torn> Tearing::torn_list() const {
   for (const Stencil& f : stencils_)
     for (int j = 0; j + f.dj < rows_; ++j)
       for (int a = 0; a < f.per_row(columns_); ++a)
-        if (!f.alive(j, a)) list.push_back({f.di, f.dj, j, a});
+        if (!f.alive(j, a))
+          list.push_back({j * columns_ + a + f.near(), (j + f.dj) * columns_ + a + f.far()});
   return list;
 }
 
 void Tearing::set_torn(const std::vector<Torn>& torn) {
   make_whole();
-  for (const Torn& t : torn)
-    if (const Stencil* f = stencil_at(t.di, t.dj)) end(*f, t.j, t.a);
+  for (const Torn& t : torn) {
+    const auto [from, to] = std::minmax(t.a, t.b);
+    const int j = from / columns_, i = from % columns_;
+    if (const Stencil* f = stencil_at(to % columns_ - i, to / columns_ - j))
+      end(*f, j, i - f->near());
+  }
   update();
   ++version_;
   list_triangles();

@@ -39,12 +39,12 @@ class Tearing {
   // Remembers which links there are; go_back() undoes what died since.
   void remember();
   void go_back();
-  // One constraint that is gone: its stencil's offset, its row and its place in the row.
+  // One constraint that is gone: the particles that it joined, by their numbers.
   struct Torn {
-    int di, dj, j, a;
+    int a, b;
   };
   std::vector<Torn> torn_list() const;
-  // Exactly these are gone, and what spans them; those of stencils not here are passed over.
+  // Exactly these are gone, and what spans them; what no constraint joins is passed over.
   void set_torn(const std::vector<Torn>& torn);
 
   std::int64_t torn() const { return torn_; }  // constraints that are gone
