@@ -28,28 +28,27 @@ struct Sheet {
     cloth.self_collision.thickness = kThickness / (n - 1);
     const auto& kernels = weft::physics::kernel_table(widest());
     cloths.push_back(std::make_unique<ClothStep>(scene, 0, weft::Method::spring, 1, kernels));
-    if (folded) fold(cloths[0]->lattice());
-    x.copy_from(cloths[0]->lattice());
-    self = SelfContact::make(scene, parts_of(cloths), kernels);
+    if (folded) fold(cloths[0]->particles());
+    x.copy_from(cloths[0]->particles());
+    self = SelfContact::make(scene, lattices_of(cloths), kernels);
     self->search(margin(), threads);
   }
 
   // Layer upon layer, back and forth.
-  static void fold(weft::physics::Lattice& l) {
-    const float h = 1.0f / float(l.columns - 1);
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i) {
-        const int layer = j / kRowsOfLayer, along = j % kRowsOfLayer;
-        l.x.at(1, j, i) = float(layer) * h;
-        l.x.at(2, j, i) = float(layer % 2 ? kRowsOfLayer - 1 - along : along) * h;
-      }
+  static void fold(weft::physics::Particles& l) {
+    const float h = 1.0f / float(l.count(0) - 1);
+    l.for_each([&](int j, int i) {
+      const int layer = j / kRowsOfLayer, along = j % kRowsOfLayer;
+      l.x.at(1, j, i) = float(layer) * h;
+      l.x.at(2, j, i) = float(layer % 2 ? kRowsOfLayer - 1 - along : along) * h;
+    });
   }
 
   double margin() const { return kMargin * scene.cloths[0].self_collision.thickness; }
 
   struct Kept {
     std::unique_ptr<weft::physics::Rows> x, v;
-    void copy_from(const weft::physics::Lattice& l) {
+    void copy_from(const weft::physics::Particles& l) {
       x = std::make_unique<weft::physics::Rows>(l.rows, l.stride);
       v = std::make_unique<weft::physics::Rows>(l.rows, l.stride);
       x->copy(l.x);
@@ -57,8 +56,8 @@ struct Sheet {
     }
   };
   void put_back() {
-    cloths[0]->lattice().x.copy(*x.x);
-    cloths[0]->lattice().v.copy(*x.v);
+    cloths[0]->particles().x.copy(*x.x);
+    cloths[0]->particles().v.copy(*x.v);
   }
 
   weft::Scene scene;

@@ -22,21 +22,21 @@ struct Bench {
                                        weft::physics::kernel_table(simd));
     for (const auto& stage : step->stages()) {
       stage->prepare(scene.time.frame / scene.time.substeps);
-      if (auto* rows = dynamic_cast<weft::physics::RowStage*>(stage.get())) rows->reserve_slots(1);
+      if (auto* rows = stage->as_row_stage()) rows->reserve_slots(1);
     }
   }
 };
 
 void run_stage(benchmark::State& state, Bench& bench, std::size_t index) {
   auto& stage = *bench.step->stages()[index];
-  const int rows = bench.step->lattice().rows;
+  const int rows = bench.step->particles().rows;
   const double dt = bench.scene.time.frame / bench.scene.time.substeps;
   const weft::physics::Substep substep{dt, dt, dt};
   // Many passes a measurement, so that reading the clock does not count.
   const int passes = 4;
   weft::physics::Threads threads(1);
-  auto* row_stage = dynamic_cast<weft::physics::RowStage*>(&stage);
-  auto* whole_stage = dynamic_cast<weft::physics::WholeStage*>(&stage);
+  auto* row_stage = stage.as_row_stage();
+  auto* whole_stage = stage.as_whole_stage();
   const double ns = fastest_ns(state, [&] {
     for (int pass = 0; pass < passes; ++pass) {
       if (row_stage) row_stage->run(0, rows, substep);

@@ -23,7 +23,7 @@ Cloth sheet(int nx, int ny, double bending) {
 
 std::vector<Vec3> crumpled(const Cloth& c) {
   Lattice l = make_lattice(c, 0, 1, false);
-  std::vector<Vec3> x = gather(l, l.x);
+  std::vector<Vec3> x = l.gather(l.x);
   Random random(3, 0);
   for (Vec3& p : x)
     for (double& v : p) v += 0.05 * random.symmetric();

@@ -25,18 +25,17 @@ struct Sheet {
 
 // A crumpled sheet with one stencil, pinned in a few places.
 Sheet crumpled(int nx, int ny, Stencil stencil, double gradient = 0) {
-  Sheet s;
-  s.scene.solver.method = Method::compliant;
   Cloth cloth;
   cloth.grid.nx = nx;
   cloth.grid.ny = ny;
   cloth.stiffness_gradient = gradient;
   cloth.pins = {{0, 0, {}}, {nx - 1, 0, {}}, {nx / 2, ny / 2, {}}};
+  Sheet s{{}, {}, make_lattice(cloth, 0, 1, true)};
+  s.scene.solver.method = Method::compliant;
   s.scene.cloths.push_back(cloth);
   const double hu = 1.0 / (nx - 1), hv = 1.0 / (ny - 1);
   stencil.rest = std::hypot(stencil.di * hu, stencil.dj * hv);
   s.stencils = {stencil};
-  s.lattice = make_lattice(cloth, 0, 1, true);
   Random random(5, 1);
   for (int k = 0; k < 3; ++k)
     for (int j = 0; j < ny; ++j)
@@ -45,8 +44,12 @@ Sheet crumpled(int nx, int ny, Stencil stencil, double gradient = 0) {
 }
 
 void sweep(Sheet& s, Simd simd, const LineOptions& options, int threads = 1) {
-  const ClothParts parts{s.scene,   s.scene.cloths[0], s.scene.solver.method,
-                         s.lattice, s.stencils,        kernel_table(simd)};
+  const KernelTable& kernels = kernel_table(simd);
+  const auto model = make_model(s.scene, 0, s.scene.solver.method, 1, kernels);
+  const LatticeParts parts{
+      {s.scene, s.scene.cloths[0], s.scene.solver.method, s.lattice, kernels, *model},
+      s.lattice,
+      s.stencils};
   Threads pool(threads);
   make_line(parts, options)->run_alone(s.lattice.rows, {kDt, kDt, 0}, pool);
 }
@@ -54,7 +57,7 @@ void sweep(Sheet& s, Simd simd, const LineOptions& options, int threads = 1) {
 // The Newton step of all constraints of the stencil at once: A μ = C by Gaussian elimination.
 std::vector<Vec3> dense_step(const Sheet& s) {
   const Cloth& cloth = s.scene.cloths[0];
-  std::vector<Vec3> x = gather(s.lattice, s.lattice.x);
+  std::vector<Vec3> x = s.lattice.gather(s.lattice.x);
   struct Constraint {
     int a, b;
     double alpha, violation;
@@ -113,7 +116,7 @@ TEST(LineSweep, SolvesEveryLineAsADenseSolverDoes) {
       Sheet s = crumpled(nx, ny, {o.di, o.dj, Kind::structural, 0, 2000, 0}, 0.5);
       const std::vector<Vec3> expected = dense_step(s);
       sweep(s, Simd::best, {true, 1, 1});
-      const std::vector<Vec3> got = gather(s.lattice, s.lattice.x);
+      const std::vector<Vec3> got = s.lattice.gather(s.lattice.x);
       double worst = 0;
       for (std::size_t p = 0; p < got.size(); ++p)
         for (int k = 0; k < 3; ++k) worst = std::max(worst, std::abs(got[p][k] - expected[p][k]));

@@ -26,11 +26,10 @@ struct Guarded {
     cloths.push_back(std::make_unique<ClothStep>(scene, 0, method, 1, kernel_table(Simd::best)));
     guard.open(scene, method, cloths, 0, kDt);
   }
-  Lattice& lattice() { return cloths[0]->lattice(); }
-  void set_speed(double speed) { set(lattice().v, 0, float(speed)); }
+  Particles& particles() { return cloths[0]->particles(); }
+  void set_speed(double speed) { set(particles().v, 0, float(speed)); }
   void drop_by(double way) {
-    for (int j = 0; j < lattice().rows; ++j)
-      for (int i = 0; i < lattice().columns; ++i) lattice().x.at(1, j, i) -= float(way);
+    particles().for_each([&](int j, int i) { particles().x.at(1, j, i) -= float(way); });
   }
   bool next_frame() {
     guard.look(scene, cloths, false);
@@ -39,12 +38,11 @@ struct Guarded {
     return holds;
   }
   void set(Rows& rows, int axis, float value) {
-    for (int j = 0; j < lattice().rows; ++j)
-      for (int i = 0; i < lattice().columns; ++i) rows.at(axis, j, i) = value;
+    particles().for_each([&](int j, int i) { rows.at(axis, j, i) = value; });
   }
 
   Scene scene;
-  std::vector<std::unique_ptr<ClothStep>> cloths;
+  Cloths cloths;
   EnergyGuard guard;
 };
 

@@ -10,6 +10,7 @@
 #include "physics/frame/cloth_step.h"
 #include "physics/model/lattice/energy.h"
 #include "physics/model/lattice/stability.h"
+#include "physics/model/lattice/stages.h"
 #include "physics/model/random.h"
 #include "physics/step/threads.h"
 #include "weft/simulation.h"
@@ -56,7 +57,7 @@ Lattice lattice_of(const Case& c, const Cloth& cloth) {
 
 // Largest eigenvalues of M^-½ K M^-½ and M^-½ D M^-½, assembled spring by spring.
 Spectrum dense_spectrum(const Cloth& cloth, const Lattice& l) {
-  const auto x = gather(l, l.x);
+  const auto x = l.gather(l.x);
   const auto size = Eigen::Index(3 * x.size());
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(size, size), damping = stiffness;
   const auto root_w = [&](int p) { return std::sqrt(double(l.w(p / l.columns, p % l.columns))); };
@@ -135,13 +136,13 @@ TEST(StabilityLimit, EstimateIsCloseAndNeverAbove) {
 double growth(const Case& c, double share) {
   const Scene scene = scene_of(c);
   ClothStep step(scene, 0, Method::spring, 1, kernel_table(Simd::best));
-  Lattice& l = step.lattice();
+  Lattice& l = step.model().lattice()->lattice;
   const double dt = share * dense_spectrum(step.cloth(), l).largest_substep();
   Random random(6, 6);
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i)
       for (int k = 0; k < 3; k += 2) l.x.at(k, j, i) += float(1e-4 * random.symmetric());
-  const auto energy = [&] { return elastic_energy(step.cloth(), step.stencils(), gather(l, l.x)); };
+  const auto energy = [&] { return step.model().elastic_energy(); };
   const double before = energy();
   Threads one(1);
   double most = 0;

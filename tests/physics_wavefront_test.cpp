@@ -22,26 +22,21 @@ std::uint64_t mixed(std::uint64_t a, std::uint64_t b) {
   return z ^ (z >> 29);
 }
 
-// Rows of integers, and a lattice of one column that shows them.
+// Rows of integers, and rows of one particle that show them.
 struct Mixed {
-  explicit Mixed(int rows) : values(std::size_t(rows), 1) {
-    lattice.columns = 1;
-    lattice.rows = rows;
-    lattice.stride = row_stride(1);
-    lattice.x = Rows(rows, lattice.stride);
-    lattice.v = Rows(rows, lattice.stride);
-    lattice.inverse_mass = AlignedArray<float>(std::size_t(rows) * lattice.stride);
-    for (int j = 0; j < rows; ++j) lattice.w(j)[0] = 1;
+  explicit Mixed(int rows)
+      : values(std::size_t(rows), 1), particles(std::vector<int>(std::size_t(rows), 1), false) {
+    for (int j = 0; j < rows; ++j) particles.w(j)[0] = 1;
   }
   void set(int j, std::uint64_t value) {
     values[std::size_t(j)] = value;
-    lattice.x.at(0, j, 0) = shown(j);
-    lattice.v.at(1, j, 0) = shown(j);
+    particles.x.at(0, j, 0) = shown(j);
+    particles.v.at(1, j, 0) = shown(j);
   }
   float shown(int j) const { return float(values[std::size_t(j)] % 1000); }
 
   std::vector<std::uint64_t> values;
-  Lattice lattice;
+  Particles particles;
 };
 
 // Reads and rewrites rows j … j+reach. Where rows reach others, they come in order, and carry a value
@@ -72,7 +67,7 @@ class MixingStage final : public RowStage {
         mixed(reach > 0 ? carried_[slot] : std::uint64_t(j), std::bit_cast<std::uint64_t>(s.time));
     value = mixed(value, std::bit_cast<std::uint64_t>(s.dt));
     value = mixed(value, std::bit_cast<std::uint64_t>(s.kick));
-    for (int k = j; k <= std::min(j + reach, rows_.lattice.rows - 1); ++k) {
+    for (int k = j; k <= std::min(j + reach, rows_.particles.rows - 1); ++k) {
       value = mixed(value, rows_.values[std::size_t(k)]);
       rows_.set(k, mixed(value, std::uint64_t(k)));
     }
@@ -126,7 +121,7 @@ std::vector<std::uint64_t> one_after_the_other(const Layout& layout) {
 
 std::vector<std::uint64_t> by_wavefront(const Layout& layout, int thread_count) {
   Mixed rows(layout.rows);
-  RollbackBuffer record(rows.lattice, {0, -1, 0}, kernel_table(Simd::scalar));
+  RollbackBuffer record(rows.particles, {0, -1, 0}, kernel_table(Simd::scalar));
   std::deque<MixingStage> stages;
   std::vector<RowStage*> pointers;
   for (const int reach : layout.reaches)
@@ -136,7 +131,7 @@ std::vector<std::uint64_t> by_wavefront(const Layout& layout, int thread_count) 
   std::int64_t substeps = 0;
   for (std::size_t frame = 0; frame < layout.substeps.size(); ++frame) {
     std::vector<float> before;
-    for (int j = 0; j < layout.rows; ++j) before.push_back(rows.lattice.x.at(0, j, 0));
+    for (int j = 0; j < layout.rows; ++j) before.push_back(rows.particles.x.at(0, j, 0));
     wavefront.run({double(frame) * 10, 0.125, layout.substeps[frame], 0.1}, threads, {}, &record);
     substeps += layout.substeps[frame];
     float greatest = 0;

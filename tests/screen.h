@@ -165,8 +165,12 @@ class Screen {
     if (viewer_ > 0) key("Escape");
     return finish();
   }
-  pid_t viewer() const { return viewer_; }
-  void send(int signal) const { EXPECT_EQ(::kill(viewer_, signal), 0); }
+  pid_t viewer() const {
+    return viewer_;
+  }
+  void send(int signal) const {
+    EXPECT_EQ(::kill(viewer_, signal), 0);
+  }
   // Waits for the viewer to end by itself.
   int finish() {
     int status = 0;

@@ -31,7 +31,7 @@ std::set<Pair> all_pairs(const std::vector<std::unique_ptr<ClothStep>>& cloths, 
   };
   std::vector<One> all;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
-    const physics::Lattice& l = cloths[c]->lattice();
+    const physics::Lattice& l = cloths[c]->model().lattice()->lattice;
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i)
         all.push_back({{int(c), j, i}, {l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)}});
@@ -65,13 +65,13 @@ void expect_all_pairs(const Scene& scene, double size, Simd simd) {
     thickness = std::max(thickness, scene.cloths[std::size_t(c)].self_collision.thickness);
     cloths.push_back(
         std::make_unique<ClothStep>(scene, c, Method::spring, 1, physics::kernel_table(simd)));
-    physics::Lattice& l = cloths.back()->lattice();
+    physics::Lattice& l = cloths.back()->model().lattice()->lattice;
     for (int j = 0; j < l.rows; ++j)
       for (int i = 0; i < l.columns; ++i)
         for (int k = 0; k < 3; ++k) l.x.at(k, j, i) = within(random) * (k == 1 ? 0.3f : 1.0f);
   }
   const auto self =
-      physics::SelfContact::make(scene, physics::parts_of(cloths), physics::kernel_table(simd));
+      physics::SelfContact::make(scene, physics::lattices_of(cloths), physics::kernel_table(simd));
   physics::Threads threads(2);
   self->search(0.01, threads);
   std::set<Pair> pairs;

@@ -28,7 +28,7 @@ struct Sheet {
     if (!shear) cloth.stiffness.shear = 0;
     lattice = std::make_unique<Lattice>(make_lattice(cloth, 0, 0, false));
     stencils = stencils_of(cloth);
-    tearing = std::make_unique<Tearing>(*lattice, stencils, false);
+    tearing = std::make_unique<LatticeTearing>(*lattice, stencils, false, Tears::split);
   }
   // Every constraint, and whether it is there.
   void each(const std::function<void(const Stencil&, Site, Site, bool)>& visit) const {
@@ -38,9 +38,10 @@ struct Sheet {
           visit(f, {a + f.near(), j}, {a + f.far(), j + f.dj}, f.alive(j, a));
   }
   void tear(const std::function<bool(Site, Site)>& torn) {
-    std::vector<Tearing::Torn> list;
-    each([&](const Stencil& f, Site a, Site b, bool) {
-      if (torn(a, b)) list.push_back({f.di, f.dj, a.second, a.first - f.near()});
+    std::vector<Joined> list;
+    each([&](const Stencil&, Site a, Site b, bool) {
+      if (torn(a, b))
+        list.push_back({lattice->number(a.second, a.first), lattice->number(b.second, b.first)});
     });
     tearing->set_torn(list);
   }
@@ -94,7 +95,7 @@ struct Sheet {
   Cloth cloth;
   std::unique_ptr<Lattice> lattice;
   std::vector<Stencil> stencils;
-  std::unique_ptr<Tearing> tearing;
+  std::unique_ptr<LatticeTearing> tearing;
 };
 
 // A tear that comes down on the right of (3,3) and goes on on its left.

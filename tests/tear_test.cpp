@@ -93,7 +93,8 @@ TEST(Tear, WhatIsTooLongTearsAtOnce) {
             const int a = j * view.stride + i, b = a + dj * view.stride + di;
             const double length =
                 std::hypot(view.x[a] - view.x[b], view.y[a] - view.y[b], view.z[a] - view.z[b]);
-            if (length > 1.1001 * std::hypot(di, dj) / 19) list.push_back({j * 20 + i, (j + dj) * 20 + i + di});
+            if (length > 1.1001 * std::hypot(di, dj) / 19)
+              list.push_back({j * 20 + i, (j + dj) * 20 + i + di});
           }
       return list;
     };

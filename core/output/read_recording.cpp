@@ -157,7 +157,8 @@ constexpr int kNewestVersion = 2;
 
 // Returns the version.
 int read_header(const Value& line, Recording& recording) {
-  const bool known = line.json->is_object() && text::member(*line.json, "weft_recording") != nullptr;
+  const bool known =
+      line.json->is_object() && text::member(*line.json, "weft_recording") != nullptr;
   const int version = known ? line.at("weft_recording").whole<int>() : 0;
   if (version < 1 || version > kNewestVersion)
     fail("", "this is no recording", "weft_recording 1 or " + std::to_string(kNewestVersion));

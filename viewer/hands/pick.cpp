@@ -54,8 +54,8 @@ class ClothPick {
     const auto stride = static_cast<std::size_t>(copy.stride);
     const std::size_t particle =
         nearest / stride * static_cast<std::size_t>(copy.columns) + nearest % stride;
-    best = ClothHit{cloth, static_cast<int>(particle),
-                    ray_.origin + ray_.direction * hit->distance, hit->distance};
+    best = ClothHit{cloth, static_cast<int>(particle), ray_.origin + ray_.direction * hit->distance,
+                    hit->distance};
   }
 
   std::optional<ClothHit> best;

@@ -11,7 +11,8 @@ float reach_of(const Cloth& cloth, const ClothCopy& copy, const Bounds& bodies, 
   float lowest = 1e30f;
   if (!cloth.pins.empty()) {
     float highest = -1e30f;
-    for (const Pin& pin : cloth.pins) highest = std::max(highest, copy.position(particle_number(cloth.grid, pin.i, pin.j)).y);
+    for (const Pin& pin : cloth.pins)
+      highest = std::max(highest, copy.position(particle_number(cloth.grid, pin.i, pin.j)).y);
     lowest = highest - 1.08f * side;
     held = true;
   } else if (!bodies.empty()) {

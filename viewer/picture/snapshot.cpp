@@ -86,7 +86,7 @@ Bounds cloth_bounds(const Snapshot& snapshot) {
     for (const auto& triangle : cloth.triangles)
       for (const std::uint32_t p : triangle) bounds.add(Vec3f{cloth.x[p], cloth.y[p], cloth.z[p]});
     for (int j = 0; j < cloth.rows && !cloth.torn; ++j)
-      for (int i = 0; i < cloth.columns; ++i) bounds.add(cloth.position(i, j));
+      for (int i = 0; i < cloth.columns; ++i) bounds.add(cloth.position(j * cloth.columns + i));
   }
   return bounds;
 }

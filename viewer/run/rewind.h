@@ -17,7 +17,9 @@ class Rewind {
   void keep(weft::Snapshot snapshot);
   // Forgets all states after the one that lies `back` before the newest.
   void cut(int back);
-  const weft::Snapshot& at(int back) const { return snapshots_[snapshots_.size() - 1 - std::size_t(back)]; }
+  const weft::Snapshot& at(int back) const {
+    return snapshots_[snapshots_.size() - 1 - std::size_t(back)];
+  }
   int size() const { return static_cast<int>(snapshots_.size()); }
   double seconds() const;  // from the oldest to the newest
 

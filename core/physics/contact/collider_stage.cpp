@@ -13,7 +13,7 @@ std::string detail_of(const Collider& c) {
 class ColliderStage final : public RowStage {
  public:
   ColliderStage(const ClothParts& parts, const Collider& collider, const StartInside& start)
-      : RowStage("collider", detail_of(collider), 0, parts.particles(), "particles"),
+      : RowStage("collider", detail_of(collider), 0, parts.particles.count(), "particles"),
         parts_(parts),
         collider_(parts, collider, start),
         far_(parts, collider_.fastest()),

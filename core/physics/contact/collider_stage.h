@@ -2,7 +2,7 @@
 #pragma once
 
 #include "physics/contact/moving_collider.h"
-#include "physics/model/lattice/tearing.h"
+#include "physics/model/lattice/stages.h"
 
 namespace weft::physics {
 
@@ -10,10 +10,11 @@ namespace weft::physics {
 std::unique_ptr<RowStage> make_collider(const ClothParts& parts, const Collider& collider,
                                         const StartInside& start);
 // Triangles against a collider; null where the mesh is fine enough for particles alone.
-std::unique_ptr<RowStage> make_collider_triangles(const ClothParts& parts, const Collider& collider,
+std::unique_ptr<RowStage> make_collider_triangles(const LatticeParts& parts,
+                                                  const Collider& collider,
                                                   const StartInside& start);
 // A collider that cuts.
-std::unique_ptr<RowStage> make_cut(const ClothParts& parts, const Collider& collider,
-                                   const StartInside& start, Tearing& tearing);
+std::unique_ptr<RowStage> make_cut(const LatticeParts& parts, const Collider& collider,
+                                   const StartInside& start);
 
 }  // namespace weft::physics

@@ -46,7 +46,7 @@ Touch first_touch(const Shape& shape, double offset, const Corners& end, int pla
 
 class ColliderTriangles final : public RowStage {
  public:
-  ColliderTriangles(const ClothParts& parts, const Collider& collider, const StartInside& start)
+  ColliderTriangles(const LatticeParts& parts, const Collider& collider, const StartInside& start)
       : RowStage("collider_faces", "triangles of the sheet against its small features", 1,
                  2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1),
                  "triangles"),
@@ -163,7 +163,7 @@ class ColliderTriangles final : public RowStage {
 
   std::size_t room() const { return 2 * std::size_t(parts_.lattice.stride) + 16; }
 
-  ClothParts parts_;
+  LatticeParts parts_;
   MovingCollider collider_;
   SpeculativeCulling far_;
   Upright upright_;
@@ -174,7 +174,8 @@ class ColliderTriangles final : public RowStage {
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_collider_triangles(const ClothParts& parts, const Collider& collider,
+std::unique_ptr<RowStage> make_collider_triangles(const LatticeParts& parts,
+                                                  const Collider& collider,
                                                   const StartInside& start) {
   if (!caught_by_triangles(parts.cloth, collider)) return nullptr;
   return std::make_unique<ColliderTriangles>(parts, collider, start);

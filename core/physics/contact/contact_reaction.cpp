@@ -52,29 +52,27 @@ Vec3 supported(const Collider& c, bool chords, const Vec3& p, const Nearest& sur
 
 }  // namespace
 
-void support(const Scene& scene, const Cloth& cloth, double time, const Lag& lag, const Lattice& l,
-             std::vector<Vec3>& a) {
+void support(const Scene& scene, const Cloth& cloth, double time, const Lag& lag,
+             const Particles& l, std::vector<Vec3>& a) {
   for (const Collider& c : scene.colliders) {
     if (c.cuts) continue;
     const Vec3 place = c.keys.empty() ? place_of(c.shape) : position_at(c.keys, time);
     const Vec3 u = c.keys.empty() ? Vec3{} : velocity_over(c.keys, time, lag.dt);
     const bool chords = c.friction.model == FrictionModel::coulomb && resolves(cloth, c);
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i) {
-        if (l.w(j, i) <= 0) continue;
-        const auto now = [&](const Rows& rows) {
-          return Vec3{rows.at(0, j, i), rows.at(1, j, i), rows.at(2, j, i)};
-        };
-        const Vec3 x = now(l.x), p = minus(x, place);
-        const Nearest surface = nearest_to(c.shape, p);
-        Vec3& own = a[std::size_t(j) * l.columns + i];
-        const double inward = -dot(own, surface.normal);
-        // A substep ends on the surface, or off a curved one by what it went into it before.
-        const double rounding =
-            kRounding * std::max({1.0, std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
-        if (inward > 0 && surface.distance < c.offset + rounding + inward * lag.dt * lag.dt)
-          own = supported(c, chords, p, surface, minus(now(l.v), u), own, lag);
+    l.for_each([&](int j, int i) {
+      if (l.w(j, i) <= 0) return;
+      const Vec3 x = l.position(j, i), p = minus(x, place);
+      const Nearest surface = nearest_to(c.shape, p);
+      Vec3& own = a[std::size_t(l.number(j, i))];
+      const double inward = -dot(own, surface.normal);
+      // A substep ends on the surface, or off a curved one by what it went into it before.
+      const double rounding =
+          kRounding * std::max({1.0, std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
+      if (inward > 0 && surface.distance < c.offset + rounding + inward * lag.dt * lag.dt) {
+        const Vec3 v{l.v.at(0, j, i), l.v.at(1, j, i), l.v.at(2, j, i)};
+        own = supported(c, chords, p, surface, minus(v, u), own, lag);
       }
+    });
   }
 }
 

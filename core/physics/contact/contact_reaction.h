@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "physics/model/lattice/lattice.h"
+#include "physics/model/particles.h"
 #include "weft/scene.h"
 
 namespace weft::physics {
@@ -20,6 +20,6 @@ struct Lag {
 // the mesh resolves; what goes along it is shortened by friction as if the particle moved that way
 // (Coulomb), or by the collider's share (course).
 void support(const Scene& scene, const Cloth& cloth, double time, const Lag& lag,
-             const Lattice& lattice, std::vector<Vec3>& a);
+             const Particles& particles, std::vector<Vec3>& a);
 
 }  // namespace weft::physics

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "physics/contact/collider_stage.h"
+#include "physics/model/lattice/tearing.h"
 
 namespace weft::physics {
 namespace {
@@ -10,14 +11,13 @@ namespace {
 // densely as the cutter is small.
 class CutStage final : public RowStage {
  public:
-  CutStage(const ClothParts& parts, const Collider& collider, const StartInside& start,
-           Tearing& tearing)
+  CutStage(const LatticeParts& parts, const Collider& collider, const StartInside& start)
       : RowStage("cut", "constraints in a cutter's way end", greatest_reach(parts),
                  parts.constraints(), "constraints"),
         parts_(parts),
         collider_(parts, collider, start),
         far_(parts, collider_.fastest()),
-        tearing_(tearing) {
+        tearing_(*parts.tearing) {
     for (const Stencil& f : parts.stencils) longest_ = std::max(longest_, f.rest);
   }
   double idle() const override { return far_.share(); }
@@ -80,19 +80,19 @@ class CutStage final : public RowStage {
     }
   }
 
-  ClothParts parts_;
+  LatticeParts parts_;
   MovingCollider collider_;
   SpeculativeCulling far_;
-  Tearing& tearing_;
+  LatticeTearing& tearing_;
   double longest_ = 0;  // m, of a constraint at rest
   AlignedArray<float> distances_;
 };
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_cut(const ClothParts& parts, const Collider& collider,
-                                   const StartInside& start, Tearing& tearing) {
-  return std::make_unique<CutStage>(parts, collider, start, tearing);
+std::unique_ptr<RowStage> make_cut(const LatticeParts& parts, const Collider& collider,
+                                   const StartInside& start) {
+  return std::make_unique<CutStage>(parts, collider, start);
 }
 
 }  // namespace weft::physics

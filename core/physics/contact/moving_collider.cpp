@@ -60,9 +60,9 @@ double MovingCollider::deepest() const {
 }
 
 CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s) const {
-  Lattice& l = parts.lattice;
+  Particles& l = parts.particles;
   CollideRow r = constants_;
-  r.columns = l.columns;
+  r.columns = l.count(j);
   r.x = l.x.row(j);
   r.v = l.v.row(j);
   r.w = l.w(j);
@@ -83,14 +83,12 @@ CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s)
 }
 
 SpeculativeCulling::SpeculativeCulling(const ClothParts& parts, double collider_speed)
-    : rows_(parts.lattice.rows), acceleration_(1), collider_speed_(collider_speed) {
+    : rows_(parts.particles.rows), acceleration_(1), collider_speed_(collider_speed) {
   constexpr double kStrain = 0.2;
   double heaviest = 0;
-  for (int j = 0; j < parts.lattice.rows; ++j)
-    for (int i = 0; i < parts.lattice.columns; ++i)
-      heaviest = std::max(heaviest, double(parts.lattice.w(j, i)));
-  for (const Stencil& f : parts.stencils)
-    acceleration_ += 2 * f.stiffness * f.rest * kStrain * heaviest;
+  parts.particles.for_each(
+      [&](int j, int i) { heaviest = std::max(heaviest, double(parts.particles.w(j, i))); });
+  acceleration_ += parts.model.pull().all * kStrain * heaviest;
   const Vec3& g = parts.scene.gravity;
   acceleration_ += 2 * std::sqrt(dot(g, g));
 }

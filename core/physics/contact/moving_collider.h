@@ -3,7 +3,7 @@
 #pragma once
 
 #include "physics/contact/colliders/shapes.h"
-#include "physics/model/lattice/stages.h"
+#include "physics/model/cloth_model.h"
 
 namespace weft::physics {
 

@@ -10,21 +10,21 @@
 namespace weft::physics {
 namespace {
 
-void find_triangles_inside(const Cloth& cloth, const Lattice& l, const Collider& collider,
-                           StartInside& found) {
-  if (collider.cuts || !caught_by_triangles(cloth, collider)) return;
-  const double edge = longest_edge(cloth.grid);
+void find_triangles_inside(const ClothParts& parts, const Collider& collider, StartInside& found) {
+  if (!caught_by_triangles(parts.cloth, collider)) return;
+  const Particles& l = parts.particles;
+  const double edge = longest_edge(parts.cloth.grid);
   const Upright upright(collider.shape);
   const Vec3 place = collider.keys.empty()
                          ? std::visit([](const auto& s) { return place_of(s); }, collider.shape)
                          : position_at(collider.keys, found.time);
-  const auto look = [&](const std::array<int, 3>& j, const std::array<int, 3>& i) {
+  for (const std::array<int, 3>& triangle : parts.model.surface().triangles) {
     Corners c{};
     bool moves = false;
     for (int k = 0; k < 3; ++k) {
-      c.x[k] = minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place);
-      c.x[k] = upright.into(c.x[k]);
-      moves |= l.w(j[k], i[k]) > 0;
+      const auto [j, i] = l.place(triangle[std::size_t(k)]);
+      c.x[k] = upright.into(minus(l.position(j, i), place));
+      moves |= l.w(j, i) > 0;
     }
     double longest = 0;
     for (int k = 0; k < 3; ++k) {
@@ -40,31 +40,25 @@ void find_triangles_inside(const Cloth& cloth, const Lattice& l, const Collider&
         upright.shape);
     found.deepest_triangle = std::max(found.deepest_triangle, depth);
     found.triangles += depth > kTouchingStart;
-  };
-  for (int j = 0; j + 1 < l.rows; ++j)
-    for (int i = 0; i + 1 < l.columns; ++i) {
-      look({j, j, j + 1}, {i, i + 1, i});
-      look({j, j + 1, j + 1}, {i + 1, i + 1, i});
-    }
+  }
   if (found.triangles == 0) found.deepest_triangle = 0;
 }
 
 }  // namespace
 
-StartInside start_inside(const Cloth& cloth, const Lattice& l, const Collider& collider,
-                         double time) {
+StartInside start_inside(const ClothParts& parts, const Collider& collider, double time) {
   StartInside found;
   found.time = time;
   if (collider.cuts) return found;
-  for (int j = 0; j < l.rows; ++j)
-    for (int i = 0; i < l.columns; ++i) {
-      const Vec3 x{l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)};
-      const double depth = l.w(j, i) > 0 ? collider.offset - signed_distance(collider, time, x) : 0;
-      found.deepest_particle = std::max(found.deepest_particle, depth);
-      found.particles += depth > kTouchingStart;
-    }
+  const Particles& l = parts.particles;
+  l.for_each([&](int j, int i) {
+    const double distance = signed_distance(collider, time, l.position(j, i));
+    const double depth = l.w(j, i) > 0 ? collider.offset - distance : 0;
+    found.deepest_particle = std::max(found.deepest_particle, depth);
+    found.particles += depth > kTouchingStart;
+  });
   if (found.particles == 0) found.deepest_particle = 0;
-  find_triangles_inside(cloth, l, collider, found);
+  find_triangles_inside(parts, collider, found);
   return found;
 }
 

@@ -9,7 +9,6 @@ namespace weft::physics {
 inline constexpr double kTouchingStart = 1e-4;
 
 // Particles, and triangles where those catch the collider, at a time [s].
-StartInside start_inside(const Cloth& cloth, const Lattice& lattice, const Collider& collider,
-                         double time);
+StartInside start_inside(const ClothParts& parts, const Collider& collider, double time);
 
 }  // namespace weft::physics

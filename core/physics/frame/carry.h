@@ -1,14 +1,15 @@
 // Stage "carry" (carry.cpp): in the plan only while a hand carries what is held.
 #pragma once
 
-#include "physics/model/lattice/stages.h"
+#include "physics/model/cloth_model.h"
 
 namespace weft::physics {
 
 class Carry final : public RowStage {
  public:
   explicit Carry(const ClothParts& parts)
-      : RowStage("carry", "held particles moved by a hand", 0, parts.particles(), "particles"),
+      : RowStage("carry", "held particles moved by a hand", 0, parts.particles.count(),
+                 "particles"),
         parts_(parts) {}
   // From `time` [s] on all that is held now moves at `velocity` [m/s].
   void begin(double time, const Vec3& velocity);
@@ -17,7 +18,7 @@ class Carry final : public RowStage {
 
  private:
   struct Held {
-    int column;
+    int lane;
     Vec3 start;  // m
   };
   ClothParts parts_;

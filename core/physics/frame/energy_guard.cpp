@@ -6,30 +6,24 @@
 #include <limits>
 
 #include "physics/contact/colliders/shapes.h"
-#include "physics/model/lattice/bending.h"
-#include "physics/model/lattice/energy.h"
 #include "physics/model/path.h"
 
 namespace weft::physics {
 namespace {
 
-using Cloths = std::vector<std::unique_ptr<ClothStep>>;
-
-constexpr double kRounding = 4e-7;   // of positions in single precision, of the scene's size
-constexpr double kHalfUnit = 6e-8;   // of their last place, likewise
 constexpr double kStillness = 0.01;  // m/s; motion that is never looked into
 constexpr double kDrivenSpeed = 10;  // m/s; what wind, paths and hands may give besides their own
 
-// Visits all free particles: row, column, mass.
+// Visits all free particles: row, lane, mass.
 template <class Visit>
-void for_each_free(const Lattice& l, Visit&& visit) {
-  for (int j = 0; j < l.rows; ++j)
-    for (int i = 0; i < l.columns; ++i)
-      if (const double w = l.w(j, i); w > 0) visit(j, i, 1 / w);
+void for_each_free(const Particles& p, Visit&& visit) {
+  p.for_each([&](int j, int i) {
+    if (const double w = p.w(j, i); w > 0) visit(j, i, 1 / w);
+  });
 }
 
 // Positions outside of the colliders, where these will have put what lies inside them.
-Rows pushed_out(const Scene& scene, double time, const Lattice& l) {
+Rows pushed_out(const Scene& scene, double time, const Particles& l) {
   Rows x(l.rows, l.stride);
   x.copy(l.x);
   for (const Collider& c : scene.colliders) {
@@ -49,82 +43,15 @@ Rows pushed_out(const Scene& scene, double time, const Lattice& l) {
   return x;
 }
 
-double greatest_coordinate(const ClothStep& step, const Rows& x) {
-  return std::max(1.0, double(x.greatest(step.parts().kernels)));
-}
-
-// What constraints hold as the method feels them, with what rounding of the positions puts in at once.
-double stretch_energy(const Scene& scene, Method method, const ClothStep& step, const Rows& x,
-                      double dt) {
-  constexpr float kInfinite = std::numeric_limits<float>::infinity();
-  const Lattice& l = step.lattice();
-  const Cloth& cloth = step.cloth();
-  const double projected = std::min(1.0, 2 * cloth.positional_k * scene.solver.iterations);
-  StretchRow r{};
-  r.slack = float(kRounding * greatest_coordinate(step, x));
-  r.share = is_explicit(method) ? kInfinite : method == Method::positional ? float(projected) : 1;
-  r.inverse_dt2 = float(1 / (dt * dt));
-  double sum = 0;
-  for (const Stencil& f : step.stencils()) {
-    r.rest = float(f.rest);
-    r.give = cloth.strain_limit > 0 ? float(cloth.strain_limit * f.rest) : kInfinite;
-    for (int j = 0; j + f.dj < l.rows; ++j) {
-      static_cast<FarRows&>(r) = far_rows(f, x, l.columns, j);
-      r.w_near = l.w(j) + f.near();
-      r.w_far = l.w(j + f.dj) + f.far();
-      r.stiffness = method == Method::positional
-                        ? kInfinite
-                        : float(f.stiffness * gradient_factor(cloth, j, f.dj));
-      sum += step.parts().kernels.stretch_energy(r);
-    }
-  }
-  return sum;
-}
-
-// Tethers take back at once what is farther from a pin than the sheet is long.
-double tether_energy(const ClothStep& step, const Rows& x, double dt) {
-  const Lattice& l = step.lattice();
-  const Grid& g = step.cloth().grid;
-  const Vec3 u = times(g.u, 1.0 / (g.nx - 1)), v = times(g.v, 1.0 / (g.ny - 1));
-  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v);
-  double sum = 0;
-  for (const Pin& pin : step.cloth().pins)
-    for_each_free(l, [&](int j, int i, double mass) {
-      const double a = i - pin.i, b = j - pin.j, rest = a * (uu * a + 2 * uv * b) + vv * b * b;
-      double squared = 0;
-      for (int k = 0; k < 3; ++k) {
-        const double e = double(x.at(k, j, i)) - x.at(k, pin.j, pin.i);
-        squared += e * e;
-      }
-      const double over = std::max(0.0, std::sqrt(squared) - std::sqrt(rest));
-      sum += 0.5 * mass * over * over / (dt * dt);
-    });
-  return sum;
-}
-
-double elastic(const Scene& scene, Method method, const ClothStep& step, const Rows& x, double dt) {
-  double sum = stretch_energy(scene, method, step, x, dt);
-  if (step.cloth().bending > 0) sum += bending_energy(step.cloth(), gather(step.lattice(), x));
-  return sum;
-}
-
-// What springs gain in a substep by positions that are rounded anew [J].
-double rounding_gain(const ClothStep& step) {
-  double stiffness = 0;
-  for (const Stencil& f : step.stencils())
-    for_each_constraint(step.cloth(), f, [&](int, int, double k) { stiffness += k; });
-  return stiffness * std::pow(kHalfUnit * greatest_coordinate(step, step.lattice().x), 2);
-}
-
 EnergySum motion(const Scene& scene, const ClothStep& step, const Rows& x, const Rows& v) {
-  const Lattice& l = step.lattice();
+  const Particles& l = step.particles();
   EnergySum sum;
   for (int j = 0; j < l.rows; ++j)
     sum += step.parts().kernels.energy_sum(energy_row(l, x.row(j), v.row(j), j, scene.gravity));
   return sum;
 }
 
-double free_mass(const Lattice& l) {
+double free_mass(const Particles& l) {
   double mass = 0;
   for_each_free(l, [&](int, int, double m) { mass += m; });
   return mass;
@@ -150,24 +77,24 @@ double fastest_drive(const Scene& scene, double from, double to) {
 
 }  // namespace
 
-bool gained(const Scene& scene, Method method, const ClothStep& step, const Rows& x, const Rows& v,
-            double dt, double start, double end) {
+bool gained(const Scene& scene, const ClothStep& step, const Rows& x, const Rows& v, double dt,
+            double start, double end) {
   constexpr double kMore = 2;
-  const Lattice& l = step.lattice();
+  const Particles& l = step.particles();
   const EnergySum before = motion(scene, step, x, v), now = motion(scene, step, l.x, l.v);
   double put_in = std::max(0.0, before.potential - now.potential);
   if (const double speed = kMore * fastest_drive(scene, start, end); speed > 0)
     put_in += 0.5 * free_mass(l) * speed * speed;
-  const double inner = now.kinetic + elastic(scene, method, step, l.x, dt);
+  const double inner = now.kinetic + step.model().held_energy(l.x, dt);
   // EnergySum alone accounts for most frames.
   if (inner <= kMore * before.kinetic + put_in) return false;
-  return inner > kMore * (before.kinetic + elastic(scene, method, step, x, dt)) + put_in;
+  return inner > kMore * (before.kinetic + step.model().held_energy(x, dt)) + put_in;
 }
 
-Balance balance(const Scene& scene, Method method, const ClothStep& step, double dt) {
-  const Lattice& l = step.lattice();
+Balance balance(const Scene& scene, const ClothStep& step, double dt) {
+  const Particles& l = step.particles();
   const EnergySum now = motion(scene, step, l.x, l.v);
-  return {now.kinetic + elastic(scene, method, step, l.x, dt), now.potential,
+  return {now.kinetic + step.model().held_energy(l.x, dt), now.potential,
           2 * step.cloth().drag * now.kinetic * scene.time.frame};
 }
 
@@ -193,14 +120,14 @@ void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, 
                        double dt) {
   *this = {};
   for (const auto& step : cloths) {
-    const Lattice& l = step->lattice();
+    const Particles& l = step->particles();
     free_mass_ += free_mass(l);
     const auto held = [&](const Rows& x) {
-      const double tethers = scene.solver.tethers ? tether_energy(*step, x, dt) : 0;
-      return elastic(scene, method, *step, x, dt) + tethers;
+      return step->model().held_energy(x, dt) + step->model().attachment_energy(x, dt);
     };
     put_in_ += std::max(held(l.x), held(pushed_out(scene, time, l)));
-    if (is_explicit(method)) rounding_ += rounding_gain(*step);  // projection loses what it gains
+    if (is_explicit(method))
+      rounding_ += step->model().rounding_gain();  // projection loses what it gains
   }
   look(scene, cloths, false);
   highest_ = potential_;
@@ -215,7 +142,8 @@ void EnergyGuard::drive(double speed) {
 
 void EnergyGuard::look(const Scene& scene, const Cloths& cloths, bool driven) {
   EnergySum all;
-  for (const auto& step : cloths) all += motion(scene, *step, step->lattice().x, step->lattice().v);
+  for (const auto& step : cloths)
+    all += motion(scene, *step, step->particles().x, step->particles().v);
   look(all, driven);
 }
 

@@ -4,8 +4,7 @@
 //   ½ Σ m v² <= kBound (elastic energy and motion of the start + what gravity has released)
 //
 // Stiff springs turn the rounding of positions into motion, substep by substep: that is allowed for.
-// A projected constraint counts as a spring of at most the inertia of its ends over dt², all that a
-// sweep makes of it, and of its positional share. The spring that a hand pulls with puts in what moving
+// A projected constraint counts as a spring of all that a sweep makes of it. The spring that a hand pulls with puts in what moving
 // its far end stores in it. Where something else does work (pins and bodies on paths or carried by a
 // hand, wind, contact of the sheet with itself), the motion may also come to kBound times that of a
 // sheet that is 10 m/s faster than what drives it. A run that keeps its energy stays near a quarter of
@@ -22,8 +21,8 @@ namespace weft::physics {
 // Whether the motion and elastic energy of a cloth, as the method feels it, is more than twice what it
 // was at `start` with positions x and velocities v, and besides more than what gravity, paths and wind
 // can have put in until `end`.
-bool gained(const Scene& scene, Method method, const ClothStep& step, const Rows& x, const Rows& v,
-            double dt, double start, double end);
+bool gained(const Scene& scene, const ClothStep& step, const Rows& x, const Rows& v, double dt,
+            double start, double end);
 
 // What a cloth holds at the end of a frame, as the method feels it, and what drag took of its motion in
 // it [J].
@@ -32,7 +31,7 @@ struct Balance {
   double potential = 0;  // of gravity
   double lost = 0;
 };
-Balance balance(const Scene& scene, Method method, const ClothStep& step, double dt);
+Balance balance(const Scene& scene, const ClothStep& step, double dt);
 
 // Whether paths or wind do work between two times.
 bool works(const Scene& scene, double from, double to);
@@ -56,14 +55,13 @@ class EnergyGuard {
   static constexpr double kBound = 4;
 
   // Counts what the state holds that a run begins with, or goes on from after it was set.
-  void open(const Scene& scene, Method method,
-            const std::vector<std::unique_ptr<ClothStep>>& cloths, double time, double dt);
+  void open(const Scene& scene, Method method, const Cloths& cloths, double time, double dt);
   // Something that a hand moves goes at so many m/s from now on.
   void drive(double speed);
   // So much more energy is there to move the sheets [J].
   void put_in(double energy) { put_in_ += energy; }
   // Looks at the end of a frame; `driven`: something but gravity did work in it.
-  void look(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths, bool driven);
+  void look(const Scene& scene, const Cloths& cloths, bool driven);
   // The same, by what has been summed over all cloths.
   void look(const EnergySum& all, bool driven);
   // Whether the motion last looked at is within the bound.

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "physics/frame/state.h"
-#include "physics/model/lattice/energy.h"
 
 namespace weft {
 
@@ -47,7 +46,7 @@ void Simulation::State::advance_frame() {
   calm();
   if (is_explicit(method) && !(sleeping && sleeping->all_asleep())) lag = dt / 2;
   for (auto& step : cloths)
-    if (step->tearing()) step->tearing()->update();
+    if (Tearing* tearing = step->model().tearing()) tearing->update();
   ++frame;
   total_substeps += substeps;
 
@@ -154,8 +153,7 @@ void Simulation::State::run_substeps(int first, int count) {
 }
 
 int Simulation::State::particles(std::size_t cloth) const {
-  const Lattice& l = cloths[cloth]->lattice();
-  return l.columns * l.rows;
+  return cloths[cloth]->particles().count();
 }
 
 // Whether cloths of such sizes, each going to the thread that is free first, keep threads busy for nearly
@@ -171,39 +169,51 @@ bool Simulation::State::keep_busy(const std::vector<std::size_t>& each) {
   return kBusy * double(longest) * threads.count() <= double(all);
 }
 
+namespace {
+
+// The first particle that is not finite, or too far away; none where all are well.
+std::optional<int> first_at_fault(const Particles& p) {
+  for (int n = 0; n < p.count(); ++n) {
+    const auto [j, i] = p.place(n);
+    for (int k = 0; k < 3; ++k)
+      if (!(std::abs(p.x.at(k, j, i)) < kFarAway) || !std::isfinite(p.v.at(k, j, i))) return n;
+  }
+  return std::nullopt;
+}
+
+// A particle as messages name it: [column, row] in a grid.
+std::string name_of(const Cloth& cloth, int particle) {
+  return "particle [" + std::to_string(particle % cloth.grid.nx) + "," +
+         std::to_string(particle / cloth.grid.nx) + "]";
+}
+
+}  // namespace
+
 // Runs the frame again, stage by stage, to the first that leaves a particle non-finite.
 void Simulation::State::find_fault() {
   restore();
   status.ok = false;
   status.frame = frame + 1;
-  status.stage = "step";
+  const std::string where = "not finite in frame " + std::to_string(status.frame);
   const Substeps all = substeps_from(0, substeps);
   for (std::size_t c = 0; c < cloths.size(); ++c) {
-    Lattice& l = cloths[c]->lattice();
-    for (int s = 0; s < substeps; ++s) {
-      const Substep substep = all.at(s);
+    const Particles& p = cloths[c]->particles();
+    for (int s = 0; s < substeps; ++s)
       for (const auto& stage : cloths[c]->stages()) {
-        stage->run_alone(l.rows, substep, threads);
-        for (int j = 0; j < l.rows && status.text == "ok"; ++j)
-          for (int i = 0; i < l.columns && status.text == "ok"; ++i)
-            for (int k = 0; k < 3; ++k)
-              if (!(std::abs(l.x.at(k, j, i)) < kFarAway) || !std::isfinite(l.v.at(k, j, i))) {
-                status.stage = stage->name;
-                status.cloth = int(c);
-                status.particle = j * l.columns + i;
-                status.text = "not finite in frame " + std::to_string(status.frame) + ", substep " +
-                              std::to_string(s + 1) + ", stage " + stage->name + ", cloth " +
-                              std::to_string(c) + ", particle [" + std::to_string(i) + "," +
-                              std::to_string(j) + "]";
-                break;
-              }
-        if (status.text != "ok") return;
+        stage->run_alone(p.rows, all.at(s), threads);
+        const std::optional<int> fault = first_at_fault(p);
+        if (!fault) continue;
+        status.stage = stage->name;
+        status.cloth = int(c);
+        status.particle = *fault;
+        status.text = where + ", substep " + std::to_string(s + 1) + ", stage " + stage->name +
+                      ", cloth " + std::to_string(c) + ", " + name_of(cloths[c]->cloth(), *fault);
+        return;
       }
-    }
   }
   // Every stage stays finite by itself: what runs between them does not.
   status.stage = self_collision ? "self_collision" : "step";
-  status.text = "not finite in frame " + std::to_string(status.frame) + ", stage " + status.stage;
+  status.text = where + ", stage " + status.stage;
 }
 
 }  // namespace weft

@@ -8,20 +8,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/model/push.h"
+
 namespace weft::physics {
 
 constexpr double kStiffer = 4;  // than the cloth's links, at most
 
 double Grab::held_stiffness() const {
-  double stiffest = 0;
-  for (const Stencil& f : parts_.stencils) stiffest = std::max(stiffest, f.stiffness);
+  const double stiffest = parts_.model.pull().stiffness;
   return stiffest > 0 ? std::min(stiffness, kStiffer * stiffest) : stiffness;
 }
 
 double Grab::energy() const {
   double square = 0;
   for (int k = 0; k < 3; ++k) {
-    const double e = target[k] - parts_.lattice.x.at(k, row, column);
+    const double e = target[k] - parts_.particles.x.at(k, place.j, place.i);
     square += e * e;
   }
   return 0.5 * held_stiffness() * square;
@@ -32,27 +33,25 @@ Velocities Grab::velocities(double dt) const {
 }
 
 void Grab::run(int j, const Substep& s) {
-  if (j != row) return;
-  Lattice& l = parts_.lattice;
+  if (j != place.j) return;
+  Particles& p = parts_.particles;
   const Push pushed = push_of(parts_, s.dt);
-  const double w = l.w(row, column), dt = pushed.dt;
+  const double w = p.w(j, place.i), dt = pushed.dt;
   if (w <= 0) return;
-  double strongest = 0;  // N
-  for (const Stencil& f : parts_.stencils)
-    strongest = std::max(strongest, 2 * f.stiffness * f.rest);
+  const double strongest = parts_.model.pull().force;
   const double k_held = held_stiffness();
   const double c = 2 * std::sqrt(k_held / w);
   const double share = dt * w / (1 + dt * dt * w * k_held + dt * w * c);
   double gains[3], square = 0;
   for (int k = 0; k < 3; ++k) {
-    const double x = l.x.at(k, row, column), v = l.v.at(k, row, column);
+    const double x = p.x.at(k, j, place.i), v = p.v.at(k, j, place.i);
     gains[k] = share * (k_held * (target[k] - x - dt * v) - c * v);
     square += gains[k] * gains[k];
   }
   const double most = strongest > 0 ? dt * w * strongest : 1e300;
   const double cut = std::min(1.0, most / std::max(std::sqrt(square), 1e-300));
   for (int k = 0; k < 3; ++k) {
-    float &x = l.x.at(k, row, column), &v = l.v.at(k, row, column);
+    float &x = p.x.at(k, j, place.i), &v = p.v.at(k, j, place.i);
     const double gained = cut * gains[k];
     if (pushed.velocities) v = float(v + gained);
     x = float(x + dt * gained);

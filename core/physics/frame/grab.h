@@ -1,7 +1,7 @@
 // Stage "grab" (grab.cpp): in the plan only while something is held.
 #pragma once
 
-#include "physics/model/lattice/stages.h"
+#include "physics/model/cloth_model.h"
 
 namespace weft::physics {
 
@@ -13,7 +13,9 @@ class Grab final : public RowStage {
   Velocities velocities(double dt) const override;
   void run(int j, const Substep& s) override;
 
-  int column = 0, row = 0;
+  bool holds(const Particles::Place& p) const { return p.j == place.j && p.i == place.i; }
+
+  Particles::Place place{0, 0};  // of the particle
   Vec3 target{};
   double stiffness = 0;  // N/m
 

@@ -46,8 +46,7 @@ void Simulation::State::plan_changed() {
   take_substeps(substeps);
 }
 
-void Simulation::State::grab(int cloth, int particle, const Vec3& target,
-                             double stiffness) {
+void Simulation::State::grab(int cloth, int particle, const Vec3& target, double stiffness) {
   ClothStep& step = step_with(cloth, particle);
   if (!(stiffness >= 0) ||
       !std::all_of(target.begin(), target.end(), [](double t) { return std::isfinite(t); }))
@@ -61,10 +60,9 @@ void Simulation::State::grab(int cloth, int particle, const Vec3& target,
     plan_changed();
   }
   touch(cloth);
-  const int row = particle / step.lattice().columns, column = particle % step.lattice().columns;
-  const double stored = grab_->column == column && grab_->row == row ? grab_->energy() : 0;
-  grab_->column = column;
-  grab_->row = row;
+  const Particles::Place place = step.particles().place(particle);
+  const double stored = grab_->holds(place) ? grab_->energy() : 0;
+  grab_->place = place;
   grab_->target = minus(target, origin);
   grab_->stiffness = stiffness;
   guard_.put_in(std::max(0.0, grab_->energy() - stored));
@@ -99,26 +97,27 @@ void Simulation::State::carry(int cloth, const Vec3& velocity) {
   if (!stage || !rests) return;
   step.remove_stage(stage);
   stage = nullptr;
-  Lattice& l = step.lattice();
-  for (int j = 0; j < l.rows; ++j)
-    for (int i = 0; i < l.columns; ++i)
-      for (int k = 0; k < 3; ++k)
-        if (l.w(j, i) == 0) l.v.at(k, j, i) = 0;
+  Particles& p = step.particles();
+  p.for_each([&](int j, int i) {
+    for (int k = 0; k < 3; ++k)
+      if (p.w(j, i) == 0) p.v.at(k, j, i) = 0;
+  });
   plan_changed();
 }
 
 void Simulation::State::hold(int cloth, int particle, bool held) {
   ClothStep& step = step_with(cloth, particle);
-  Lattice& l = step.lattice();
-  const int i = particle % l.columns, j = particle / l.columns;
+  Particles& p = step.particles();
+  const auto [j, i] = p.place(particle);
   touch(cloth);
-  l.set_inverse_mass(j, i, held ? 0 : float(1 / particle_mass(step.cloth(), i, j)));
+  p.set_inverse_mass(j, i, held ? 0 : float(1 / step.model().mass(particle)));
   if (held)
-    for (int k = 0; k < 3; ++k) l.v.at(k, j, i) = 0;
+    for (int k = 0; k < 3; ++k) p.v.at(k, j, i) = 0;
   if (sleeping) sleeping->keep_masses(cloth);
-  for (const auto& stage : step.stages()) stage->restart();
+  step.restart();
   // One particle more that can move raises the largest frequency, if at all.
-  if (!held && is_explicit(method)) spectra[std::size_t(cloth)] = spectrum_of(std::size_t(cloth));
+  const auto c = std::size_t(cloth);
+  if (!held && is_explicit(method)) spectra[c] = step.model().spectrum(masses(c).span());
   open_guard();
   ++changes;
 }
@@ -150,59 +149,22 @@ void Simulation::State::set_path(std::size_t collider, std::vector<Key> keys) {
 // Whatever lies inside a collider now is moved out as gently as at a start.
 void Simulation::State::meet(std::size_t collider) {
   for (auto& step : cloths)
-    step->meet(collider, start_inside(step->cloth(), step->lattice(), scene.colliders[collider],
+    step->meet(collider, start_inside(step->parts(), scene.colliders[collider],
                                       double(frame) * scene.time.frame));
 }
-
-namespace {
-
-// Least squared distance between segments p + s d and q + t e, 0 <= s, t <= 1 (Ericson 5.1.9).
-double segment_distance(const Vec3& p, const Vec3& d, const Vec3& q, const Vec3& e) {
-  const Vec3 r = minus(p, q);
-  const double a = dot(d, d), b = dot(d, e), c = dot(d, r), f = dot(e, r);
-  const double h = std::max(dot(e, e), 1e-300), denominator = a * h - b * b;
-  double s = denominator > 1e-12 * a * h ? std::clamp((b * f - c * h) / denominator, 0.0, 1.0) : 0;
-  double t = (b * s + f) / h;
-  if (t < 0 || t > 1) {
-    t = std::clamp(t, 0.0, 1.0);
-    s = std::clamp((b * t - c) / std::max(a, 1e-300), 0.0, 1.0);
-  }
-  const Vec3 apart = minus(plus(p, times(d, s)), plus(q, times(e, t)));
-  return std::sqrt(dot(apart, apart));
-}
-
-}  // namespace
 
 int Simulation::State::cut(const Vec3& begin, const Vec3& end, double width) {
   const Vec3 a = minus(begin, origin), d = minus(end, begin);
   std::int64_t cut = 0;
   for (auto& step : cloths) {
-    const Lattice& l = step->lattice();
-    const auto at = [&](int j, int i) {
-      return Vec3{l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)};
-    };
-    std::vector<std::array<int, 3>> found;  // stencil, row, constraint
-    for (std::size_t n = 0; n < step->stencils().size(); ++n) {
-      const Stencil& f = step->stencils()[n];
-      for (int j = 0; j + f.dj < l.rows; ++j)
-        for (int k = 0; k < f.per_row(l.columns); ++k) {
-          const Vec3 from = at(j, k + f.near());
-          if (f.alive(j, k) &&
-              segment_distance(a, d, from, minus(at(j + f.dj, k + f.far()), from)) <= width)
-            found.push_back({int(n), j, k});
-        }
-    }
+    const std::vector<Joined> found = step->model().constraints_near(a, d, width);
     if (found.empty()) continue;
     touch();
-    if (!step->tearing()) {
+    if (!step->model().tearing()) {
       step->allow_tearing();
       plan_changed();
     }
-    const std::int64_t before = step->tearing()->torn();
-    for (const auto& [n, j, k] : found)
-      step->tearing()->end(step->stencils()[std::size_t(n)], j, k);
-    step->tearing()->update();
-    cut += step->tearing()->torn() - before;
+    cut += step->model().tearing()->end_all(found);
   }
   if (cut > 0) ++changes;
   return int(cut);

@@ -8,8 +8,7 @@
 
 #include "physics/contact/colliders/shapes.h"
 #include "physics/contact/self/crossings.h"
-#include "physics/model/lattice/bending.h"
-#include "physics/model/lattice/energy.h"
+#include "physics/model/vector.h"
 #include "weft/shape.h"
 
 namespace weft::physics {
@@ -17,18 +16,16 @@ namespace {
 
 void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   const ClothStep& step = *s.cloths[index];
-  const Lattice& l = step.lattice();
+  const Particles& particles = step.particles();
   const AlignedArray<float>& masses = s.masses(index);
-  const std::vector<Vec3> x = gather(l, l.x);
+  const std::vector<Vec3> x = particles.gather(particles.x);
   // A strain limit takes back much of what springs alone would add in the half substep to now.
   const std::vector<Vec3> v =
-      step.cloth().strain_limit > 0 ? gather(l, l.v) : velocities_now(s, index);
-  r.energy.elastic += elastic_energy(step.cloth(), step.stencils(), x) +
-                      bending_energy(step.cloth(), x, step.bend_links());
+      step.cloth().strain_limit > 0 ? particles.gather(particles.v) : velocities_now(s, index);
+  r.energy.elastic += step.model().elastic_energy();
   for (std::size_t p = 0; p < x.size(); ++p) {
-    const int i = int(p) % l.columns, j = int(p) / l.columns;
-    if (masses[std::size_t(j) * l.stride + i] == 0) continue;
-    const double m = particle_mass(step.cloth(), i, j);
+    if (masses[particles.lane(int(p))] == 0) continue;
+    const double m = step.model().mass(int(p));
     const Vec3 a = plus(x[p], s.origin);
     const Vec3& b = v[p];
     for (int k = 0; k < 3; ++k) {
@@ -42,18 +39,15 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
 }
 
 void add_constraints(const ClothStep& step, Report& r) {
-  for (const Stencil& f : step.stencils()) {
-    const std::int64_t n =
-        std::int64_t(f.per_row(step.lattice().columns)) * (step.lattice().rows - f.dj);
-    (f.kind == Kind::structural ? r.constraints.structural
-     : f.kind == Kind::shear    ? r.constraints.shear
-                                : r.constraints.bend) += n;
-  }
+  const ConstraintCounts counts = step.model().constraints();
+  r.constraints.structural += counts.structural;
+  r.constraints.shear += counts.shear;
+  r.constraints.bend += counts.bend;
 }
 
 void add_penetration(const Simulation::State& s, const ClothStep& step, Report& r) {
   const double time = double(s.frame) * s.scene.time.frame;
-  for (const Vec3& x : gather(step.lattice(), step.lattice().x))
+  for (const Vec3& x : step.particles().gather(step.particles().x))
     for (const Collider& c : s.scene.colliders)
       if (!c.cuts)
         r.penetration.collider_max =
@@ -65,17 +59,12 @@ void add_strain(const Simulation::State& s, Report& r) {
   double sum = 0, count = 0, largest = 0;
   bool any = false;
   for (const auto& step : s.cloths) {
-    std::int64_t n = 0;
-    for (const Stencil& f : step->stencils())
-      if (f.kind == Kind::structural)
-        n += std::int64_t(f.per_row(step->lattice().columns)) * (step->lattice().rows - f.dj);
-    if (n == 0) continue;
-    const Strain strain = structural_strain(step->cloth(), step->stencils(),
-                                            gather(step->lattice(), step->lattice().x));
+    const Strain strain = step->model().strain();
+    if (strain.constraints == 0) continue;
     largest = any ? std::max(largest, strain.max) : strain.max;
     any = true;
-    sum += strain.mean * double(n);
-    count += double(n);
+    sum += strain.mean * double(strain.constraints);
+    count += double(strain.constraints);
   }
   r.strain.max = largest;
   r.strain.mean = count > 0 ? sum / count : 0;
@@ -84,12 +73,12 @@ void add_strain(const Simulation::State& s, Report& r) {
 void add_self_contact(const Simulation::State& s, Report& r) {
   std::vector<Vec3> x;
   std::vector<Face> faces;
-  for (const auto& step : s.cloths) add_surface(step->parts(), x, faces);
+  for (const LatticeParts* lattice : lattices_of(s.cloths)) add_surface(*lattice, x, faces);
   r.penetration.crossings = count_crossings(x, faces);
   if (!s.self_collision) return;
   // By a search of its own: the one that runs must not notice.
   const SelfContact::Overlaps overlaps =
-      SelfContact::make(s.scene, parts_of(s.cloths), kernel_table(s.simd))->overlaps();
+      SelfContact::make(s.scene, lattices_of(s.cloths), kernel_table(s.simd))->overlaps();
   r.penetration.self_pairs = overlaps.pairs;
   r.penetration.self_max = overlaps.deepest;
 }
@@ -183,7 +172,7 @@ void add_stages(const Simulation::State& s, Report& r) {
 
 std::vector<Vec3> velocities_now(const Simulation::State& s, std::size_t index) {
   const ClothStep& step = *s.cloths[index];
-  std::vector<Vec3> v = gather(step.lattice(), step.lattice().v);
+  std::vector<Vec3> v = step.particles().gather(step.particles().v);
   if (!is_explicit(s.method)) return v;
   std::vector<Vec3> a;
   s.accelerations_now(index, s.lag, a);
@@ -199,10 +188,10 @@ std::uint64_t state_hash(const Simulation::State& s) {
     for (int b = 0; b < 4; ++b) hash = (hash ^ (bits >> (8 * b) & 0xff)) * 0x100000001b3u;
   };
   for (const auto& step : s.cloths) {
-    const Lattice& l = step->lattice();
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i)
-        for (int k = 0; k < 3; ++k) add(l.x.at(k, j, i));
+    const Particles& p = step->particles();
+    p.for_each([&](int j, int i) {
+      for (int k = 0; k < 3; ++k) add(p.x.at(k, j, i));
+    });
   }
   return hash;
 }
@@ -227,10 +216,10 @@ Report measure(const Simulation::State& s, bool contacts) {
   r.finite = s.status.ok;
   for (std::size_t c = 0; c < s.cloths.size(); ++c) {
     const ClothStep& step = *s.cloths[c];
-    r.particles += std::int64_t(step.lattice().columns) * step.lattice().rows;
+    r.particles += step.particles().count();
     add_constraints(step, r);
     add_energy(s, c, r);
-    if (step.tearing()) r.torn += step.tearing()->torn();
+    if (const Tearing* tearing = step.model().tearing()) r.torn += tearing->torn();
     if (contacts) add_penetration(s, step, r);
   }
   r.energy.total = r.energy.kinetic + r.energy.elastic + r.energy.gravity;

@@ -7,8 +7,6 @@
 #include <xmmintrin.h>
 #endif
 
-#include "physics/model/lattice/energy.h"
-
 namespace weft::physics {
 namespace {
 
@@ -37,30 +35,31 @@ void copy(ConstRow3 from, Row3 to, int lanes, bool past_caches) {
 
 }  // namespace
 
-RollbackBuffer::RollbackBuffer(Lattice& lattice, const Vec3& gravity, const KernelTable& kernels)
-    : lattice_(lattice),
+RollbackBuffer::RollbackBuffer(Particles& particles, const Vec3& gravity,
+                               const KernelTable& kernels)
+    : particles_(particles),
       gravity_(gravity),
       kernels_(kernels),
-      x_(lattice.rows, lattice.stride),
-      v_(lattice.rows, lattice.stride),
-      seen_(std::size_t(lattice.rows)) {}
+      x_(particles.rows, particles.stride),
+      v_(particles.rows, particles.stride),
+      seen_(std::size_t(particles.rows)) {}
 
 void RollbackBuffer::before(RowSpan rows) {
-  const int lanes = (rows.end - rows.begin) * lattice_.stride;
+  const int lanes = (rows.end - rows.begin) * particles_.stride;
   const bool past_caches = x_.bytes() + v_.bytes() > kPastCaches;
-  copy(lattice_.x.row(rows.begin), x_.row(rows.begin), lanes, past_caches);
-  copy(lattice_.v.row(rows.begin), v_.row(rows.begin), lanes, past_caches);
+  copy(particles_.x.row(rows.begin), x_.row(rows.begin), lanes, past_caches);
+  copy(particles_.v.row(rows.begin), v_.row(rows.begin), lanes, past_caches);
 }
 
 void RollbackBuffer::after(RowSpan rows) {
   for (int j = rows.begin; j < rows.end; ++j)
     seen_[std::size_t(j)] = kernels_.energy_sum(
-        energy_row(lattice_, lattice_.x.row(j), lattice_.v.row(j), j, gravity_));
+        energy_row(particles_, particles_.x.row(j), particles_.v.row(j), j, gravity_));
 }
 
 void RollbackBuffer::restore() {
-  lattice_.x.copy(x_);
-  lattice_.v.copy(v_);
+  particles_.x.copy(x_);
+  particles_.v.copy(v_);
 }
 
 EnergySum RollbackBuffer::energy_sum() const {

@@ -6,21 +6,21 @@
 #include <cstddef>
 #include <vector>
 
-#include "physics/model/lattice/lattice.h"
+#include "physics/model/particles.h"
 #include "physics/step/stage.h"
 
 namespace weft::physics {
 
 class RollbackBuffer final : public RowObserver {
  public:
-  // Lattice and kernels outlive the record. `gravity` [m/s²].
-  RollbackBuffer(Lattice& lattice, const Vec3& gravity, const KernelTable& kernels);
+  // Particles and kernels outlive the record. `gravity` [m/s²].
+  RollbackBuffer(Particles& particles, const Vec3& gravity, const KernelTable& kernels);
 
   // Keeps rows as they are at the frame's start; measures them at its end.
   void before(RowSpan rows) override;
   void after(RowSpan rows) override;
-  void keep() { before({0, lattice_.rows}); }
-  void measure() { after({0, lattice_.rows}); }
+  void keep() { before({0, particles_.rows}); }
+  void measure() { after({0, particles_.rows}); }
   // Puts all rows back to how they were kept.
   void restore();
 
@@ -32,7 +32,7 @@ class RollbackBuffer final : public RowObserver {
   std::size_t bytes() const { return x_.bytes() + v_.bytes() + seen_.size() * sizeof(EnergySum); }
 
  private:
-  Lattice& lattice_;
+  Particles& particles_;
   const Vec3 gravity_;
   const KernelTable& kernels_;
   Rows x_, v_;

@@ -9,8 +9,6 @@
 #include "physics/frame/measure.h"
 #include "physics/frame/origin.h"
 #include "physics/frame/state.h"
-#include "physics/model/lattice/energy.h"
-#include "physics/model/lattice/stability.h"
 
 namespace weft {
 
@@ -87,9 +85,9 @@ View Simulation::view() const {
   view.origin = state_->origin;
   for (std::size_t n = 0; n < state_->cloths.size(); ++n) {
     const auto& step = state_->cloths[n];
-    const Lattice& l = step->lattice();
+    const Particles& l = step->particles();
     ClothView c;
-    c.columns = l.columns;
+    c.columns = l.count(0);
     c.rows = l.rows;
     c.stride = l.stride;
     c.x = l.x.component(0);
@@ -99,15 +97,14 @@ View Simulation::view() const {
     c.vy = l.v.component(1);
     c.vz = l.v.component(2);
     c.inverse_mass = state_->masses(n).span();
-    if (const Tearing* t = step->tearing()) {
+    if (Tearing* t = step->model().tearing()) {
+      const TornSurface torn = t->surface();
       c.topology_version = t->version();
-      c.triangles = t->triangles();
       c.torn = t->torn() > 0;
-      if (const TearBoundary* s = step->tear_boundary()) {
-        c.tear_points = s->points();
-        c.tear_particles = s->particles();
-        c.tear_triangles = s->triangles();
-      }
+      c.triangles = torn.whole;
+      c.tear_points = torn.points;
+      c.tear_particles = torn.owners;
+      c.tear_triangles = torn.boundary;
     }
     view.cloths.push_back(c);
   }
@@ -117,7 +114,7 @@ View Simulation::view() const {
 std::vector<double> Simulation::positions() const {
   std::vector<double> all;
   for (const auto& step : state_->cloths)
-    for (const Vec3& x : gather(step->lattice(), step->lattice().x))
+    for (const Vec3& x : step->particles().gather(step->particles().x))
       for (int k = 0; k < 3; ++k) all.push_back(x[k] + state_->origin[k]);
   return all;
 }
@@ -168,7 +165,7 @@ double Simulation::bytes_per_particle() const {
   std::size_t bytes = 0, particles = 0;
   for (const auto& step : state_->cloths) {
     bytes += step->bytes();
-    particles += std::size_t(step->lattice().columns) * step->lattice().rows;
+    particles += std::size_t(step->particles().count());
   }
   if (state_->sleeping) bytes += state_->sleeping->bytes();
   return double(bytes + state_->record_bytes()) / double(particles);

@@ -30,16 +30,14 @@ double distance_of(const Spread& a, const Spread& b) {
 
 }  // namespace
 
-std::unique_ptr<Sleeping> Sleeping::make(const Scene& scene,
-                                         const std::vector<std::unique_ptr<ClothStep>>& cloths,
+std::unique_ptr<Sleeping> Sleeping::make(const Scene& scene, const Cloths& cloths,
                                          const KernelTable& kernels) {
   const bool gusts = scene.wind.turbulence > 0 && (scene.wind.drag > 0 || scene.wind.lift > 0);
   if (scene.solver.sleep == 0 || gusts) return nullptr;
   return std::unique_ptr<Sleeping>(new Sleeping(scene, cloths, kernels));
 }
 
-Sleeping::Sleeping(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths,
-                   const KernelTable& kernels)
+Sleeping::Sleeping(const Scene& scene, const Cloths& cloths, const KernelTable& kernels)
     : scene_(scene),
       kernels_(kernels),
       frames_to_sleep_(std::max(2, int(std::ceil(kQuietSeconds / scene.time.frame)))) {
@@ -48,12 +46,11 @@ Sleeping::Sleeping(const Scene& scene, const std::vector<std::unique_ptr<ClothSt
       contact_ = std::max(contact_, 2 * c.self_collision.thickness);
   for (const auto& step : cloths) {
     Resting& r = cloths_.emplace_back();
-    const Lattice& l = step->lattice();
+    const Particles& l = step->particles();
     r.step = step.get();
     r.masses = AlignedArray<float>(l.inverse_mass.size());
     std::copy_n(l.inverse_mass.data(), l.inverse_mass.size(), r.masses.data());
-    for (const Stencil& f : step->stencils()) r.reach = std::max(r.reach, f.dj);
-    r.reach = std::max(r.reach, 2);  // of bending, wind and faces
+    r.reach = std::max(step->reach(), 2);
     for (const Pin& pin : step->cloth().pins)
       if (!pin.keys.empty()) r.moving.push_back(&pin);
     const int height = sleeps_in_blocks(scene, *step) ? kBlockRows : l.rows;
@@ -65,7 +62,7 @@ Sleeping::Sleeping(const Scene& scene, const std::vector<std::unique_ptr<ClothSt
 }
 
 bool Sleeping::is_quiet(const Resting& cloth, const Block& block, const Rows& before) const {
-  const Lattice& l = cloth.step->lattice();
+  const Particles& l = cloth.step->particles();
   const double way = scene_.solver.sleep * scene_.time.frame;
   const auto limit = float(way * way);
   const auto square = [&](int axis, std::size_t p) {
@@ -74,7 +71,7 @@ bool Sleeping::is_quiet(const Resting& cloth, const Block& block, const Rows& be
   };
   for (int j = block.rows.begin; j < block.rows.end; ++j) {
     bool quiet = true;
-    const std::size_t first = std::size_t(j) * l.stride, last = first + l.columns;
+    const std::size_t first = std::size_t(j) * l.stride, last = first + l.count(j);
     for (std::size_t p = first; p < last; ++p)
       quiet &= square(0, p) + square(1, p) + square(2, p) < limit;
     if (!quiet) return false;
@@ -91,10 +88,12 @@ void Sleeping::look(Resting& cloth, Block& block, const Rows& before) const {
   block.quiet = is_quiet(cloth, block, before);
   block.quiet_frames = block.quiet ? std::min(block.quiet_frames + 1, frames_to_sleep_) : 0;
   if (contact_ == 0 && !(block.quiet_frames == frames_to_sleep_)) return;
-  Lattice& l = cloth.step->lattice();
+  Particles& l = cloth.step->particles();
   BlockBounds bounds{};
   BlockRows rows{};
-  rows.columns = l.columns;
+  // Padding of shorter rows lies at zero: it makes a box larger, never smaller.
+  for (int j = block.rows.begin; j < block.rows.end; ++j)
+    rows.columns = std::max(rows.columns, l.count(j));
   rows.rows = block.rows.end - block.rows.begin;
   rows.stride = l.stride;
   rows.x = l.x.row(block.rows.begin);
@@ -153,18 +152,17 @@ bool Sleeping::pulled(const Resting& cloth, const Block& block, double time) con
 }
 
 void Sleeping::set_asleep(Resting& cloth, Block& block, bool asleep) {
-  Lattice& l = cloth.step->lattice();
+  Particles& l = cloth.step->particles();
   block.asleep = asleep;
   block.quiet_frames = 0;
   for (int j = block.rows.begin; j < block.rows.end; ++j) {
     const float* mass = cloth.masses.data() + std::size_t(j) * l.stride;
-    for (int i = 0; i < l.columns; ++i) l.w(j)[i] = asleep ? 0 : mass[i];
+    for (int i = 0; i < l.count(j); ++i) l.w(j)[i] = asleep ? 0 : mass[i];
     l.weigh_row(j);
-    if (asleep) zero(l.v.row(j), l.columns);
+    if (asleep) zero(l.v.row(j), l.count(j));
   }
   // What stages remember of the substep before is long past.
-  if (!asleep && cloth.blocks.size() == 1)
-    for (const auto& stage : cloth.step->stages()) stage->restart();
+  if (!asleep && cloth.blocks.size() == 1) cloth.step->restart();
 }
 
 // Awake rows, and those before them whose stages reach into them.
@@ -218,7 +216,7 @@ void Sleeping::wake(int index) {
 
 void Sleeping::keep_masses(int index) {
   Resting& cloth = cloths_[std::size_t(index)];
-  const AlignedArray<float>& now = cloth.step->lattice().inverse_mass;
+  const AlignedArray<float>& now = cloth.step->particles().inverse_mass;
   std::copy_n(now.data(), now.size(), cloth.masses.data());
 }
 
@@ -232,7 +230,8 @@ std::int64_t Sleeping::asleep() const {
   for (const Resting& cloth : cloths_)
     for (const Block& b : cloth.blocks)
       if (b.asleep)
-        particles += std::int64_t(b.rows.end - b.rows.begin) * cloth.step->lattice().columns;
+        particles += cloth.step->particles().first[std::size_t(b.rows.end)] -
+                     cloth.step->particles().first[std::size_t(b.rows.begin)];
   return particles;
 }
 

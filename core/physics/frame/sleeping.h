@@ -21,8 +21,7 @@ namespace weft::physics {
 class Sleeping {
  public:
   // Null when nothing of the scene may rest: `sleep` is 0, or there are gusts.
-  static std::unique_ptr<Sleeping> make(const Scene& scene,
-                                        const std::vector<std::unique_ptr<ClothStep>>& cloths,
+  static std::unique_ptr<Sleeping> make(const Scene& scene, const Cloths& cloths,
                                         const KernelTable& kernels);
 
   // Wakes what a collider or a pin reaches in the frame from `time` on.
@@ -65,8 +64,7 @@ class Sleeping {
     int reach = 0;  // rows, of the stages
   };
 
-  Sleeping(const Scene& scene, const std::vector<std::unique_ptr<ClothStep>>& cloths,
-           const KernelTable& kernels);
+  Sleeping(const Scene& scene, const Cloths& cloths, const KernelTable& kernels);
   void look(Resting& cloth, Block& block, const Rows& before) const;
   bool is_quiet(const Resting& cloth, const Block& block, const Rows& before) const;
   void decide();

@@ -4,7 +4,6 @@
 
 #include "physics/frame/measure.h"
 #include "physics/frame/state.h"
-#include "physics/model/lattice/energy.h"
 
 // A snapshot comes from a caller: every number in it is looked at before anything changes.
 
@@ -27,19 +26,18 @@ Snapshot Simulation::State::snapshot() const {
   m.time = double(frame) * scene.time.frame;
   m.origin = origin;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
-    const Lattice& l = cloths[n]->lattice();
-    Snapshot::ClothState c{l.columns, {}, {}, {}, {}, {}};
-    c.positions.reserve(3 * std::size_t(l.columns) * l.rows);
+    const Particles& p = cloths[n]->particles();
+    Snapshot::ClothState c;
+    c.columns = scene.cloths[n].grid.nx;
+    c.positions.reserve(3 * std::size_t(p.count()));
     c.velocities.reserve(c.positions.capacity());
     for (const Vec3& v : velocities_now(*this, n))
       for (const double component : v) c.velocities.push_back(float(component));
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i) {
-        for (int k = 0; k < 3; ++k) c.positions.push_back(l.x.at(k, j, i));
-        if (masses(n)[std::size_t(j) * l.stride + i] == 0) c.held.push_back(j * l.columns + i);
-      }
-    if (const Tearing* tearing = cloths[n]->tearing())
-      for (const Tearing::Torn& t : tearing->torn_list()) c.torn.push_back({t.a, t.b});
+    p.for_each([&](int j, int i) {
+      for (int k = 0; k < 3; ++k) c.positions.push_back(p.x.at(k, j, i));
+      if (masses(n)[std::size_t(j) * p.stride + i] == 0) c.held.push_back(p.number(j, i));
+    });
+    if (const Tearing* tearing = cloths[n]->model().tearing()) c.torn = tearing->torn_list();
     for (const StartInside& start : cloths[n]->starts())
       c.inside.push_back({start.time, start.deepest_particle, start.deepest_triangle});
     m.cloths.push_back(std::move(c));
@@ -63,9 +61,9 @@ bool all_finite(const Numbers& numbers) {
 }
 
 void check_cloth(const Snapshot::ClothState& c, const ClothStep& step, std::size_t colliders) {
-  const Lattice& l = step.lattice();
-  const std::size_t values = 3 * std::size_t(l.columns) * l.rows;
-  require(c.columns == l.columns && c.positions.size() == values &&
+  const int particles = step.particles().count();
+  const std::size_t values = 3 * std::size_t(particles);
+  require(c.columns == step.cloth().grid.nx && c.positions.size() == values &&
               c.velocities.size() == values && c.inside.size() == colliders,
           "is of another scene");
   require(all_finite(c.positions) && all_finite(c.velocities),
@@ -73,7 +71,6 @@ void check_cloth(const Snapshot::ClothState& c, const ClothStep& step, std::size
   require(std::all_of(c.positions.begin(), c.positions.end(),
                       [](float x) { return std::abs(x) < kFarAway; }),
           "holds a position more than 1e7 m away");
-  const int particles = l.columns * l.rows;
   const auto is_there = [&](int particle) { return particle >= 0 && particle < particles; };
   for (const int particle : c.held)
     require(is_there(particle), "holds the particle " + std::to_string(particle) +
@@ -118,19 +115,14 @@ void Simulation::State::restore(const Snapshot& m) {
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     const Snapshot::ClothState& c = m.cloths[n];
     ClothStep& step = *cloths[n];
-    Lattice& l = step.lattice();
+    Particles& p = step.particles();
     wake(int(n));
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i) l.w(j)[i] = float(1 / particle_mass(step.cloth(), i, j));
-    for (const int p : c.held) l.w(p / l.columns)[p % l.columns] = 0;
-    for (int j = 0; j < l.rows; ++j) l.weigh_row(j);
+    p.for_each([&](int j, int i) { p.w(j)[i] = float(1 / step.model().mass(p.number(j, i))); });
+    for (const int held : c.held) p.inverse_mass[p.lane(held)] = 0;
+    for (int j = 0; j < p.rows; ++j) p.weigh_row(j);
     if (sleeping) sleeping->keep_masses(int(n));
     if (!c.torn.empty()) step.allow_tearing();
-    if (step.tearing()) {
-      std::vector<Tearing::Torn> torn;
-      for (const auto& [a, b] : c.torn) torn.push_back({a, b});
-      step.tearing()->set_torn(torn);
-    }
+    if (Tearing* tearing = step.model().tearing()) tearing->set_torn(c.torn);
     positions.insert(positions.end(), c.positions.begin(), c.positions.end());
     velocities.insert(velocities.end(), c.velocities.begin(), c.velocities.end());
   }
@@ -150,7 +142,7 @@ void Simulation::State::restore(const Snapshot& m) {
   go_on_as(began_as_, began_with_);
   lag = is_explicit(method) ? dt / 2 : 0;
   for (std::size_t n = 0; is_explicit(method) && n < cloths.size(); ++n)
-    spectra[n] = spectrum_of(n);
+    spectra[n] = cloths[n]->model().spectrum(masses(n).span());
   status = Status{};
   make_self_contact();
   plan_changed();
@@ -163,9 +155,8 @@ namespace {
 // hand held or let go stays so.
 void change_pins(const Cloth& before, const Cloth& after, Snapshot::ClothState& cloth) {
   const auto pinned = [](const Cloth& c, int particle) {
-    return std::any_of(c.pins.begin(), c.pins.end(), [&](const Pin& p) {
-      return particle_number(c.grid, p.i, p.j) == particle;
-    });
+    return std::any_of(c.pins.begin(), c.pins.end(),
+                       [&](const Pin& p) { return particle_number(c.grid, p.i, p.j) == particle; });
   };
   std::erase_if(cloth.held, [&](int at) { return pinned(before, at) && !pinned(after, at); });
   for (const Pin& p : after.pins) {

@@ -9,7 +9,7 @@
 #include "physics/contact/contact_reaction.h"
 #include "physics/contact/start_inside.h"
 #include "physics/model/clamp_to_int.h"
-#include "physics/model/lattice/energy.h"
+#include "physics/model/lattice/stability.h"
 #include "physics/model/path.h"
 
 namespace weft {
@@ -77,14 +77,16 @@ FarPins far_pins(const Cloth& cloth, double distance) {
 
 }  // namespace
 
-Simulation::State::State(Scene given, const Options& given_options, const Vec3& about)
+Simulation::State::State(Scene given, const Options& given_options, const Vec3& about,
+                         MakeModel make)
     : scene(std::move(given)),
       origin(about),
       options(given_options),
       simd(resolve(options.simd)),
       threads(options.threads),
       one_thread(1),
-      method(scene.solver.method) {
+      method(scene.solver.method),
+      make_model_(make) {
   const std::string changed = steady_jacobi(scene);
   if (origin != Vec3{}) {
     placed = scene;
@@ -115,10 +117,10 @@ void Simulation::State::build_cloths() {
   apart_.reserve(scene.cloths.size());
   busy_.reserve(std::size_t(threads.count()));
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    cloths.push_back(
-        std::make_unique<ClothStep>(scene, int(c), method, options.seed, kernel_table(simd)));
+    cloths.push_back(std::make_unique<ClothStep>(scene, int(c), method, options.seed,
+                                                 kernel_table(simd), make_model_));
     carried_.push_back(nullptr);
-    records_.emplace_back(cloths.back()->lattice(), scene.gravity, kernel_table(simd));
+    records_.emplace_back(cloths.back()->particles(), scene.gravity, kernel_table(simd));
     stage_ns.emplace_back(cloths.back()->stages().size());
     if (options.profile) cloths.back()->schedule().profile(stage_ns.back());
   }
@@ -128,7 +130,7 @@ void Simulation::State::build_cloths() {
 
 // Contact that remembers nothing.
 void Simulation::State::make_self_contact() {
-  const std::vector<const ClothParts*> parts = parts_of(cloths);
+  const std::vector<const LatticeParts*> parts = lattices_of(cloths);
   self_collision = SelfContact::make(scene, parts, kernel_table(simd));
   surface = self_collision
                 ? SurfaceContact::make(scene, self_collision->sheets(), kernel_table(simd))
@@ -215,9 +217,8 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
 void Simulation::State::accelerations_now(std::size_t cloth, double behind,
                                           std::vector<Vec3>& a) const {
   const ClothStep& step = *cloths[cloth];
-  accelerations(scene, step.cloth(), step.stencils(), step.lattice(), step.bend_links(),
-                method == Method::spring_friction, a);
-  support(scene, step.cloth(), double(frame) * scene.time.frame, {dt, behind}, step.lattice(), a);
+  step.model().accelerations(a);
+  support(scene, step.cloth(), double(frame) * scene.time.frame, {dt, behind}, step.particles(), a);
 }
 
 // v <- v - a lag: velocities of explicit springs are taken to where they lie behind the positions.
@@ -226,24 +227,23 @@ void Simulation::State::accelerations_now(std::size_t cloth, double behind,
 void Simulation::State::stagger(const double* now) {
   std::vector<Vec3> a;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
-    Lattice& l = cloths[n]->lattice();
+    Particles& p = cloths[n]->particles();
     accelerations_now(n, 0, a);
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i)
-        for (int c = 0; c < 3; ++c) {
-          float& v = l.v.at(c, j, i);
-          const double start = now && l.w(j, i) > 0 ? *now : v;
-          v = float(start - a[std::size_t(j) * l.columns + i][c] * lag);
-          if (now) ++now;
-        }
+    p.for_each([&](int j, int i) {
+      for (int c = 0; c < 3; ++c) {
+        float& v = p.v.at(c, j, i);
+        const double start = now && p.w(j, i) > 0 ? *now : v;
+        v = float(start - a[std::size_t(p.number(j, i))][c] * lag);
+        if (now) ++now;
+      }
+    });
   }
 }
 
 void Simulation::State::set(std::span<const double> positions, const Vec3& from,
                             std::span<const double> velocities) {
   std::size_t particles = 0;
-  for (const auto& step : cloths)
-    particles += std::size_t(step->lattice().columns) * step->lattice().rows;
+  for (const auto& step : cloths) particles += std::size_t(step->particles().count());
   if (positions.size() != 3 * particles || velocities.size() != 3 * particles)
     throw std::invalid_argument("a state needs " + std::to_string(3 * particles) +
                                 " positions and as many velocities");
@@ -258,13 +258,13 @@ void Simulation::State::set(std::span<const double> positions, const Vec3& from,
   std::size_t p = 0;
   wake();
   for (auto& step : cloths) {
-    Lattice& l = step->lattice();
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i, ++p)
-        for (int c = 0; c < 3; ++c) {
-          l.x.at(c, j, i) = coordinate(positions[3 * p + c] - off[c]);
-          l.v.at(c, j, i) = l.w(j, i) > 0 ? float(velocities[3 * p + c]) : 0;
-        }
+    Particles& l = step->particles();
+    l.for_each([&](int j, int i) {
+      for (int c = 0; c < 3; ++c, ++p) {
+        l.x.at(c, j, i) = coordinate(positions[p] - off[c]);
+        l.v.at(c, j, i) = l.w(j, i) > 0 ? float(velocities[p]) : 0;
+      }
+    });
   }
   restart_stages();
   if (untangle) untangle->look();
@@ -279,8 +279,7 @@ void Simulation::State::set(std::span<const double> positions, const Vec3& from,
 
 // Positions or velocities are others than the stages left.
 void Simulation::State::restart_stages() {
-  for (auto& step : cloths)
-    for (const auto& stage : step->stages()) stage->restart();
+  for (auto& step : cloths) step->restart();
   if (self_collision) self_collision->restart();
   if (surface) surface->restart();
   since_collision_ = 0;
@@ -300,7 +299,7 @@ void Simulation::State::save() {
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
     if (self_collision) records_[c].keep();
-    if (Tearing* tearing = cloths[c]->tearing()) tearing->remember();
+    if (Tearing* tearing = cloths[c]->model().tearing()) tearing->remember();
   }
 }
 
@@ -308,7 +307,7 @@ void Simulation::State::restore() {
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
     records_[c].restore();
-    if (Tearing* tearing = cloths[c]->tearing()) tearing->go_back();
+    if (Tearing* tearing = cloths[c]->model().tearing()) tearing->go_back();
   }
   take_substeps(saved_substeps_);
   lag = saved_lag_;

@@ -15,7 +15,6 @@
 #include "physics/frame/grab.h"
 #include "physics/frame/rollback_buffer.h"
 #include "physics/frame/sleeping.h"
-#include "physics/model/lattice/stability.h"
 #include "physics/step/threads.h"
 #include "weft/simulation.h"
 
@@ -32,7 +31,9 @@ inline std::string number(double v) {
 }
 
 struct Simulation::State {
-  State(Scene given, const Options& given_options, const Vec3& about);
+  // `about`: what positions are counted from; `make`: makes the model of each cloth.
+  State(Scene given, const Options& given_options, const Vec3& about,
+        physics::MakeModel make = physics::make_model);
 
   void advance_frame();
   void grab(int cloth, int particle, const Vec3& target, double stiffness);
@@ -64,14 +65,14 @@ struct Simulation::State {
   physics::Threads threads;
   physics::Threads one_thread;  // for a cloth that one thread runs, whichever
   Method method;                // the scene's, or the stable one put in its place
-  std::vector<std::unique_ptr<physics::ClothStep>> cloths;
+  physics::Cloths cloths;
   std::unique_ptr<physics::SelfContact> self_collision;  // over all cloths; null when all are off
   std::unique_ptr<physics::SurfaceContact> surface;      // the same; null unless one asks for it
   std::unique_ptr<physics::Untangle> untangle;           // null when self_collision is
   std::unique_ptr<physics::Sleeping> sleeping;           // null when nothing may sleep
   // Inverse masses of a cloth, of sleeping particles too.
   const physics::AlignedArray<float>& masses(std::size_t cloth) const {
-    return sleeping ? sleeping->masses(cloth) : cloths[cloth]->lattice().inverse_mass;
+    return sleeping ? sleeping->masses(cloth) : cloths[cloth]->particles().inverse_mass;
   }
   Plan plan;
   Status status;
@@ -89,6 +90,7 @@ struct Simulation::State {
   std::int64_t self_collision_ns = 0, self_collision_runs = 0;
 
  private:
+  const physics::MakeModel make_model_;
   std::vector<physics::RollbackBuffer> records_;  // of each cloth
   std::vector<std::size_t> apart_;                // cloths that take a thread each
   std::vector<std::int64_t> busy_;                // of each thread, with so many particles
@@ -115,7 +117,6 @@ struct Simulation::State {
   double since_hand_ = kCalm;  // s, at most kCalm
   bool failed_by_hand_ = false, failed_by_itself_ = false;
 
-  physics::Spectrum spectrum_of(std::size_t cloth) const;
   void choose_method_and_substeps();
   void note_starts(std::vector<std::string>& notes) const;
   void build_cloths();

@@ -21,43 +21,11 @@ constexpr double kLeastSubstep = 1e-6;  // s; below, single precision loses spee
 constexpr int kFinest = 16;             // times the substeps that are due, to save a frame
 constexpr double kGrabbed = 0.6;  // of stretched_limit's t, room for what a hand may do in a frame
 
-// Without shear springs (or with nothing else) a sheet folds onto a line that stretches nothing, where
-// all its springs pull the same way: up to twice the flat sheet's ω², and no stretch adds to that.
+// What folds onto a line that stretches nothing has up to twice the flat sheet's ω², and no stretch adds
+// to that (a sheet without shear springs, or with nothing else).
 constexpr double kFolded = 2;
-bool folds_freely(const ClothStep& step) {
-  const auto has = [&](Kind kind) {
-    return std::any_of(step.stencils().begin(), step.stencils().end(),
-                       [&](const Stencil& f) { return f.kind == kind; });
-  };
-  return !has(Kind::structural) || !has(Kind::shear);
-}
-
-// Greatest squared length of a structural constraint, of its rest; every fourth row is looked at.
-float greatest_stretch(const ClothStep& step, const Rows& x) {
-  const Lattice& l = step.lattice();
-  float most = 0;
-  for (const Stencil& f : step.stencils()) {
-    if (f.kind != Kind::structural) continue;
-    for (int j = 0; j + f.dj < l.rows; j += 4) {
-      const float longest = step.parts().kernels.greatest_square(far_rows(f, x, l.columns, j));
-      most = std::max(most, longest / float(f.rest * f.rest));
-    }
-  }
-  return most;
-}
 
 }  // namespace
-
-// Of the sheet as it starts, with the masses that it has now; what becomes of it by stretching is
-// reckoned with apart (stretched_limit()).
-Spectrum Simulation::State::spectrum_of(std::size_t cloth) const {
-  const ClothStep& step = *cloths[cloth];
-  Lattice start = make_lattice(step.cloth(), int(cloth), options.seed, false);
-  const std::span<const float> now = masses(cloth).span();
-  std::copy(now.begin(), now.end(), start.inverse_mass.data());
-  return estimate_spectrum(step.cloth(), step.stencils(), start, method == Method::spring_friction,
-                           kernel_table(simd));
-}
 
 // Explicit springs: the substep from the stability limit, or the user's if it is inside; beyond it,
 // the compliant method in their place, which is stable at any substep.
@@ -75,10 +43,10 @@ void Simulation::State::choose_method_and_substeps() {
     limit = std::numeric_limits<double>::infinity();
     double safe = limit;  // for automatic substeps
     for (std::size_t c = 0; c < cloths.size(); ++c) {
-      spectra.push_back(spectrum_of(c));
+      spectra.push_back(cloths[c]->model().spectrum(masses(c).span()));
       limit = std::min(limit, spectra.back().largest_substep());
       Spectrum folded = spectra.back();
-      if (folds_freely(*cloths[c])) folded.omega_squared *= kFolded;
+      if (cloths[c]->model().folds_freely()) folded.omega_squared *= kFolded;
       safe = std::min(safe, folded.largest_substep());
     }
     const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
@@ -208,11 +176,11 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
   if (method == as && scene.solver == solver) return;
   if (is_explicit(method) && !is_explicit(as))
     for (std::size_t c = 0; c < cloths.size(); ++c) {
-      Lattice& l = cloths[c]->lattice();
+      Particles& p = cloths[c]->particles();
       const std::vector<Vec3> v = velocities_now(*this, c);
-      for (int j = 0; j < l.rows; ++j)
-        for (int i = 0; i < l.columns; ++i)
-          for (int k = 0; k < 3; ++k) l.v.at(k, j, i) = float(v[std::size_t(j) * l.columns + i][k]);
+      p.for_each([&](int j, int i) {
+        for (int k = 0; k < 3; ++k) p.v.at(k, j, i) = float(v[std::size_t(p.number(j, i))][k]);
+      });
     }
   method = as;
   lag = is_explicit(as) ? dt / 2 : 0;
@@ -239,15 +207,13 @@ bool Simulation::State::overshot() const {
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     if (asleep(c)) continue;
     const ClothStep& step = *cloths[c];
-    const Lattice& l = step.lattice();
-    const float most = greatest_stretch(step, l.x);
+    const float most = step.model().greatest_stretch(step.particles().x);
     if (!(most > kNoticed)) continue;
-    const float at_start = greatest_stretch(step, records_[c].x());
+    const float at_start = step.model().greatest_stretch(records_[c].x());
     const bool doubled = most - 1 > 2 * (at_start - 1);
     if (most <= at_start || !(most > kStretched || doubled)) continue;
     const double start = double(frame) * scene.time.frame;
-    if (gained(scene, method, step, records_[c].x(), records_[c].v(), dt, start,
-               start + scene.time.frame))
+    if (gained(scene, step, records_[c].x(), records_[c].v(), dt, start, start + scene.time.frame))
       return true;
   }
   return false;
@@ -261,9 +227,9 @@ bool Simulation::State::keeps_on() {
   if (nothing_else_acts() && !works(scene, start, start + scene.time.frame))
     for (std::size_t c = 0; c < cloths.size(); ++c)
       stretched |= cloths[c]->cloth().drag > 0 && !asleep(c) &&
-                   greatest_stretch(*cloths[c], cloths[c]->lattice().x) > kLasting;
+                   cloths[c]->model().greatest_stretch(cloths[c]->particles().x) > kLasting;
   for (std::size_t c = 0; c < cloths.size() && stretched; ++c) {
-    const Balance one = balance(scene, method, *cloths[c], dt);
+    const Balance one = balance(scene, *cloths[c], dt);
     all.inner += one.inner;
     all.potential += one.potential;
     all.lost += one.lost;
@@ -278,8 +244,8 @@ void Simulation::State::calm() {
   if (sleeping && sleeping->all_asleep()) return;
   if (!guard_.holds()) {
     for (auto& step : cloths) {
-      step->lattice().v.scale(float(guard_.reduction()));
-      for (const auto& stage : step->stages()) stage->restart();  // what they keep of the motion
+      step->particles().v.scale(float(guard_.reduction()));
+      step->restart();  // what stages keep of the motion
     }
     fall_back("frame " + std::to_string(frame + 1) +
               " gained energy from nowhere; velocities were reduced to what is left without it");
@@ -318,12 +284,12 @@ double Simulation::State::stretched_limit() const {
   double limit = std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const ClothStep& step = *cloths[c];
-    const float most = greatest_stretch(step, step.lattice().x);
+    const float most = step.model().greatest_stretch(step.particles().x);
     double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
     if (grab_) t = std::max(t, kGrabbed);
     // Springs in all directions: never more than twice the flat sheet's ω² for the stencils here.
     Spectrum stretched = spectra[c];
-    stretched.omega_squared *= folds_freely(step) ? kFolded : 1 + t;
+    stretched.omega_squared *= step.model().folds_freely() ? kFolded : 1 + t;
     limit = std::min(limit, stretched.largest_substep());
   }
   return limit;

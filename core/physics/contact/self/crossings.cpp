@@ -90,10 +90,10 @@ void add_faces(int columns, int rows, std::int32_t first, std::vector<Face>& fac
     }
 }
 
-void add_surface(const ClothParts& cloth, std::vector<Vec3>& x, std::vector<Face>& faces) {
+void add_surface(const LatticeParts& cloth, std::vector<Vec3>& x, std::vector<Face>& faces) {
   const Lattice& l = cloth.lattice;
   const auto first = std::int32_t(x.size());
-  const Tearing* const tearing = cloth.tearing;
+  const LatticeTearing* const tearing = cloth.tearing;
   if (tearing && tearing->version() > 0)
     for (const auto& t : tearing->triangles()) {
       Face f;
@@ -103,7 +103,7 @@ void add_surface(const ClothParts& cloth, std::vector<Vec3>& x, std::vector<Face
     }
   else
     add_faces(l.columns, l.rows, first, faces);
-  const std::vector<Vec3> of_cloth = gather(l, l.x);
+  const std::vector<Vec3> of_cloth = l.gather(l.x);
   x.insert(x.end(), of_cloth.begin(), of_cloth.end());
 }
 

@@ -10,7 +10,7 @@
 
 namespace weft::physics {
 
-struct ClothParts;
+struct LatticeParts;
 
 using Face = std::array<std::int32_t, 3>;
 using Edge = std::array<std::int32_t, 2>;  // the lower number first
@@ -30,6 +30,6 @@ std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>
 // The two triangles of every square of a sheet, corners numbered from `first` on, row by row.
 void add_faces(int columns, int rows, std::int32_t first, std::vector<Face>& faces);
 // The particles of a cloth as they are now, and its triangles, as torn as it is.
-void add_surface(const ClothParts& cloth, std::vector<Vec3>& x, std::vector<Face>& faces);
+void add_surface(const LatticeParts& cloth, std::vector<Vec3>& x, std::vector<Face>& faces);
 
 }  // namespace weft::physics

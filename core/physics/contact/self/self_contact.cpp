@@ -48,7 +48,7 @@ std::vector<NamedSheet> named(const std::vector<Sheet>& sheets) {
 SelfContact::~SelfContact() = default;
 
 std::unique_ptr<SelfContact> SelfContact::make(const Scene& scene,
-                                               const std::vector<const ClothParts*>& cloths,
+                                               const std::vector<const LatticeParts*>& cloths,
                                                const KernelTable& kernels) {
   std::vector<Sheet> sheets;
   for (std::size_t c = 0; c < cloths.size(); ++c) {

@@ -35,7 +35,7 @@ class SelfContact {
  public:
   // Null when no cloth asks for it.
   static std::unique_ptr<SelfContact> make(const Scene& scene,
-                                           const std::vector<const ClothParts*>& cloths,
+                                           const std::vector<const LatticeParts*>& cloths,
                                            const KernelTable& kernels);
   ~SelfContact();
 

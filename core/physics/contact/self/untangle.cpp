@@ -7,8 +7,8 @@
 #include <map>
 #include <numeric>
 
-#include "physics/model/lattice/stages.h"
 #include "physics/contact/colliders/shapes.h"
+#include "physics/model/lattice/stages.h"
 
 namespace weft::physics {
 namespace {
@@ -81,7 +81,7 @@ bool on_one_side(const Grid& a, const Grid& b) {
 
 }  // namespace
 
-Untangle::Untangle(const Scene& scene, const std::vector<const ClothParts*>& cloths) {
+Untangle::Untangle(const Scene& scene, const std::vector<const LatticeParts*>& cloths) {
   std::size_t count = 0;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const SelfCollision& self = scene.cloths[c].self_collision;

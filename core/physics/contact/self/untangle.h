@@ -24,7 +24,7 @@ namespace weft::physics {
 class Untangle {
  public:
   // Over the cloths that take part in self-collision, which live as long.
-  Untangle(const Scene& scene, const std::vector<const ClothParts*>& cloths);
+  Untangle(const Scene& scene, const std::vector<const LatticeParts*>& cloths);
 
   // Edges that pass through triangles now.
   std::size_t crossings();
@@ -44,7 +44,7 @@ class Untangle {
 
  private:
   struct Sheet {
-    const ClothParts* cloth;
+    const LatticeParts* cloth;
     double thickness;   // m
     double area;        // m², of a particle
     std::size_t first;  // number of its first particle

@@ -35,7 +35,7 @@ double squared_distance(const Grid& g, const Place& p, int i, int j) {
 }
 
 // The nearest pin of one quadrant for every particle, handed on from neighbour to neighbour.
-std::vector<Place> nearest(const ClothParts& parts, int side_i, int side_j) {
+std::vector<Place> nearest(const LatticeParts& parts, int side_i, int side_j) {
   const Lattice& l = parts.lattice;
   std::vector<Place> best(std::size_t(l.columns) * l.rows);
   for (const Pin& pin : parts.cloth.pins)
@@ -61,7 +61,7 @@ std::vector<Place> nearest(const ClothParts& parts, int side_i, int side_j) {
 
 class Tethers final : public RowStage {
  public:
-  Tethers(const ClothParts& parts, bool compliant, std::vector<std::vector<Place>> slots,
+  Tethers(const LatticeParts& parts, bool compliant, std::vector<std::vector<Place>> slots,
           std::int64_t count)
       : RowStage("tethers", "to at most " + std::to_string(slots.size()) + " pins each", 0, count,
                  "tethers"),
@@ -169,7 +169,7 @@ class Tethers final : public RowStage {
     }
   }
 
-  ClothParts parts_;
+  LatticeParts parts_;
   bool compliant_;  // velocities gain the corrections as computed
   std::vector<Slot> slots_;
   std::vector<const std::vector<Key>*> keys_;  // of every particle, null where it has no path
@@ -177,7 +177,7 @@ class Tethers final : public RowStage {
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_attachments(const ClothParts& parts, bool compliant) {
+std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts, bool compliant) {
   const Lattice& l = parts.lattice;
   if (parts.cloth.pins.empty()) return nullptr;
   // Slot s of a particle holds its s-th tether, so that few pins fill few slots.

@@ -22,14 +22,15 @@ std::int64_t terms(const Lattice& l) {
 }
 
 // Which terms are left from lane `at` on; null: all.
-const float* left(const ClothParts& parts, AlignedArray<float> BendLinks::*terms, std::size_t at) {
+const float* left(const LatticeParts& parts, AlignedArray<float> BendLinks::*terms,
+                  std::size_t at) {
   const BendLinks* links = parts.tearing ? parts.tearing->bend_links() : nullptr;
   return links ? (links->*terms).data() + at : nullptr;
 }
 
 class BendingForce final : public RowStage {
  public:
-  explicit BendingForce(const ClothParts& parts)
+  explicit BendingForce(const LatticeParts& parts)
       : RowStage("bending", "curvature energy as a force", 2, terms(parts.lattice), "constraints"),
         parts_(parts) {
     const BendingStiffness k = bending_stiffness(parts.cloth);
@@ -58,13 +59,13 @@ class BendingForce final : public RowStage {
   }
 
  private:
-  ClothParts parts_;
+  LatticeParts parts_;
   BendStiffness stiffness_;
 };
 
 class BendingConstraints final : public WholeStage {
  public:
-  BendingConstraints(const ClothParts& parts, bool compliant)
+  BendingConstraints(const LatticeParts& parts, bool compliant)
       : WholeStage("bending", "curvature energy, rows and columns each solved as a whole, twist",
                    terms(parts.lattice), "constraints"),
         parts_(parts),
@@ -167,7 +168,7 @@ class BendingConstraints final : public WholeStage {
       });
   }
 
-  ClothParts parts_;
+  LatticeParts parts_;
   LineBatches batches_;
   TurnedLinks<float> torn_;  // of the rows
   bool compliant_;           // velocities gain the corrections as computed
@@ -176,7 +177,7 @@ class BendingConstraints final : public WholeStage {
 
 }  // namespace
 
-std::unique_ptr<Stage> make_bending(const ClothParts& parts, Method method) {
+std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Method method) {
   if (parts.cloth.bending == 0) return nullptr;
   if (method == Method::spring || method == Method::spring_friction)
     return std::make_unique<BendingForce>(parts);

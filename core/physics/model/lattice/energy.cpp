@@ -5,16 +5,10 @@
 #include <cmath>
 
 #include "physics/model/lattice/bending.h"
+#include "physics/model/vector.h"
 
 namespace weft::physics {
 namespace {
-
-Vec3 minus(const Vec3& a, const Vec3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // The force of a spring along e, and its damping against dv, on both of its ends.
 void add_spring(const Stencil& f, double k, const Vec3& e, const Vec3& dv, Vec3& near, Vec3& far) {
@@ -29,15 +23,6 @@ void add_spring(const Stencil& f, double k, const Vec3& e, const Vec3& dv, Vec3&
 }
 
 }  // namespace
-
-std::vector<Vec3> gather(const Lattice& l, const Rows& rows) {
-  std::vector<Vec3> all;
-  all.reserve(std::size_t(l.columns) * l.rows);
-  for (int j = 0; j < l.rows; ++j)
-    for (int i = 0; i < l.columns; ++i)
-      all.push_back({rows.at(0, j, i), rows.at(1, j, i), rows.at(2, j, i)});
-  return all;
-}
 
 double elastic_energy(const Cloth& cloth, const std::vector<Stencil>& stencils,
                       const std::vector<Vec3>& x) {
@@ -93,14 +78,10 @@ void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Ste
     }
 }
 
-EnergyRow energy_row(const Lattice& l, ConstRow3 x, ConstRow3 v, int j, const Vec3& gravity) {
-  return {l.columns, x, v, l.w(j), {gravity[0], gravity[1], gravity[2]}};
-}
-
 Strain structural_strain(const Cloth& cloth, const std::vector<Stencil>& stencils,
                          const std::vector<Vec3>& x) {
   Strain strain;
-  std::int64_t n = 0;
+  std::int64_t& n = strain.constraints;
   for (const Stencil& f : stencils) {
     if (f.kind != Kind::structural) continue;
     for_each_constraint(cloth, f, [&](int a, int b, double) {

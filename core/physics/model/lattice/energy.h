@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "physics/model/cloth_model.h"
 #include "physics/model/lattice/lattice.h"
 #include "physics/model/lattice/stencil.h"
 
@@ -24,9 +25,6 @@ void for_each_constraint(const Cloth& cloth, const Stencil& f, Visit&& visit) {
 
 struct BendLinks;
 
-// Positions or velocities of a lattice in double, particle after particle.
-std::vector<Vec3> gather(const Lattice& lattice, const Rows& rows);
-
 // E = Σ ½ k (|e| - l)² [J].
 double elastic_energy(const Cloth& cloth, const std::vector<Stencil>& stencils,
                       const std::vector<Vec3>& x);
@@ -41,19 +39,7 @@ void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Ste
                    const Lattice& lattice, const BendLinks* left, bool damped,
                    std::vector<Vec3>& a);
 
-// Row j of a lattice with positions x and velocities v, as the energy_sum is made of it.
-EnergyRow energy_row(const Lattice& lattice, ConstRow3 x, ConstRow3 v, int j, const Vec3& gravity);
-// What rows have together.
-inline EnergySum& operator+=(EnergySum& all, const EnergySum& more) {
-  all.kinetic += more.kinetic;
-  all.potential += more.potential;
-  all.greatest = std::max(all.greatest, more.greatest);
-  return all;
-}
-
-struct Strain {
-  double max = 0, mean = 0;  // |e|/l - 1
-};
+// Of the constraints between neighbours along rows and columns.
 Strain structural_strain(const Cloth& cloth, const std::vector<Stencil>& stencils,
                          const std::vector<Vec3>& x);
 

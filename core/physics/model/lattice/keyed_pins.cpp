@@ -7,7 +7,8 @@ namespace {
 
 class KeyedPins final : public RowStage {
  public:
-  KeyedPins(const ClothParts& parts, std::vector<std::vector<const Pin*>> by_row, std::int64_t pins)
+  KeyedPins(const LatticeParts& parts, std::vector<std::vector<const Pin*>> by_row,
+            std::int64_t pins)
       : RowStage("keyed_pins", "pins put on their paths", 0, pins, "pins"),
         parts_(parts),
         by_row_(std::move(by_row)) {}
@@ -24,13 +25,13 @@ class KeyedPins final : public RowStage {
   }
 
  private:
-  ClothParts parts_;
+  LatticeParts parts_;
   std::vector<std::vector<const Pin*>> by_row_;
 };
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_keyed_pins(const ClothParts& parts) {
+std::unique_ptr<RowStage> make_keyed_pins(const LatticeParts& parts) {
   std::vector<std::vector<const Pin*>> by_row(parts.lattice.rows);
   std::int64_t pins = 0;
   for (const Pin& pin : parts.cloth.pins) {

@@ -1,4 +1,4 @@
-// Storage of one cloth, and its particles at the start.
+// The particles of a grid at the start (lattice.h).
 #include "physics/model/lattice/lattice.h"
 
 #include <cmath>
@@ -8,28 +8,9 @@
 
 namespace weft::physics {
 
-void Lattice::set_inverse_mass(int j, int i, float value) {
-  w(j)[i] = value;
-  weigh_row(j);
-}
-
-void Lattice::weigh_row(int j) {
-  const float* const row = w(j);
-  const bool alike = std::all_of(row, row + columns, [&](float value) { return value == row[0]; });
-  row_inverse_mass[static_cast<std::size_t>(j)] = alike ? row[0] : 0.0f;
-}
-
 Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bool keep_previous) {
   const Grid& g = cloth.grid;
-  Lattice l;
-  l.columns = g.nx;
-  l.rows = g.ny;
-  l.stride = row_stride(g.nx);
-  l.x = Rows(l.rows, l.stride);
-  l.v = Rows(l.rows, l.stride);
-  if (keep_previous) l.previous = Rows(l.rows, l.stride);
-  l.inverse_mass = AlignedArray<float>(static_cast<std::size_t>(l.rows) * l.stride);
-  l.row_inverse_mass = AlignedArray<float>(static_cast<std::size_t>(l.rows));
+  Lattice l(g.nx, g.ny, keep_previous);
 
   Vec3 normal{g.u[1] * g.v[2] - g.u[2] * g.v[1], g.u[2] * g.v[0] - g.u[0] * g.v[2],
               g.u[0] * g.v[1] - g.u[1] * g.v[0]};

@@ -31,7 +31,7 @@ class TurnedLinks {
       : columns_(l.columns), lanes_(std::size_t(groups) * size()), torn_(std::size_t(groups), -1) {}
 
   // The group's lanes, from `links`, laid out as the lattice.
-  const T* follow(int group, const Tearing& tearing, const T* links) {
+  const T* follow(int group, const LatticeTearing& tearing, const T* links) {
     const int begin = group * kBatchLines, end = std::min(begin + kBatchLines, tearing.rows());
     std::int64_t torn = 0;
     for (int j = begin; j < end; ++j) torn += tearing.torn(j);

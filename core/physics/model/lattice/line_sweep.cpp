@@ -39,7 +39,7 @@ struct LineStencil {
 
 class Line final : public WholeStage {
  public:
-  Line(const ClothParts& parts, const LineOptions& options)
+  Line(const LatticeParts& parts, const LineOptions& options)
       : WholeStage(
             "line",
             std::to_string(parts.stencils.size()) + " stencils, each line solved as a whole" +
@@ -204,7 +204,7 @@ class Line final : public WholeStage {
     return float(std::max(real, least_));
   }
 
-  ClothParts parts_;
+  LatticeParts parts_;
   LineOptions options_;
   LineBatches batches_;
   double dt_ = 0;
@@ -214,7 +214,7 @@ class Line final : public WholeStage {
 
 }  // namespace
 
-std::unique_ptr<Stage> make_line(const ClothParts& parts, const LineOptions& options) {
+std::unique_ptr<Stage> make_line(const LatticeParts& parts, const LineOptions& options) {
   if (parts.stencils.empty()) return nullptr;
   return std::make_unique<Line>(parts, options);
 }

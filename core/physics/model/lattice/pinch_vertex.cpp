@@ -11,7 +11,7 @@ constexpr int kTriangles = 6;  // around a particle
 // The neighbourhood of one particle.
 class Ring {
  public:
-  Ring(const Tearing& tearing, int i, int j) : tearing_(tearing), i_(i), j_(j) {
+  Ring(const LatticeTearing& tearing, int i, int j) : tearing_(tearing), i_(i), j_(j) {
     constexpr unsigned kFirst = 7, kSecond = 7 << 3;
     triangles_ = whole(0, 0, kFirst) | whole(-1, 0, kSecond) << 1 | whole(-1, 0, kFirst) << 2 |
                  whole(-1, -1, kSecond) << 3 | whole(0, -1, kFirst) << 4 |
@@ -59,14 +59,14 @@ class Ring {
            tearing_.joined(b.di - a.di, b.dj - a.dj, i_ + a.di, j_ + a.dj);
   }
 
-  const Tearing& tearing_;
+  const LatticeTearing& tearing_;
   const int i_, j_;
   unsigned triangles_;
 };
 
 }  // namespace
 
-unsigned pinched(const Tearing& tearing, int i, int j) {
+unsigned pinched(const LatticeTearing& tearing, int i, int j) {
   const Ring ring(tearing, i, j);
   const unsigned triangles = ring.triangles();
   // Triangles next to each other share a constraint of p: one run of them is one piece.

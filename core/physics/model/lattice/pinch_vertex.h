@@ -24,6 +24,6 @@ inline constexpr std::array<Direction, 8> kAround{
 
 // The directions (bits, in the order of kAround) in which constraints of particle (i, j) are to end; 0
 // where it is no pinch vertex.
-unsigned pinched(const Tearing& tearing, int i, int j);
+unsigned pinched(const LatticeTearing& tearing, int i, int j);
 
 }  // namespace weft::physics

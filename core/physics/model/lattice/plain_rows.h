@@ -7,14 +7,14 @@
 namespace weft::physics {
 
 // stencils_of lists the six of a plain cloth in one order, which these stages take for granted.
-inline bool is_plain(const ClothParts& parts) {
+inline bool is_plain(const LatticeParts& parts) {
   return parts.cloth.level == 0 && parts.stencils.size() == kPlainStencils;
 }
 
 class PlainRowsStage : public RowStage {
  public:
   PlainRowsStage(const std::string& stage_name, const std::string& stage_detail,
-                 const ClothParts& parts)
+                 const LatticeParts& parts)
       : RowStage(stage_name, stage_detail, 2, parts.constraints(), "constraints"), parts_(parts) {}
 
   void reserve_slots(int slots) override { carry_ = AlignedArray<float>(slots * carried()); }
@@ -41,7 +41,7 @@ class PlainRowsStage : public RowStage {
     r.carry = carry(s);
   }
 
-  ClothParts parts_;
+  LatticeParts parts_;
 
  private:
   std::size_t carried() const { return 6 * std::size_t(parts_.lattice.stride); }

@@ -8,7 +8,7 @@ namespace weft::physics {
 namespace {
 
 // Rows begin … end-1 as one long row, padding and all.
-AdvanceRow rows_of(const ClothParts& parts, int begin, int end) {
+AdvanceRow rows_of(const LatticeParts& parts, int begin, int end) {
   Lattice& l = parts.lattice;
   AdvanceRow a{};
   a.columns = (end - begin) * l.stride;
@@ -21,8 +21,9 @@ AdvanceRow rows_of(const ClothParts& parts, int begin, int end) {
 
 class Predict final : public RowStage {
  public:
-  Predict(const ClothParts& parts, Multipliers* multipliers, Rows* corrections)
-      : RowStage("predict", "positions by velocity and gravity", 0, parts.particles(), "particles"),
+  Predict(const LatticeParts& parts, Multipliers* multipliers, Rows* corrections)
+      : RowStage("predict", "positions by velocity and gravity", 0, parts.particles.count(),
+                 "particles"),
         parts_(parts),
         multipliers_(multipliers),
         corrections_(corrections) {}
@@ -41,15 +42,15 @@ class Predict final : public RowStage {
   }
 
  private:
-  ClothParts parts_;
+  LatticeParts parts_;
   Multipliers* multipliers_;
   Rows* corrections_;
 };
 
 class Velocity final : public RowStage {
  public:
-  Velocity(const ClothParts& parts, bool compliant)
-      : RowStage("velocity", "by how far the sweeps moved particles", 0, parts.particles(),
+  Velocity(const LatticeParts& parts, bool compliant)
+      : RowStage("velocity", "by how far the sweeps moved particles", 0, parts.particles.count(),
                  "particles"),
         parts_(parts),
         compliant_(compliant) {}
@@ -66,16 +67,16 @@ class Velocity final : public RowStage {
   }
 
  private:
-  ClothParts parts_;
+  LatticeParts parts_;
   bool compliant_;
 };
 
 // What the sweeps of the compliant method have found goes into positions and velocities.
 class Corrections final : public RowStage {
  public:
-  Corrections(const ClothParts& parts, Rows& corrections)
-      : RowStage("velocity", "positions and velocities gain the corrections", 0, parts.particles(),
-                 "particles"),
+  Corrections(const LatticeParts& parts, Rows& corrections)
+      : RowStage("velocity", "positions and velocities gain the corrections", 0,
+                 parts.particles.count(), "particles"),
         parts_(parts),
         corrections_(corrections) {}
   Velocities velocities(double) const override { return Velocities::from_sweeps; }
@@ -89,7 +90,7 @@ class Corrections final : public RowStage {
   }
 
  private:
-  ClothParts parts_;
+  LatticeParts parts_;
   Rows& corrections_;
 };
 
@@ -109,16 +110,16 @@ void Multipliers::clear(int begin, int end) {
   for (std::size_t f = 0; f < stencils; ++f) std::fill(row(f, begin), row(f, end), 0.0f);
 }
 
-std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* multipliers,
+std::unique_ptr<RowStage> make_predict(const LatticeParts& parts, Multipliers* multipliers,
                                        Rows* corrections) {
   return std::make_unique<Predict>(parts, multipliers, corrections);
 }
 
-std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections) {
+std::unique_ptr<RowStage> make_corrections(const LatticeParts& parts, Rows& corrections) {
   return std::make_unique<Corrections>(parts, corrections);
 }
 
-std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant) {
+std::unique_ptr<RowStage> make_velocity(const LatticeParts& parts, bool compliant) {
   return std::make_unique<Velocity>(parts, compliant);
 }
 

@@ -7,7 +7,7 @@ namespace weft::physics {
 namespace {
 
 // Rows j … end-1 as one long row, padding and all.
-SecondOrderRow rows_of(const ClothParts& parts, History& h, int j, int end, double dt) {
+SecondOrderRow rows_of(const LatticeParts& parts, History& h, int j, int end, double dt) {
   Lattice& l = parts.lattice;
   const std::size_t lane = std::size_t(j) * l.stride;
   SecondOrderRow r{};
@@ -28,8 +28,8 @@ SecondOrderRow rows_of(const ClothParts& parts, History& h, int j, int end, doub
 
 class Predict final : public RowStage {
  public:
-  Predict(const ClothParts& parts, History& history, Multipliers* multipliers)
-      : RowStage("predict", "second order, from two substeps before", 0, parts.particles(),
+  Predict(const LatticeParts& parts, History& history, Multipliers* multipliers)
+      : RowStage("predict", "second order, from two substeps before", 0, parts.particles.count(),
                  "particles"),
         parts_(parts),
         history_(history),
@@ -69,7 +69,7 @@ class Predict final : public RowStage {
     parts_.kernels.predict_second_order(r);
   }
 
-  ClothParts parts_;
+  LatticeParts parts_;
   History& history_;
   Multipliers* multipliers_;
   std::vector<double> dt_;  // s, of every row's substep before; 0 = none
@@ -77,9 +77,9 @@ class Predict final : public RowStage {
 
 class Velocity final : public RowStage {
  public:
-  Velocity(const ClothParts& parts, History& history)
-      : RowStage("velocity", "of the second order, kept for the next substep", 0, parts.particles(),
-                 "particles"),
+  Velocity(const LatticeParts& parts, History& history)
+      : RowStage("velocity", "of the second order, kept for the next substep", 0,
+                 parts.particles.count(), "particles"),
         parts_(parts),
         history_(history) {}
   Velocities velocities(double dt) const override {
@@ -92,7 +92,7 @@ class Velocity final : public RowStage {
   }
 
  private:
-  ClothParts parts_;
+  LatticeParts parts_;
   History& history_;
 };
 
@@ -106,35 +106,12 @@ History::History(const Lattice& l)
   std::copy_n(l.inverse_mass.data(), l.inverse_mass.size(), inverse_mass.data());
 }
 
-bool velocity_from_positions(const Solver& solver, bool compliant, double dt) {
-  // Rounding of a position of 1 m over 0.5 ms is 1e-4 m/s, two percent of what gravity adds. Measured:
-  // no error gained down to here; at 0.26 ms none on hanging sheets, but cantilevers miss the elastica.
-  constexpr double kLeastSubstep = 5e-4;  // s
-  return !compliant || (solver.sweep == Sweep::line && dt >= kLeastSubstep);
-}
-
-float velocity_gain(const Solver& solver, bool compliant, double dt) {
-  if (velocity_from_positions(solver, compliant, dt)) return 0;
-  return float(1 / (dt * implicit_share(solver)));
-}
-
-Push push_of(const ClothParts& parts, double dt) {
-  const Solver& solver = parts.scene.solver;
-  if (is_explicit(parts.method)) return {dt, true};
-  const bool waits = velocity_from_positions(solver, parts.method == Method::compliant, dt);
-  return {dt * implicit_share(solver), !waits};
-}
-
-double implicit_share(const Solver& solver) {
-  return solver.order == 2 ? 2.0 / 3.0 : 1.0;
-}
-
-std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
+std::unique_ptr<RowStage> make_predict_second_order(const LatticeParts& parts, History& history,
                                                     Multipliers* multipliers) {
   return std::make_unique<Predict>(parts, history, multipliers);
 }
 
-std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history) {
+std::unique_ptr<RowStage> make_velocity_second_order(const LatticeParts& parts, History& history) {
   return std::make_unique<Velocity>(parts, history);
 }
 

@@ -14,7 +14,7 @@ constexpr float kAlmost = 1 + 1e-6f;
 // The six stencils of a plain cloth in one kernel.
 class PlainSprings final : public PlainRowsStage {
  public:
-  PlainSprings(const ClothParts& parts, bool damped)
+  PlainSprings(const LatticeParts& parts, bool damped)
       : PlainRowsStage("springs",
                        std::string("structural, shear and bend springs") +
                            (damped ? " with damping" : "") + ", leapfrog step",
@@ -64,7 +64,7 @@ class PlainSprings final : public PlainRowsStage {
 // Any stencils, one kernel call each: levels, subsets.
 class StencilSprings final : public RowStage {
  public:
-  StencilSprings(const ClothParts& parts, int reach, bool damped)
+  StencilSprings(const LatticeParts& parts, int reach, bool damped)
       : RowStage("springs",
                  std::to_string(parts.stencils.size()) + " spring stencils" +
                      (damped ? " with damping" : "") + ", leapfrog step",
@@ -110,7 +110,7 @@ class StencilSprings final : public RowStage {
   }
 
  private:
-  ClothParts parts_;
+  LatticeParts parts_;
   void (*kernel_)(const StencilRow&);
   Rows force_;  // reach+1 rows in turn per slot: row j's is complete when row j is moved
   AlignedArray<float> scratch_;
@@ -118,20 +118,20 @@ class StencilSprings final : public RowStage {
 
 }  // namespace
 
-std::int64_t ClothParts::constraints() const {
+std::int64_t LatticeParts::constraints() const {
   std::int64_t n = 0;
   for (const Stencil& f : stencils)
     n += std::int64_t(f.per_row(lattice.columns)) * (lattice.rows - f.dj);
   return n;
 }
 
-int greatest_reach(const ClothParts& parts) {
+int greatest_reach(const LatticeParts& parts) {
   int reach = 0;
   for (const Stencil& f : parts.stencils) reach = std::max(reach, f.dj);
   return reach;
 }
 
-Advance advance_of(const ClothParts& parts, const Substep& s) {
+Advance advance_of(const LatticeParts& parts, const Substep& s) {
   const Vec3& g = parts.scene.gravity;
   return {float(s.dt),
           float(s.kick),
@@ -141,7 +141,7 @@ Advance advance_of(const ClothParts& parts, const Substep& s) {
           float(g[2] * s.kick)};
 }
 
-std::unique_ptr<RowStage> make_springs(const ClothParts& parts, bool damped) {
+std::unique_ptr<RowStage> make_springs(const LatticeParts& parts, bool damped) {
   if (is_plain(parts)) return std::make_unique<PlainSprings>(parts, damped);
   return std::make_unique<StencilSprings>(parts, greatest_reach(parts), damped);
 }

@@ -10,16 +10,9 @@
 
 #include "physics/model/lattice/lattice.h"
 #include "physics/model/lattice/stencil.h"
+#include "physics/model/spectrum.h"
 
 namespace weft::physics {
-
-struct Spectrum {
-  double omega_squared = 0;  // 1/s², ω_max²
-  double damping = 0;        // 1/s, c
-
-  // The largest stable substep [s], infinite when nothing can vibrate.
-  double largest_substep() const;
-};
 
 // Estimates the spectrum of the lattice as it lies now by a Lanczos iteration, from above: the
 // substep it allows is never larger than the true limit, and at most about 3 % smaller.

@@ -20,7 +20,7 @@ constexpr int kColours = 2;
 // The stencils of a sweep with one row offset dj, as their kernel takes them.
 class ProjectedStencils {
  public:
-  ProjectedStencils(const ClothParts& parts, const SweepOptions& options, int dj)
+  ProjectedStencils(const LatticeParts& parts, const SweepOptions& options, int dj)
       : parts_(parts), options_(options) {
     for (std::size_t f = 0; f < parts.stencils.size(); ++f)
       if (parts.stencils[f].dj == dj && swept(parts.stencils[f], options)) add(f);
@@ -111,7 +111,7 @@ class ProjectedStencils {
     }
   }
 
-  ClothParts parts_;
+  LatticeParts parts_;
   SweepOptions options_;
   std::deque<Member> members_;
   std::vector<ProjectRows> rows_;  // of each member, pointing into it
@@ -120,7 +120,7 @@ class ProjectedStencils {
 // The stencils of one row offset: along the rows both colours, between rows one.
 class GaussSeidel final : public RowStage {
  public:
-  GaussSeidel(const ClothParts& parts, const std::string& name, int dj, int colour,
+  GaussSeidel(const LatticeParts& parts, const std::string& name, int dj, int colour,
               std::unique_ptr<ProjectedStencils> stencils)
       : RowStage(name, stencils->names() + (dj > 0 ? ", colour " + std::to_string(colour + 1) : ""),
                  dj, stencils->constraints() / (dj > 0 ? kColours : 1), "constraints"),
@@ -162,7 +162,7 @@ float relaxation(const std::vector<Stencil>& stencils, int sweeps) {
   return float(0.95 * std::floor(kParts * limit + 1e-6) / std::ceil(kParts * largest - 1e-6));
 }
 
-float velocity_share(const ClothParts& parts, const SweepOptions& options, double dt) {
+float velocity_share(const LatticeParts& parts, const SweepOptions& options, double dt) {
   return options.compliant ? float(1 / (dt * implicit_share(parts.scene.solver))) : 0.0f;
 }
 
@@ -174,7 +174,7 @@ Velocities velocities_of(const SweepOptions& options) {
 // The six stencils of a plain cloth in one kernel.
 class PlainJacobi final : public PlainRowsStage {
  public:
-  PlainJacobi(const ClothParts& parts, const SweepOptions& options)
+  PlainJacobi(const LatticeParts& parts, const SweepOptions& options)
       : PlainRowsStage("jacobi", "all stencils, corrections added up and relaxed", parts),
         options_(options),
         relaxation_(relaxation(parts.stencils, parts.scene.solver.iterations)),
@@ -244,7 +244,7 @@ class PlainJacobi final : public PlainRowsStage {
 // Any stencils, one kernel call each.
 class Jacobi final : public RowStage {
  public:
-  Jacobi(const ClothParts& parts, const SweepOptions& options, int reach)
+  Jacobi(const LatticeParts& parts, const SweepOptions& options, int reach)
       : RowStage("jacobi", "all stencils, corrections added up and relaxed", reach,
                  parts.constraints(), "constraints"),
         parts_(parts),
@@ -284,7 +284,7 @@ class Jacobi final : public RowStage {
   }
 
  private:
-  ClothParts parts_;
+  LatticeParts parts_;
   SweepOptions options_;
   float relaxation_;
   std::deque<ProjectedStencils> stencils_;
@@ -293,13 +293,13 @@ class Jacobi final : public RowStage {
 
 }  // namespace
 
-float compliance_of(const ClothParts& parts, const Stencil& f, int j, double dt) {
+float compliance_of(const LatticeParts& parts, const Stencil& f, int j, double dt) {
   const double k = f.stiffness * gradient_factor(parts.cloth, j, f.dj);
   const double h = dt * implicit_share(parts.scene.solver);
   return float(1 / (std::max(k, 1e-12) * h * h));
 }
 
-void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options, Stages& stages) {
+void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages) {
   const std::string name = options.limit > 0 ? "strain_limit" : "gauss_seidel";
   for (int dj = 0; dj <= greatest_reach(parts); ++dj)
     for (int colour = 0; colour < (dj > 0 ? kColours : 1); ++colour) {
@@ -310,7 +310,7 @@ void append_gauss_seidel(const ClothParts& parts, const SweepOptions& options, S
     }
 }
 
-std::unique_ptr<RowStage> make_jacobi(const ClothParts& parts, const SweepOptions& options) {
+std::unique_ptr<RowStage> make_jacobi(const LatticeParts& parts, const SweepOptions& options) {
   if (is_plain(parts) && !options.multipliers) return std::make_unique<PlainJacobi>(parts, options);
   return std::make_unique<Jacobi>(parts, options, greatest_reach(parts));
 }

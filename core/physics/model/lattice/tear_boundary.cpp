@@ -5,7 +5,7 @@ namespace weft::physics {
 namespace {
 
 // Whether the constraint between neighbours (i, j) and (i + di, j + dj) is there.
-bool joined(const Tearing& t, int i, int j, int di, int dj) {
+bool joined(const LatticeTearing& t, int i, int j, int di, int dj) {
   const int a = std::min(i, i + di), b = std::min(j, j + dj);
   return a >= 0 && b >= 0 && std::max(i, i + di) < t.columns() && std::max(j, j + dj) < t.rows() &&
          t.alive(di != 0, dj != 0, a, b);
@@ -13,7 +13,7 @@ bool joined(const Tearing& t, int i, int j, int di, int dj) {
 
 }  // namespace
 
-void TearBoundary::update(const Tearing& tearing, const Lattice& lattice) {
+void TearBoundary::update(const LatticeTearing& tearing, const Lattice& lattice) {
   if (version_ != tearing.version()) rebuild(tearing);
   version_ = tearing.version();
   const auto x = lattice.x.component(0), y = lattice.x.component(1), z = lattice.x.component(2);
@@ -29,7 +29,7 @@ void TearBoundary::update(const Tearing& tearing, const Lattice& lattice) {
   }
 }
 
-void TearBoundary::rebuild(const Tearing& t) {
+void TearBoundary::rebuild(const LatticeTearing& t) {
   points_.clear();
   owners_.clear();
   triangles_.clear();
@@ -42,7 +42,7 @@ void TearBoundary::rebuild(const Tearing& t) {
   places_.resize(points_.size());
 }
 
-void TearBoundary::add_triangle(const Tearing& t, const Site (&corner)[3], unsigned gone) {
+void TearBoundary::add_triangle(const LatticeTearing& t, const Site (&corner)[3], unsigned gone) {
   const auto far = [](const Site& p, const Site& q, float share) {
     return std::pair(share * float(q.i - p.i), share * float(q.j - p.j));
   };
@@ -73,7 +73,7 @@ void TearBoundary::add_triangle(const Tearing& t, const Site (&corner)[3], unsig
   }
 }
 
-std::optional<std::uint32_t> TearBoundary::point(const Tearing& t, Site p, float along,
+std::optional<std::uint32_t> TearBoundary::point(const LatticeTearing& t, Site p, float along,
                                                  float down) {
   const auto number = [&](int i, int j) { return static_cast<std::uint32_t>(j * t.stride() + i); };
   Point made{number(p.i, p.j), {}};

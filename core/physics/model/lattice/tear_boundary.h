@@ -22,7 +22,7 @@ namespace weft::physics {
 class TearBoundary {
  public:
   // Follows the tearing, if its version has changed, and puts all points where they are now.
-  void update(const Tearing& tearing, const Lattice& lattice);
+  void update(const LatticeTearing& tearing, const Lattice& lattice);
 
   const std::vector<std::array<float, 3>>& points() const { return places_; }  // m
   const std::vector<std::uint32_t>& particles() const {
@@ -44,11 +44,12 @@ class TearBoundary {
     Step steps[2];  // along the row, along the column
   };
 
-  void rebuild(const Tearing& tearing);
-  void add_triangle(const Tearing& tearing, const Site (&corner)[3], unsigned gone);
+  void rebuild(const LatticeTearing& tearing);
+  void add_triangle(const LatticeTearing& tearing, const Site (&corner)[3], unsigned gone);
   // A point `along` and `down` steps from a particle, as the sheet lies on its side; none where it has
   // no constraint to tell.
-  std::optional<std::uint32_t> point(const Tearing& tearing, Site p, float along, float down);
+  std::optional<std::uint32_t> point(const LatticeTearing& tearing, Site p, float along,
+                                     float down);
   void add(const std::array<std::optional<std::uint32_t>, 3>& corners);
 
   std::uint64_t version_ = 0;

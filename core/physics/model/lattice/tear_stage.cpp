@@ -11,7 +11,7 @@ namespace {
 // need no look.
 class TearStage final : public RowStage {
  public:
-  TearStage(const ClothParts& parts, Tearing& tearing)
+  TearStage(const LatticeParts& parts, LatticeTearing& tearing)
       : RowStage("tear", "constraints beyond their tear strain end", greatest_reach(parts),
                  parts.constraints(), "constraints"),
         parts_(parts),
@@ -33,13 +33,13 @@ class TearStage final : public RowStage {
   }
 
  private:
-  ClothParts parts_;
-  Tearing& tearing_;
+  LatticeParts parts_;
+  LatticeTearing& tearing_;
 };
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_tear(const ClothParts& parts, Tearing& tearing) {
+std::unique_ptr<RowStage> make_tear(const LatticeParts& parts, LatticeTearing& tearing) {
   return std::make_unique<TearStage>(parts, tearing);
 }
 

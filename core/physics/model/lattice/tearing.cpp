@@ -5,18 +5,22 @@
 #include <numeric>
 
 #include "physics/model/lattice/pinch_vertex.h"
+#include "physics/model/lattice/tear_boundary.h"
 
 namespace weft::physics {
 
-Tearing::Tearing(const Lattice& l, std::vector<Stencil>& stencils, bool bends)
-    : columns_(l.columns),
+LatticeTearing::LatticeTearing(const Lattice& l, std::vector<Stencil>& stencils, bool bends,
+                               Tears tears)
+    : lattice_(l),
+      columns_(l.columns),
       rows_(l.rows),
       stride_(l.stride),
       stencils_(stencils),
       bend_links_(bends ? std::make_unique<BendLinks>(l) : nullptr),
       died_(static_cast<std::size_t>(l.rows)),
       followed_(died_),
-      squares_(static_cast<std::size_t>(l.columns - 1) * (l.rows - 1)) {
+      squares_(static_cast<std::size_t>(l.columns - 1) * (l.rows - 1)),
+      boundary_(tears == Tears::split ? std::make_unique<TearBoundary>() : nullptr) {
   for (Stencil& f : stencils_) {
     links_.push_back(std::make_unique<Links>(rows_, stride_, f.per_row(columns_)));
     f.links = links_.back().get();
@@ -26,7 +30,9 @@ Tearing::Tearing(const Lattice& l, std::vector<Stencil>& stencils, bool bends)
   rows_about_.reserve(static_cast<std::size_t>(l.rows));
 }
 
-void Tearing::make_whole() {
+LatticeTearing::~LatticeTearing() = default;
+
+void LatticeTearing::make_whole() {
   for (Stencil& f : stencils_)
     for (int j = 0; j < rows_; ++j)
       std::fill_n(f.links->row(j), f.per_row(columns_), j + f.dj < rows_ ? -1 : 0);
@@ -37,8 +43,8 @@ void Tearing::make_whole() {
   torn_ = 0;
 }
 
-std::vector<Tearing::Torn> Tearing::torn_list() const {
-  std::vector<Torn> list;
+std::vector<Joined> LatticeTearing::torn_list() const {
+  std::vector<Joined> list;
   if (torn_ == 0) return list;
   for (const Stencil& f : stencils_)
     for (int j = 0; j + f.dj < rows_; ++j)
@@ -48,38 +54,54 @@ std::vector<Tearing::Torn> Tearing::torn_list() const {
   return list;
 }
 
-void Tearing::set_torn(const std::vector<Torn>& torn) {
+void LatticeTearing::end_joined(const Joined& constraint) {
+  const auto [from, to] = std::minmax(constraint[0], constraint[1]);
+  const int j = from / columns_, i = from % columns_;
+  if (const Stencil* f = stencil_at(to % columns_ - i, to / columns_ - j))
+    end(*f, j, i - f->near());
+}
+
+void LatticeTearing::set_torn(const std::vector<Joined>& torn) {
   make_whole();
-  for (const Torn& t : torn) {
-    const auto [from, to] = std::minmax(t.a, t.b);
-    const int j = from / columns_, i = from % columns_;
-    if (const Stencil* f = stencil_at(to % columns_ - i, to / columns_ - j))
-      end(*f, j, i - f->near());
-  }
+  for (const Joined& constraint : torn) end_joined(constraint);
   update();
   ++version_;
   list_triangles();
 }
 
-const Stencil* Tearing::stencil_at(int di, int dj) const {
+std::int64_t LatticeTearing::end_all(const std::vector<Joined>& constraints) {
+  const std::int64_t before = torn_;
+  for (const Joined& constraint : constraints) end_joined(constraint);
+  update();
+  return torn_ - before;
+}
+
+TornSurface LatticeTearing::surface() {
+  if (version_ == 0) return {};
+  if (!boundary_) return {triangles_, {}, {}, {}};
+  boundary_->update(*this, lattice_);
+  return {triangles_, boundary_->points(), boundary_->particles(), boundary_->triangles()};
+}
+
+const Stencil* LatticeTearing::stencil_at(int di, int dj) const {
   for (const Stencil& f : stencils_)
     if (f.di == di && f.dj == dj) return &f;
   return nullptr;
 }
 
-bool Tearing::alive(int di, int dj, int i, int j) const {
+bool LatticeTearing::alive(int di, int dj, int i, int j) const {
   const Stencil* f = stencil_at(di, dj);
   return !f || f->alive(j, i - f->near());
 }
 
-bool Tearing::joined(int di, int dj, int i, int j) const {
+bool LatticeTearing::joined(int di, int dj, int i, int j) const {
   const Stencil* f = stencil_at(di, dj);
   return f && f->alive(j, i - f->near());
 }
 
 // A constraint over g steps of a shorter stencil goes when one of the steps it spans, one of them in
 // the row, is gone.
-void Tearing::end_spanning(int row) {
+void LatticeTearing::end_spanning(int row) {
   for (const Stencil& f : stencils_) {
     const int g = std::gcd(f.di, f.dj);
     const Stencil* step = g > 1 ? stencil_at(f.di / g, f.dj / g) : nullptr;
@@ -94,7 +116,7 @@ void Tearing::end_spanning(int row) {
 }
 
 // Bending goes with the structural constraints that it bends.
-void Tearing::end_bending(int row) {
+void LatticeTearing::end_bending(int row) {
   BendLinks& b = *bend_links_;
   for (int j = std::max(0, row - 1); j <= row; ++j)
     for (int i = 0; i < columns_; ++i) {
@@ -110,7 +132,7 @@ void Tearing::end_bending(int row) {
 }
 
 // The squares above and below a row; returns whether any lost an edge.
-bool Tearing::look_at_squares(int row) {
+bool LatticeTearing::look_at_squares(int row) {
   bool changed = false;
   for (int j = std::max(0, row - 1); j <= row && j + 1 < rows_; ++j)
     for (int i = 0; i + 1 < columns_; ++i) {
@@ -127,7 +149,7 @@ bool Tearing::look_at_squares(int row) {
   return changed;
 }
 
-void Tearing::list_triangles() {
+void LatticeTearing::list_triangles() {
   triangles_.clear();
   for (int j = 0; j + 1 < rows_; ++j)
     for (int i = 0; i + 1 < columns_; ++i) {
@@ -140,7 +162,7 @@ void Tearing::list_triangles() {
 }
 
 // Particles of a row that are beside a torn triangle.
-void Tearing::end_pinches(int j) {
+void LatticeTearing::end_pinches(int j) {
   for (int i = 0; i < columns_; ++i) {
     unsigned torn = 0;
     for (int y = std::max(0, j - 1); y <= j && y + 1 < rows_; ++y)
@@ -159,7 +181,7 @@ void Tearing::end_pinches(int j) {
 }
 
 // What dies at a pinch vertex may make another one.
-bool Tearing::update() {
+bool LatticeTearing::update() {
   if (died_ == followed_) return false;
   bool changed = false;
   while (died_ != followed_) {
@@ -187,23 +209,23 @@ bool Tearing::update() {
   return true;
 }
 
-void Tearing::remember() {
+void LatticeTearing::remember() {
   if (remembered_.empty())
     for (std::size_t f = 0; f < links_.size(); ++f)
       remembered_.push_back(std::make_unique<Links>(rows_, stride_, 0));
   for (std::size_t f = 0; f < links_.size(); ++f) remembered_[f]->copy(*links_[f]);
 }
 
-void Tearing::go_back() {
+void LatticeTearing::go_back() {
   for (std::size_t f = 0; f < remembered_.size(); ++f) links_[f]->copy(*remembered_[f]);
   died_ = followed_;
 }
 
-std::size_t Tearing::bytes() const {
+std::size_t LatticeTearing::bytes() const {
   std::size_t bytes = squares_.size() + died_.size() * 16 + triangles_.capacity() * 12;
   for (const auto& l : links_) bytes += l->bytes();
   for (const auto& l : remembered_) bytes += l->bytes();
-  return bytes + (bend_links_ ? bend_links_->bytes() : 0);
+  return bytes + (bend_links_ ? bend_links_->bytes() : 0) + (boundary_ ? boundary_->bytes() : 0);
 }
 
 }  // namespace weft::physics

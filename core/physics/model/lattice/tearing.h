@@ -15,13 +15,18 @@
 
 #include "physics/model/lattice/bending.h"
 #include "physics/model/lattice/stencil.h"
+#include "physics/model/tearing.h"
 
 namespace weft::physics {
 
-class Tearing {
+class TearBoundary;
+
+class LatticeTearing final : public Tearing {
  public:
-  // Gives every stencil of a whole cloth its links; `bends`: it has bending too.
-  Tearing(const Lattice& lattice, std::vector<Stencil>& stencils, bool bends);
+  // Gives every stencil of a whole cloth its links; `bends`: it has bending too. `tears`: whether the
+  // boundary of tears is shown.
+  LatticeTearing(const Lattice& lattice, std::vector<Stencil>& stencils, bool bends, Tears tears);
+  ~LatticeTearing() override;
 
   // Notes that constraints of row j died. Rows may be worked on side by side.
   void died(int j, int count) { died_[static_cast<std::size_t>(j)] += count; }
@@ -32,24 +37,18 @@ class Tearing {
     if (lane != 0) died(j, 1);
     lane = 0;
   }
-  // Follows what died since the last call: spanning constraints, bending, triangles. Returns whether
-  // any did.
-  bool update();
+  // Spanning constraints, bending, triangles.
+  bool update() override;
+  void remember() override;
+  void go_back() override;
+  std::int64_t torn() const override { return torn_; }
+  std::uint64_t version() const override { return version_; }
+  std::vector<Joined> torn_list() const override;
+  void set_torn(const std::vector<Joined>& torn) override;
+  std::int64_t end_all(const std::vector<Joined>& constraints) override;
+  TornSurface surface() override;
 
-  // Remembers which links there are; go_back() undoes what died since.
-  void remember();
-  void go_back();
-  // One constraint that is gone: the particles that it joined, by their numbers.
-  struct Torn {
-    int a, b;
-  };
-  std::vector<Torn> torn_list() const;
-  // Exactly these are gone, and what spans them; what no constraint joins is passed over.
-  void set_torn(const std::vector<Torn>& torn);
-
-  std::int64_t torn() const { return torn_; }  // constraints that are gone
   std::int64_t torn(int j) const { return died_[static_cast<std::size_t>(j)]; }  // of row j
-  std::uint64_t version() const { return version_; }  // rises when triangles change
   // Triangles that are left whole, corners as j*stride + i; empty while the cloth is whole.
   const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
   // Null without bending.
@@ -71,6 +70,7 @@ class Tearing {
 
  private:
   void make_whole();
+  void end_joined(const Joined& constraint);
   const Stencil* stencil_at(int di, int dj) const;
   void end_spanning(int row);
   void end_bending(int row);
@@ -78,6 +78,7 @@ class Tearing {
   void end_pinches(int j);
   void list_triangles();
 
+  const Lattice& lattice_;
   int columns_, rows_, stride_;
   std::vector<Stencil>& stencils_;
   std::vector<std::unique_ptr<Links>> links_, remembered_;
@@ -88,6 +89,7 @@ class Tearing {
   std::uint64_t version_ = 0;
   std::vector<std::uint8_t> squares_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::unique_ptr<TearBoundary> boundary_;  // null: not shown
 };
 
 }  // namespace weft::physics

@@ -23,7 +23,7 @@ struct Wave {
 
 class WindStage final : public RowStage {
  public:
-  WindStage(const ClothParts& parts, std::uint64_t seed)
+  WindStage(const LatticeParts& parts, std::uint64_t seed)
       : RowStage("wind",
                  parts.scene.wind.turbulence > 0 ? "drag and lift of triangles, gusts"
                                                  : "drag and lift of triangles",
@@ -115,14 +115,14 @@ class WindStage final : public RowStage {
     return r;
   }
 
-  ClothParts parts_;
+  LatticeParts parts_;
   std::array<Wave, kGusts> waves_;
   Rows force_, resistance_;  // two rows in turn per slot; of the resistance, drag and lift
 };
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_wind(const ClothParts& parts, std::uint64_t seed) {
+std::unique_ptr<RowStage> make_wind(const LatticeParts& parts, std::uint64_t seed) {
   const Wind& wind = parts.scene.wind;
   if (wind.drag == 0 && wind.lift == 0) return nullptr;
   return std::make_unique<WindStage>(parts, seed);

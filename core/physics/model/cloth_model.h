@@ -1,0 +1,113 @@
+// What a cloth is made of: the seam between the frame, which knows particles, stages and energies, and
+// the constraints that hold a cloth together. A model owns its particles and all that is fixed by the
+// scene; it is asked once a build or once a frame, never for a row.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "physics/model/particles.h"
+#include "physics/model/spectrum.h"
+#include "physics/model/surface_mesh.h"
+#include "physics/model/tearing.h"
+#include "physics/step/stage_list.h"
+
+namespace weft::physics {
+
+class ClothModel;
+struct LatticeParts;
+
+// Whether a method integrates springs as forces, and so has a stability limit.
+inline bool is_explicit(Method m) {
+  return m == Method::spring || m == Method::spring_friction;
+}
+
+// What every stage of one cloth refers to; outlives the stages.
+struct ClothParts {
+  const Scene& scene;
+  const Cloth& cloth;
+  const Method& method;  // that runs: the scene's, or a stable one in its place
+  Particles& particles;
+  const KernelTable& kernels;
+  const ClothModel& model;
+};
+
+// How hard a cloth's constraints pull.
+struct Pull {
+  double stiffness = 0;  // N/m, of the stiffest
+  double force = 0;      // N, of the strongest at twice its length
+  double all = 0;        // N, of one constraint of each kind at twice its length
+};
+
+struct ConstraintCounts {
+  std::int64_t structural = 0, shear = 0, bend = 0;
+};
+
+// Of structural constraints: |e|/l - 1.
+struct Strain {
+  double max = 0, mean = 0;
+  std::int64_t constraints = 0;
+};
+
+class ClothModel {
+ public:
+  virtual ~ClothModel() = default;
+
+  virtual const ClothParts& parts() const = 0;
+  Particles& particles() const { return parts().particles; }
+  // The grid behind the cloth, for stages that use its implicit structure; null where there is none.
+  virtual LatticeParts* lattice() { return nullptr; }
+
+  // Appends the stages that move the particles by this method and the scene's solver, up to contact;
+  // then, after those of contact, what may not be exceeded at a substep's end.
+  virtual void append_motion(Method method, StageList& list) = 0;
+  virtual void append_limits(StageList& list) = 0;
+  virtual double mass(int particle) const = 0;  // kg, held or not
+
+  // The triangles that are left.
+  virtual const SurfaceMesh& surface() const = 0;
+  virtual ConstraintCounts constraints() const = 0;
+  virtual Pull pull() const = 0;
+
+  // Of the cloth as it lies now, in double precision: accelerations [m/s²] by gravity and all inner
+  // forces, zero for held particles; energy [J] of stretching and bending; strain.
+  virtual void accelerations(std::vector<Vec3>& a) const = 0;
+  virtual double elastic_energy() const = 0;
+  virtual Strain strain() const = 0;
+
+  // Of the cloth with its particles at `x`: the energy that its constraints hold as the method feels
+  // them in substeps of dt, with what rounding of the positions puts in at once [J]; the greatest
+  // squared length of a structural constraint, of its rest.
+  virtual double held_energy(const Rows& x, double dt) const = 0;
+  virtual float greatest_stretch(const Rows& x) const = 0;
+  // J; the energy of attachments that are stretched, and what springs gain in a substep by positions
+  // that are rounded anew.
+  virtual double attachment_energy(const Rows& x, double dt) const = 0;
+  virtual double rounding_gain() const = 0;
+
+  // What limits explicit substeps: the spectrum of the cloth as it starts, with these inverse masses;
+  // and whether it can fold without stretching anything, onto a line where all its springs pull the
+  // same way.
+  virtual Spectrum spectrum(std::span<const float> inverse_masses) const = 0;
+  virtual bool folds_freely() const = 0;
+
+  // Null while the cloth cannot tear; after allow_tearing() it can, where the model knows how, and its
+  // stages are to be chosen anew. And the constraints that come within a distance [m] of a segment from a
+  // along `way`.
+  virtual Tearing* tearing() { return nullptr; }
+  virtual const Tearing* tearing() const { return nullptr; }
+  virtual void allow_tearing() {}
+  virtual std::vector<Joined> constraints_near(const Vec3& a, const Vec3& way,
+                                               double distance) const = 0;
+
+  virtual std::size_t bytes() const = 0;
+};
+
+// The model that a scene asks for, with the particles as they start. `index`: of the cloth in the scene,
+// which outlives the model; `seed`: of all random choices.
+std::unique_ptr<ClothModel> make_model(const Scene& scene, int index, Method method,
+                                       std::uint64_t seed, const KernelTable& kernels);
+using MakeModel = std::unique_ptr<ClothModel> (*)(const Scene&, int, Method, std::uint64_t,
+                                                  const KernelTable&);
+
+}  // namespace weft::physics

@@ -1,0 +1,205 @@
+// What is measured of a grid's model in double precision (lattice_model.h).
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "physics/model/lattice/bending.h"
+#include "physics/model/lattice/energy.h"
+#include "physics/model/lattice/lattice_model.h"
+#include "physics/model/lattice/stability.h"
+#include "physics/model/vector.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr double kRounding = 4e-7;  // of positions in single precision, of the scene's size
+constexpr double kHalfUnit = 6e-8;  // of their last place, likewise
+
+// Least distance between segments p + s d and q + t e, 0 <= s, t <= 1 (Ericson 5.1.9).
+double segment_distance(const Vec3& p, const Vec3& d, const Vec3& q, const Vec3& e) {
+  const Vec3 r = minus(p, q);
+  const double a = dot(d, d), b = dot(d, e), c = dot(d, r), f = dot(e, r);
+  const double h = std::max(dot(e, e), 1e-300), denominator = a * h - b * b;
+  double s = denominator > 1e-12 * a * h ? std::clamp((b * f - c * h) / denominator, 0.0, 1.0) : 0;
+  double t = (b * s + f) / h;
+  if (t < 0 || t > 1) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = std::clamp((b * t - c) / std::max(a, 1e-300), 0.0, 1.0);
+  }
+  const Vec3 apart = minus(plus(p, times(d, s)), plus(q, times(e, t)));
+  return std::sqrt(dot(apart, apart));
+}
+
+}  // namespace
+
+const SurfaceMesh& LatticeModel::surface() const {
+  const std::uint64_t version = tearing_ ? tearing_->version() : 0;
+  if (!surface_.triangles.empty() && surface_.version == version) return surface_;
+  surface_.version = version;
+  surface_.triangles.clear();
+  if (version > 0) {
+    const auto number = [&](std::uint32_t lane) {
+      return int(lane) / lattice_.stride * lattice_.columns + int(lane) % lattice_.stride;
+    };
+    for (const auto& [a, b, c] : tearing_->triangles())
+      surface_.triangles.push_back({number(a), number(b), number(c)});
+    return surface_;
+  }
+  for (int j = 0; j + 1 < lattice_.rows; ++j)
+    for (int i = 0; i + 1 < lattice_.columns; ++i) {
+      const int p = lattice_.number(j, i), below = p + lattice_.columns;
+      surface_.triangles.push_back({p, p + 1, below});
+      surface_.triangles.push_back({p + 1, below + 1, below});
+    }
+  return surface_;
+}
+
+ConstraintCounts LatticeModel::constraints() const {
+  ConstraintCounts counts;
+  for (const Stencil& f : stencils_) {
+    const std::int64_t n = std::int64_t(f.per_row(lattice_.columns)) * (lattice_.rows - f.dj);
+    (f.kind == Kind::structural ? counts.structural
+     : f.kind == Kind::shear    ? counts.shear
+                                : counts.bend) += n;
+  }
+  return counts;
+}
+
+Pull LatticeModel::pull() const {
+  Pull pull;
+  for (const Stencil& f : stencils_) {
+    const double force = 2 * f.stiffness * f.rest;
+    pull.stiffness = std::max(pull.stiffness, f.stiffness);
+    pull.force = std::max(pull.force, force);
+    pull.all += force;
+  }
+  return pull;
+}
+
+void LatticeModel::accelerations(std::vector<Vec3>& a) const {
+  physics::accelerations(parts_.scene, parts_.cloth, stencils_, lattice_, bend_links(),
+                         method_ == Method::spring_friction, a);
+}
+
+double LatticeModel::elastic_energy() const {
+  const std::vector<Vec3> x = lattice_.gather(lattice_.x);
+  return physics::elastic_energy(parts_.cloth, stencils_, x) +
+         bending_energy(parts_.cloth, x, bend_links());
+}
+
+Strain LatticeModel::strain() const {
+  return structural_strain(parts_.cloth, stencils_, lattice_.gather(lattice_.x));
+}
+
+double LatticeModel::greatest_coordinate(const Rows& x) const {
+  return std::max(1.0, double(x.greatest(parts_.kernels)));
+}
+
+// A projected constraint counts as a spring of at most the inertia of its ends over dt², all that a
+// sweep makes of it, and of its positional share.
+double LatticeModel::stretch_energy(const Rows& x, double dt) const {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  const Cloth& cloth = parts_.cloth;
+  const double projected = std::min(1.0, 2 * cloth.positional_k * parts_.scene.solver.iterations);
+  StretchRow r{};
+  r.slack = float(kRounding * greatest_coordinate(x));
+  r.share = is_explicit(method_) ? kInfinite : method_ == Method::positional ? float(projected) : 1;
+  r.inverse_dt2 = float(1 / (dt * dt));
+  double sum = 0;
+  for (const Stencil& f : stencils_) {
+    r.rest = float(f.rest);
+    r.give = cloth.strain_limit > 0 ? float(cloth.strain_limit * f.rest) : kInfinite;
+    for (int j = 0; j + f.dj < lattice_.rows; ++j) {
+      static_cast<FarRows&>(r) = far_rows(f, x, lattice_.columns, j);
+      r.w_near = lattice_.w(j) + f.near();
+      r.w_far = lattice_.w(j + f.dj) + f.far();
+      r.stiffness = method_ == Method::positional
+                        ? kInfinite
+                        : float(f.stiffness * gradient_factor(cloth, j, f.dj));
+      sum += parts_.kernels.stretch_energy(r);
+    }
+  }
+  return sum;
+}
+
+double LatticeModel::held_energy(const Rows& x, double dt) const {
+  double sum = stretch_energy(x, dt);
+  if (parts_.cloth.bending > 0) sum += bending_energy(parts_.cloth, lattice_.gather(x));
+  return sum;
+}
+
+// Attachments take back at once what is farther from a pin than the sheet is long.
+double LatticeModel::attachment_energy(const Rows& x, double dt) const {
+  if (!parts_.scene.solver.tethers) return 0;
+  const Grid& g = parts_.cloth.grid;
+  const Vec3 u = times(g.u, 1.0 / (g.nx - 1)), v = times(g.v, 1.0 / (g.ny - 1));
+  const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v);
+  double sum = 0;
+  for (const Pin& pin : parts_.cloth.pins)
+    lattice_.for_each([&](int j, int i) {
+      const double inverse_mass = lattice_.w(j, i);
+      if (inverse_mass <= 0) return;
+      const double a = i - pin.i, b = j - pin.j, rest = a * (uu * a + 2 * uv * b) + vv * b * b;
+      double squared = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double e = double(x.at(k, j, i)) - x.at(k, pin.j, pin.i);
+        squared += e * e;
+      }
+      const double over = std::max(0.0, std::sqrt(squared) - std::sqrt(rest));
+      sum += 0.5 / inverse_mass * over * over / (dt * dt);
+    });
+  return sum;
+}
+
+double LatticeModel::rounding_gain() const {
+  double stiffness = 0;
+  for (const Stencil& f : stencils_)
+    for_each_constraint(parts_.cloth, f, [&](int, int, double k) { stiffness += k; });
+  return stiffness * std::pow(kHalfUnit * greatest_coordinate(lattice_.x), 2);
+}
+
+// Every fourth row is looked at.
+float LatticeModel::greatest_stretch(const Rows& x) const {
+  float most = 0;
+  for (const Stencil& f : stencils_) {
+    if (f.kind != Kind::structural) continue;
+    for (int j = 0; j + f.dj < lattice_.rows; j += 4) {
+      const float longest = parts_.kernels.greatest_square(far_rows(f, x, lattice_.columns, j));
+      most = std::max(most, longest / float(f.rest * f.rest));
+    }
+  }
+  return most;
+}
+
+Spectrum LatticeModel::spectrum(std::span<const float> inverse_masses) const {
+  Lattice start = make_lattice(parts_.cloth, index_, seed_, false);
+  std::copy(inverse_masses.begin(), inverse_masses.end(), start.inverse_mass.data());
+  return estimate_spectrum(parts_.cloth, stencils_, start, method_ == Method::spring_friction,
+                           parts_.kernels);
+}
+
+bool LatticeModel::folds_freely() const {
+  const auto has = [&](Kind kind) {
+    return std::any_of(stencils_.begin(), stencils_.end(),
+                       [&](const Stencil& f) { return f.kind == kind; });
+  };
+  return !has(Kind::structural) || !has(Kind::shear);
+}
+
+std::vector<Joined> LatticeModel::constraints_near(const Vec3& a, const Vec3& way,
+                                                   double distance) const {
+  std::vector<Joined> found;
+  for (const Stencil& f : stencils_)
+    for (int j = 0; j + f.dj < lattice_.rows; ++j)
+      for (int k = 0; k < f.per_row(lattice_.columns); ++k) {
+        const int near = k + f.near(), far = k + f.far();
+        const Vec3 from = lattice_.position(j, near);
+        if (f.alive(j, k) &&
+            segment_distance(a, way, from, minus(lattice_.position(j + f.dj, far), from)) <=
+                distance)
+          found.push_back({lattice_.number(j, near), lattice_.number(j + f.dj, far)});
+      }
+  return found;
+}
+
+}  // namespace weft::physics

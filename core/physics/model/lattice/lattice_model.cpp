@@ -1,0 +1,135 @@
+// Builds a grid's model, and chooses the stages that move it (lattice_model.h).
+#include "physics/model/lattice/lattice_model.h"
+
+#include <algorithm>
+
+#include "physics/model/lattice/plain_rows.h"
+
+namespace weft::physics {
+namespace {
+
+// Whether a stage asks where particles were before the substep: velocities from positions, and the
+// second order.
+bool keeps_previous(const Solver& solver, Method method) {
+  if (is_explicit(method)) return false;
+  return method == Method::positional || solver.sweep == Sweep::line || solver.order == 2;
+}
+
+}  // namespace
+
+LatticeModel::LatticeModel(const Scene& scene, int index, Method method, std::uint64_t seed,
+                           const KernelTable& kernels)
+    : index_(index),
+      seed_(seed),
+      method_(method),
+      stencils_(stencils_of(scene.cloths[std::size_t(index)])),
+      lattice_(make_lattice(scene.cloths[std::size_t(index)], index, seed,
+                            keeps_previous(scene.solver, method))),
+      parts_{{scene, scene.cloths[std::size_t(index)], method_, lattice_, kernels, *this},
+             lattice_,
+             stencils_} {
+  const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                               [](const Collider& c) { return c.cuts; });
+  if (cut || parts_.cloth.tear_strain > 0) allow_tearing();
+}
+
+void LatticeModel::allow_tearing() {
+  if (tearing_) return;
+  tearing_ = std::make_unique<LatticeTearing>(lattice_, stencils_, parts_.cloth.bending > 0,
+                                              parts_.cloth.tears);
+  parts_.tearing = tearing_.get();
+}
+
+double LatticeModel::mass(int particle) const {
+  const auto [j, i] = lattice_.place(particle);
+  return particle_mass(parts_.cloth, i, j);
+}
+
+void LatticeModel::append_motion(Method method, StageList& list) {
+  method_ = method;
+  multipliers_.reset();
+  corrections_.reset();
+  history_.reset();
+  overlong_.clear();
+  parts_.overlong = nullptr;
+  is_explicit(method) ? append_forces(list) : append_projections(list);
+}
+
+void LatticeModel::append_forces(StageList& list) {
+  if (parts_.cloth.tear_strain > 0 && is_plain(parts_))
+    overlong_.resize(std::size_t(lattice_.rows));
+  parts_.overlong = overlong_.empty() ? nullptr : overlong_.data();
+  list.skip("predict, sweeps, velocity", "springs are forces with this method");
+  list.choose("bending", make_bending(parts_, method_), "bending is 0");
+  list.stages.push_back(make_springs(parts_, method_ == Method::spring_friction));
+  list.choose("wind", make_wind(parts_, seed_), "drag and lift are 0");
+  list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
+}
+
+void LatticeModel::append_projections(StageList& list) {
+  const Solver& solver = parts_.scene.solver;
+  list.skip("springs", "constraints are projected with this method");
+  SweepOptions sweep;
+  sweep.compliant = method_ == Method::compliant;
+  const bool lines = solver.sweep == Sweep::line;
+  if (sweep.compliant && !lines && solver.iterations > 1)
+    multipliers_ = std::make_unique<Multipliers>(lattice_, stencils_.size());
+  sweep.multipliers = multipliers_.get();
+  if (sweep.compliant && solver.sweep != Sweep::jacobi && !lines)
+    corrections_ = std::make_unique<Rows>(lattice_.rows, lattice_.stride);
+  sweep.corrections = corrections_.get();
+  if (solver.order == 2)
+    history_ = std::make_unique<History>(lattice_);
+  else
+    list.skip("second order", "order is 1");
+  list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, multipliers_.get())
+                                 : make_predict(parts_, multipliers_.get(), corrections_.get()));
+  list.choose("wind", make_wind(parts_, seed_), "drag and lift are 0");
+  list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
+  list.choose("tethers", solver.tethers ? make_attachments(parts_, sweep.compliant) : nullptr,
+              solver.tethers ? "nothing is pinned" : "off in the scene");
+  if (lines) {
+    const float share = sweep.compliant ? 1.0f : float(2 * parts_.cloth.positional_k);
+    list.choose("line", make_line(parts_, {sweep.compliant, solver.iterations, share}),
+                "the cloth has no constraints");
+  } else {
+    list.skip("line", "sweep is not line");
+    for (int n = 0; n < solver.iterations && !stencils_.empty(); ++n) {
+      if (solver.sweep == Sweep::jacobi)
+        list.stages.push_back(make_jacobi(parts_, sweep));
+      else
+        append_gauss_seidel(parts_, sweep, list.stages);
+    }
+  }
+  if (corrections_) list.stages.push_back(make_corrections(parts_, *corrections_));
+  // What comes last stays as solved, and stretching undoes more of bending than that of stretching.
+  list.choose("bending", make_bending(parts_, method_), "bending is 0");
+  if (history_)
+    list.stages.push_back(make_velocity_second_order(parts_, *history_));
+  else if (!sweep.compliant || lines)
+    list.stages.push_back(make_velocity(parts_, sweep.compliant));
+}
+
+void LatticeModel::append_limits(StageList& list) {
+  list.choose("tear", parts_.cloth.tear_strain > 0 ? make_tear(parts_, *tearing_) : nullptr,
+              "tear_strain is 0");
+  if (parts_.cloth.strain_limit <= 0) return list.skip("strain_limit", "strain_limit is 0");
+  SweepOptions limit;
+  limit.limit = parts_.cloth.strain_limit;
+  append_gauss_seidel(parts_, limit, list.stages);
+}
+
+std::size_t LatticeModel::bytes() const {
+  std::size_t bytes = lattice_.bytes() + (multipliers_ ? multipliers_->bytes() : 0) +
+                      (corrections_ ? corrections_->bytes() : 0) +
+                      (history_ ? history_->bytes() : 0);
+  if (tearing_) bytes += tearing_->bytes() + overlong_.size();
+  return bytes;
+}
+
+std::unique_ptr<ClothModel> make_model(const Scene& scene, int index, Method method,
+                                       std::uint64_t seed, const KernelTable& kernels) {
+  return std::make_unique<LatticeModel>(scene, index, method, seed, kernels);
+}
+
+}  // namespace weft::physics

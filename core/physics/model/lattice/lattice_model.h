@@ -1,0 +1,64 @@
+// A cloth as a grid of particles joined by the constraints of stencils (stencil.h), with bending and
+// tearing: the model of rectangular sheets.
+#pragma once
+
+#include "physics/model/cloth_model.h"
+#include "physics/model/lattice/stages.h"
+#include "physics/model/lattice/tearing.h"
+
+namespace weft::physics {
+
+class LatticeModel final : public ClothModel {
+ public:
+  LatticeModel(const Scene& scene, int index, Method method, std::uint64_t seed,
+               const KernelTable& kernels);
+
+  const ClothParts& parts() const override { return parts_; }
+  LatticeParts* lattice() override { return &parts_; }
+
+  void append_motion(Method method, StageList& list) override;
+  void append_limits(StageList& list) override;
+  double mass(int particle) const override;
+
+  const SurfaceMesh& surface() const override;
+  ConstraintCounts constraints() const override;
+  Pull pull() const override;
+  void accelerations(std::vector<Vec3>& a) const override;
+  double elastic_energy() const override;
+  Strain strain() const override;
+  double held_energy(const Rows& x, double dt) const override;
+  float greatest_stretch(const Rows& x) const override;
+  double attachment_energy(const Rows& x, double dt) const override;
+  double rounding_gain() const override;
+  Spectrum spectrum(std::span<const float> inverse_masses) const override;
+  bool folds_freely() const override;
+
+  Tearing* tearing() override { return tearing_.get(); }
+  const Tearing* tearing() const override { return tearing_.get(); }
+  void allow_tearing() override;
+  std::vector<Joined> constraints_near(const Vec3& a, const Vec3& way,
+                                       double distance) const override;
+  std::size_t bytes() const override;
+
+ private:
+  void append_forces(StageList& list);
+  void append_projections(StageList& list);
+  const BendLinks* bend_links() const { return tearing_ ? tearing_->bend_links() : nullptr; }
+  double stretch_energy(const Rows& x, double dt) const;
+  double greatest_coordinate(const Rows& x) const;
+
+  const int index_;
+  const std::uint64_t seed_;
+  Method method_;
+  std::vector<Stencil> stencils_;
+  Lattice lattice_;
+  LatticeParts parts_;
+  std::unique_ptr<Multipliers> multipliers_;
+  std::unique_ptr<Rows> corrections_;
+  std::unique_ptr<History> history_;
+  std::vector<std::uint8_t> overlong_;
+  std::unique_ptr<LatticeTearing> tearing_;
+  mutable SurfaceMesh surface_;  // as last asked for
+};
+
+}  // namespace weft::physics

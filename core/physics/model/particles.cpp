@@ -1,0 +1,53 @@
+// The state of one cloth's particles (particles.h).
+#include "physics/model/particles.h"
+
+#include <algorithm>
+
+namespace weft::physics {
+
+Particles::Particles(const std::vector<int>& counts, bool keep_previous)
+    : rows(int(counts.size())),
+      stride(row_stride(*std::max_element(counts.begin(), counts.end()))),
+      first(counts.size() + 1),
+      x(rows, stride),
+      v(rows, stride),
+      inverse_mass(static_cast<std::size_t>(rows) * stride),
+      row_inverse_mass(static_cast<std::size_t>(rows)) {
+  for (std::size_t j = 0; j < counts.size(); ++j) first[j + 1] = first[j] + counts[j];
+  if (keep_previous) previous = Rows(rows, stride);
+}
+
+Particles::Place Particles::place(int particle) const {
+  assert(particle >= 0 && particle < count());
+  const auto next = std::upper_bound(first.begin(), first.end(), particle);
+  const int j = int(next - first.begin()) - 1;
+  return {j, particle - first[std::size_t(j)]};
+}
+
+std::vector<Vec3> Particles::gather(const Rows& values) const {
+  std::vector<Vec3> all;
+  all.reserve(std::size_t(count()));
+  for_each([&](int j, int i) {
+    all.push_back({values.at(0, j, i), values.at(1, j, i), values.at(2, j, i)});
+  });
+  return all;
+}
+
+void Particles::set_inverse_mass(int j, int i, float value) {
+  w(j)[i] = value;
+  weigh_row(j);
+}
+
+void Particles::weigh_row(int j) {
+  const float* const row = w(j);
+  const bool uniform =
+      std::all_of(row, row + count(j), [&](float value) { return value == row[0]; });
+  row_inverse_mass[static_cast<std::size_t>(j)] = uniform ? row[0] : 0.0f;
+}
+
+EnergyRow energy_row(const Particles& particles, ConstRow3 x, ConstRow3 v, int j,
+                     const Vec3& gravity) {
+  return {particles.count(j), x, v, particles.w(j), {gravity[0], gravity[1], gravity[2]}};
+}
+
+}  // namespace weft::physics

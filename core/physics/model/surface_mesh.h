@@ -1,0 +1,16 @@
+// The surface of a cloth as triangles of particles: what contact, output and viewer can read, whatever
+// the cloth is made of. Grids keep faster ways to their own triangles where a kernel wants them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace weft::physics {
+
+struct SurfaceMesh {
+  std::vector<std::array<int, 3>> triangles;  // corners by particle number
+  std::uint64_t version = 0;                  // rises when they change
+};
+
+}  // namespace weft::physics
