@@ -140,12 +140,56 @@ TEST(Recording, FaultsAreNamedByLineAndPlace) {
     EXPECT_EQ(outcome.err.find("json.exception"), std::string::npos) << outcome.err;
   }
   // A particle that the cloth does not have is found where it is asked for.
-  folder.write("b.rec", lines[0] + "\n" + R"({"frame": 0, "pin": {"particle": [0, 99, 0]}})" +
+  folder.write("b.rec", lines[0] + "\n" + R"({"frame": 0, "pin": {"particle": [0, 9999]}})" +
                             "\n" + lines[1] + "\n");
   const Outcome outcome = run_weft(folder, "run --replay b.rec");
   EXPECT_EQ(outcome.exit_code, 4);
   EXPECT_NE(outcome.err.find("before frame 1: cloth 0 has no particle"), std::string::npos)
       << outcome.err;
+}
+
+// Files of version 1 name particles by column and row, of the scene that runs at that time.
+TEST(Recording, OfVersion1IsReplayed) {
+  const Folder folder;
+  small_scene(folder);
+  ASSERT_EQ(run_weft(folder, "run small.json --frames 3").exit_code, 0);
+  const std::string path = folder.path() + "/a.rec";
+  const Scene scene = read_scene(folder.path() + "/small.json").scene;
+  Simulation simulation(scene);
+  {
+    Recorder recorder(path, simulation);
+    Input input;
+    input.particle = particle_number(scene.cloths[0].grid, 2, 1);
+    for (int n = 0; n < 3; ++n) {
+      if (n == 1) {
+        input.kind = Input::Kind::pin;
+        recorder.input(1, input);
+        apply(input, simulation);
+      }
+      simulation.advance_frame();
+      recorder.frame(simulation);
+    }
+    recorder.finish();
+  }
+  std::string text = folder.read("a.rec");
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  const int number = particle_number(scene.cloths[0].grid, 2, 1);
+  replace("\"weft_recording\":2", "\"weft_recording\":1");
+  replace("[0," + std::to_string(number) + "]", "[0,2,1]");
+  folder.write("old.rec", text);
+  const Outcome outcome = run_weft(folder, "run --replay old.rec");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  replace("[0,2,1]", "[0,2,999]");
+  folder.write("old.rec", text);
+  EXPECT_NE(run_weft(folder, "run --replay old.rec").err.find("/pin/particle/2: 999 is out of"),
+            std::string::npos);
+  replace("[0,2,999]", "[7,2,1]");
+  folder.write("old.rec", text);
+  EXPECT_EQ(run_weft(folder, "run --replay old.rec").exit_code, 3);
 }
 
 TEST(Recording, AnotherSceneSeedOrLengthIsRefused) {

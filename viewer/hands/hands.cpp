@@ -160,7 +160,7 @@ void Hands::draw(const Workspace& workspace, const Area& area, ImDrawList& list)
       for (int i = 0; i < cloth.columns && marks < kMostMarks; ++i) {
         if (cloth.inverse_mass[cloth.at(i, j)] != 0) continue;
         ++marks;
-        const ScreenPoint p = project(cloth.position(i, j));
+        const ScreenPoint p = project(cloth.position(j * cloth.columns + i));
         if (!p.seen) continue;
         list.AddCircleFilled({p.x, p.y}, 4, IM_COL32(20, 22, 28, 200));
         list.AddCircleFilled({p.x, p.y}, 2.6f, IM_COL32(255, 209, 102, 255));

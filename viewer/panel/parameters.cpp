@@ -151,7 +151,7 @@ void Parameters::pins(const std::string& pointer, const Json& value) {
     const std::string place = text::join(pointer, std::to_string(p));
     const std::string name = "pin " + std::to_string(i) + ", " + std::to_string(j);
     if (draw_path(name, place, keys, workspace_->snapshot().time,
-                  workspace_->in_scene(cloth.position(i, j))))
+                  workspace_->in_scene(cloth.position(j * cloth.columns + i))))
       change(place, keys.empty() ? at : Json{{"at", at}, {"keys", keys}});
   }
   ImGui::Unindent(6);

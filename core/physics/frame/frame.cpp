@@ -25,8 +25,8 @@ constexpr std::int64_t kManyParticles = 8192;  // for whose contact threads stan
 void Simulation::State::advance_frame() {
   if (!status.ok) return;
   const auto start = std::chrono::steady_clock::now();
-  since_hand_ = grab_ || carried() ? 0 : std::min(since_hand_ + scene.time.frame, kCalm);
-  if (hand_has_passed()) begin_again();
+  grab_ || carried() ? guard_.interacted() : guard_.pass(scene.time.frame);
+  if (guard_.interaction_has_passed(scene, cloths, driven(), began_.energy)) begin_again();
   for (std::size_t c = 0; c < cloths.size(); ++c)
     if (carried_[c]) wake(int(c));
   if (sleeping) sleeping->begin_frame(double(frame) * scene.time.frame);
@@ -34,16 +34,17 @@ void Simulation::State::advance_frame() {
   if (was_driven_ && !driven()) open_guard();
   was_driven_ = driven();
   save();
+  Verdict verdict;
   do {
     run_frame();
-    look();
-  } while (too_coarse());
-  if (!finite_) {
+    verdict = guard_.judge(frame_run());
+  } while (carry_out(verdict));
+  if (verdict == Verdict::stop) {
     find_fault();
     restore();
     return;
   }
-  calm();
+  if (!(sleeping && sleeping->all_asleep())) guard_.energy().accept(substeps);
   if (is_explicit(method) && !(sleeping && sleeping->all_asleep())) lag = dt / 2;
   for (auto& step : cloths)
     if (Tearing* tearing = step->model().tearing()) tearing->update();
@@ -70,16 +71,19 @@ void Simulation::State::run_frame() {
 }
 
 // What the frame has come to.
-void Simulation::State::look() {
-  finite_ = true;
-  if (sleeping && sleeping->all_asleep()) return;
-  EnergySum all;
+FrameRun Simulation::State::frame_run() {
+  FrameRun run{scene, method, cloths, records_, asleep_,  frame,
+               dt,    true,   {},     limit_,   driven(), nothing_else_acts()};
   for (std::size_t c = 0; c < cloths.size(); ++c) {
-    if (self_collision || asleep(c)) records_[c].measure();  // else its passes have looked
-    all += records_[c].energy_sum();
+    asleep_[c] = asleep(c);
+    if (asleep_[c]) continue;
+    if (self_collision) records_[c].measure();  // else its passes have looked
+    run.energy += records_[c].energy_sum();
   }
-  finite_ = all.greatest < kFarAway;
-  if (finite_) guard_.look(all, driven());
+  run.finite = run.energy.greatest < kFarAway;
+  if (run.finite && is_explicit(method) && !(sleeping && sleeping->all_asleep()))
+    run.limit = limit_ = stretched_limit();
+  return run;
 }
 
 void Simulation::State::run_with_contact() {

@@ -26,7 +26,7 @@ ClothStep& Simulation::State::step_with(int cloth, int particle) {
 // A hand does something to a cloth, or to all.
 void Simulation::State::touch(int cloth) {
   wake(cloth);
-  since_hand_ = 0;
+  guard_.interacted();
 }
 
 // The stages of a cloth have changed: their times start anew, and the plan tells what runs now.
@@ -65,7 +65,7 @@ void Simulation::State::grab(int cloth, int particle, const Vec3& target, double
   grab_->place = place;
   grab_->target = minus(target, origin);
   grab_->stiffness = stiffness;
-  guard_.put_in(std::max(0.0, grab_->energy() - stored));
+  guard_.energy().put_in(std::max(0.0, grab_->energy() - stored));
   if (is_explicit(method)) follow_stretch(stretched_limit());
 }
 
@@ -92,7 +92,7 @@ void Simulation::State::carry(int cloth, const Vec3& velocity) {
   }
   if (stage && !rests) {
     stage->begin(double(frame) * scene.time.frame, velocity);
-    guard_.drive(stage->speed());
+    guard_.energy().drive(stage->speed());
   }
   if (!stage || !rests) return;
   step.remove_stage(stage);
@@ -133,7 +133,7 @@ void Simulation::State::move_collider(int collider, const Vec3& target) {
   touch();
   set_path(std::size_t(collider), {{now, from}, {now + scene.time.frame, target}});
   const Vec3 way = minus(target, from);
-  guard_.drive(std::sqrt(dot(way, way)) / scene.time.frame);
+  guard_.energy().drive(std::sqrt(dot(way, way)) / scene.time.frame);
 }
 
 // A collider goes another way, by keys where it stands.

@@ -134,12 +134,10 @@ void Simulation::State::restore(const Snapshot& m) {
     }
   }
   frame = std::llround(m.time / scene.time.frame);
-  finer_ = 1;
-  upkeep_.restart();
-  failed_by_hand_ = failed_by_itself_ = was_driven_ = false;
-  since_hand_ = kCalm;
-  take_substeps(began_at_);
-  go_on_as(began_as_, began_with_);
+  guard_.begin_anew();
+  was_driven_ = false;
+  take_substeps(began_.substeps);
+  go_on_as(began_.method, began_.solver);
   lag = is_explicit(method) ? dt / 2 : 0;
   for (std::size_t n = 0; is_explicit(method) && n < cloths.size(); ++n)
     spectra[n] = cloths[n]->model().spectrum(masses(n).span());

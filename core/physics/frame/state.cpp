@@ -98,13 +98,8 @@ Simulation::State::State(Scene given, const Options& given_options, const Vec3& 
     plan.notes.push_back("the system starts no more than " + std::to_string(threads.count()) +
                          " of " + std::to_string(threads.asked()) +
                          " threads (a limit on processes or memory); the result is the same");
-  began_as_ = method;
-  began_with_ = scene.solver;
-  began_at_ = substeps;
   if (!changed.empty()) fall_back(changed);
-  began_fallen_back_ = plan.fallback;
-  began_notes_ = plan.notes;
-  began_guard_ = guard_;
+  began_ = {method, scene.solver, substeps, plan.fallback, plan.notes, guard_.energy()};
   frame_ms.reserve(std::size_t(clamp_to_int(scene.time.seconds / scene.time.frame, 1, 1000000)) +
                    1);
 }
@@ -113,6 +108,7 @@ void Simulation::State::build_cloths() {
   cloths.clear();
   carried_.clear();
   records_.clear();
+  asleep_.assign(scene.cloths.size(), 0);
   stage_ns.clear();
   apart_.reserve(scene.cloths.size());
   busy_.reserve(std::size_t(threads.count()));

@@ -11,17 +11,14 @@
 #include "physics/contact/self/untangle.h"
 #include "physics/frame/carry.h"
 #include "physics/frame/cloth_step.h"
-#include "physics/frame/energy_guard.h"
 #include "physics/frame/grab.h"
 #include "physics/frame/rollback_buffer.h"
 #include "physics/frame/sleeping.h"
+#include "physics/frame/step_guard.h"
 #include "physics/step/threads.h"
 #include "weft/simulation.h"
 
 namespace weft {
-
-inline constexpr float kFarAway = 1e7f;  // m; nothing in a sane scene gets there
-inline constexpr double kCalm = 1;       // s; what a hand did has passed by then
 
 // A number as notes give it.
 inline std::string number(double v) {
@@ -94,28 +91,25 @@ struct Simulation::State {
   std::vector<physics::RollbackBuffer> records_;  // of each cloth
   std::vector<std::size_t> apart_;                // cloths that take a thread each
   std::vector<std::int64_t> busy_;                // of each thread, with so many particles
-  bool finite_ = true;                            // at the end of the frame
+  std::vector<std::uint8_t> asleep_;              // each cloth as a whole, in this frame
   int saved_substeps_ = 1;
   double saved_lag_ = 0;
   physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
   int grabbed_ = 0;
   std::vector<physics::Carry*> carried_;           // in the plan of each cloth; null while it rests
   int since_collision_ = 0, until_collision_ = 1;  // substeps
-  physics::EnergyGuard guard_;
-  physics::Upkeep upkeep_;
+  physics::StepGuard guard_;
   bool was_driven_ = false;  // in the frame before
   double limit_ = 0;         // s; the stability limit at the end of the last frame (explicit)
-  int finer_ = 1;            // times as many substeps as are due, since a frame failed
   // As the run began, before any of its frames failed.
-  Method began_as_;
-  Solver began_with_;
-  int began_at_ = 1;  // substeps a frame
-  bool began_fallen_back_ = false;
-  std::vector<std::string> began_notes_;
-  physics::EnergyGuard began_guard_;
-  // Frames that failed soon after a hand did something say little of the frames to come.
-  double since_hand_ = kCalm;  // s, at most kCalm
-  bool failed_by_hand_ = false, failed_by_itself_ = false;
+  struct Beginning {
+    Method method;
+    Solver solver;
+    int substeps = 1;  // a frame
+    bool fallback = false;
+    std::vector<std::string> notes;
+    physics::EnergyGuard energy;
+  } began_;
 
   void choose_method_and_substeps();
   void note_starts(std::vector<std::string>& notes) const;
@@ -132,23 +126,18 @@ struct Simulation::State {
   void open_guard();
   bool blown() const { return scene.wind.drag > 0 || scene.wind.lift > 0; }
   int projection_substeps() const;
-  bool finest() const;
-  bool flies_away() const;
-  bool too_coarse();
-  bool hand_has_passed() const;
+  physics::FrameRun frame_run();
+  bool carry_out(physics::Verdict verdict);
+  void change_method(const std::string& which, int count);
   void begin_again();
   void go_on_as(Method as, const Solver& solver);
   bool nothing_else_acts() const;
-  bool overshot() const;
-  bool keeps_on();
-  void calm();
   void fall_back(const std::string& note);
   void restart_stages();
   void wake(int cloth = -1);
   void touch(int cloth = -1);
   bool asleep(std::size_t cloth) const { return sleeping && sleeping->rows(cloth).empty(); }
   void run_frame();
-  void look();
   void run_with_contact();
   void begin_surfaces();
   physics::ClothStep& step_with(int cloth, int particle);

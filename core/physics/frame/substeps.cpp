@@ -15,10 +15,7 @@ using namespace physics;
 
 namespace {
 
-constexpr double kLimitShare = 0.9;     // of the stability limit that an automatic substep takes
-constexpr int kMostSubsteps = 100000;   // per frame, flat; stretch may ask for 1.4 times as many
-constexpr double kLeastSubstep = 1e-6;  // s; below, single precision loses speeds of cm/s
-constexpr int kFinest = 16;             // times the substeps that are due, to save a frame
+constexpr int kMostSubsteps = 100000;  // per frame, flat; stretch may ask for 1.4 times as many
 constexpr double kGrabbed = 0.6;  // of stretched_limit's t, room for what a hand may do in a frame
 
 // What folds onto a line that stretches nothing has up to twice the flat sheet's ω², and no stretch adds
@@ -96,74 +93,62 @@ void Simulation::State::set_substeps(int count) {
               std::to_string(frame + 1) + " on, as far as the sheet is stretched");
 }
 
-bool Simulation::State::finest() const {
-  return finer_ == kFinest || dt < 2 * kLeastSubstep;
-}
-
-// Whether the frame came out as it cannot be and has a better chance with more substeps: springs
-// stretched beyond what their substep allows, or springs or line sweeps with more energy than there
-// is. Then everything is back at the frame's start, to be run again.
-bool Simulation::State::too_coarse() {
-  const bool springs = is_explicit(method), lines = !springs && scene.solver.sweep == Sweep::line;
-  if (!(springs || lines) || (sleeping && sleeping->all_asleep())) return false;
-  bool beyond_limit = false;
-  if (finite_) {
-    if (springs) limit_ = stretched_limit();
-    beyond_limit = springs && dt > limit_;
-    const bool jitters = lines && ((!finest() && overshot()) || keeps_on());
-    if (!beyond_limit && guard_.holds() && !jitters) return false;
-  }
+// Runs the frame again, if the verdict says so, or ends it; returns whether it runs again.
+bool Simulation::State::carry_out(Verdict verdict) {
   const std::string which = "frame " + std::to_string(frame + 1);
-  const bool unresolved = springs && beyond_limit && kLimitShare * limit_ < kLeastSubstep;
-  const bool hopeless = unresolved || (!beyond_limit && finest());
-  const int finer = hopeless ? substeps : 2 * substeps;
-  if (hopeless && flies_away()) return false;
-  restore();
-  (since_hand_ < kCalm ? failed_by_hand_ : failed_by_itself_) = true;
-  if (hopeless) {
-    Solver steady = scene.solver;
-    steady.sweep = Sweep::gauss_seidel;
-    steady.order = 1;
-    plan.notes.push_back(
-        which + " gained energy from nowhere with so many substeps too; from it on " +
-        (springs ? "the compliant method runs" : "gauss_seidel sweeps run") + " in their place");
-    plan.fallback = true;
-    go_on_as(springs ? Method::compliant : method, steady);
-    take_substeps(springs ? projection_substeps() : finer);
-    save();
-  } else if (beyond_limit) {
-    set_substeps(substeps_within(limit_));
-  } else {
-    take_substeps(finer);
-    finer_ *= 2;
-    fall_back(which + " gained energy from nowhere; it and all after it run with more substeps");
+  const int count = substeps;
+  switch (verdict) {
+    case Verdict::accept:
+    case Verdict::stop:
+      return false;
+    case Verdict::clamp:
+      for (auto& step : cloths) {
+        step->particles().v.scale(float(guard_.energy().reduction()));
+        step->restart();  // what stages keep of the motion
+      }
+      fall_back(which +
+                " gained energy from nowhere; velocities were reduced to what is left without it");
+      return false;
+    case Verdict::change_method:
+      restore();
+      change_method(which, count);
+      break;
+    case Verdict::refine_to_limit:
+      restore();
+      set_substeps(substeps_within(limit_));
+      break;
+    case Verdict::refine:
+      restore();
+      take_substeps(2 * count);
+      fall_back(which + " gained energy from nowhere; it and all after it run with more substeps");
+      break;
   }
   restart_stages();
   return true;
 }
 
-// Whether all that failed was a hand's doing, and the sheets move no more than they might without it.
-bool Simulation::State::hand_has_passed() const {
-  if (!failed_by_hand_ || failed_by_itself_ || since_hand_ < kCalm) return false;
-  EnergyGuard guard = began_guard_;
-  guard.look(scene, cloths, driven());
-  return guard.holds();
+// By a method that loses energy whatever the substep.
+void Simulation::State::change_method(const std::string& which, int count) {
+  const bool springs = is_explicit(method);
+  Solver steady = scene.solver;
+  steady.sweep = Sweep::gauss_seidel;
+  steady.order = 1;
+  plan.notes.push_back(
+      which + " gained energy from nowhere with so many substeps too; from it on " +
+      (springs ? "the compliant method runs" : "gauss_seidel sweeps run") + " in their place");
+  plan.fallback = true;
+  go_on_as(springs ? Method::compliant : method, steady);
+  take_substeps(springs ? projection_substeps() : count);
+  save();
 }
 
 // As the run began, from the state as it is.
 void Simulation::State::begin_again() {
-  plan.notes = began_notes_;
+  plan.notes = began_.notes;
   plan.notes.push_back("up to frame " + std::to_string(frame) +
                        " what a hand did took more substeps, or another method");
-  plan.fallback = began_fallen_back_;
+  plan.fallback = began_.fallback;
   restore(snapshot());
-}
-
-// Whether something was so fast at the frame's start that it leaves all bounds by any method.
-bool Simulation::State::flies_away() const {
-  return std::any_of(records_.begin(), records_.end(), [&](const RollbackBuffer& r) {
-    return !(r.v().greatest(kernel_table(simd)) * scene.time.frame < kFarAway);
-  });
 }
 
 int Simulation::State::projection_substeps() const {
@@ -195,69 +180,11 @@ bool Simulation::State::nothing_else_acts() const {
   return !(grab_ || carried() || self_collision || blown() || !scene.colliders.empty());
 }
 
-// Squared lengths in those at rest: much, so much that has doubled within the frame, or so much that is
-// kept up.
-constexpr float kStretched = 1.25f * 1.25f, kNoticed = 1.01f * 1.01f, kLasting = 1.02f * 1.02f;
-
-// Whether line sweeps stretched a sheet by what gravity and pins on paths, where they alone do work,
-// cannot have put into this frame. A line is solved by one Newton step a substep, which overshoots
-// where much happens in one, as when a straight line is pressed together from its ends.
-bool Simulation::State::overshot() const {
-  if (!nothing_else_acts()) return false;
-  for (std::size_t c = 0; c < cloths.size(); ++c) {
-    if (asleep(c)) continue;
-    const ClothStep& step = *cloths[c];
-    const float most = step.model().greatest_stretch(step.particles().x);
-    if (!(most > kNoticed)) continue;
-    const float at_start = step.model().greatest_stretch(records_[c].x());
-    const bool doubled = most - 1 > 2 * (at_start - 1);
-    if (most <= at_start || !(most > kStretched || doubled)) continue;
-    const double start = double(frame) * scene.time.frame;
-    if (gained(scene, step, records_[c].x(), records_[c].v(), dt, start, start + scene.time.frame))
-      return true;
-  }
-  return false;
-}
-
-// Whether line sweeps keep stretched sheets moving that drag should have slowed down.
-bool Simulation::State::keeps_on() {
-  const double start = double(frame) * scene.time.frame;
-  bool stretched = false;
-  Balance all;
-  if (nothing_else_acts() && !works(scene, start, start + scene.time.frame))
-    for (std::size_t c = 0; c < cloths.size(); ++c)
-      stretched |= cloths[c]->cloth().drag > 0 && !asleep(c) &&
-                   cloths[c]->model().greatest_stretch(cloths[c]->particles().x) > kLasting;
-  for (std::size_t c = 0; c < cloths.size() && stretched; ++c) {
-    const Balance one = balance(scene, *cloths[c], dt);
-    all.inner += one.inner;
-    all.potential += one.potential;
-    all.lost += one.lost;
-  }
-  if (stretched && !upkeep_.kept_up(all)) return false;
-  upkeep_.restart();
-  return stretched;
-}
-
-// Takes the energy off a frame that it cannot have.
-void Simulation::State::calm() {
-  if (sleeping && sleeping->all_asleep()) return;
-  if (!guard_.holds()) {
-    for (auto& step : cloths) {
-      step->particles().v.scale(float(guard_.reduction()));
-      step->restart();  // what stages keep of the motion
-    }
-    fall_back("frame " + std::to_string(frame + 1) +
-              " gained energy from nowhere; velocities were reduced to what is left without it");
-  }
-  guard_.accept(substeps);
-}
-
 void Simulation::State::open_guard() {
-  guard_.open(scene, method, cloths, double(frame) * scene.time.frame, dt);
+  guard_.energy().open(scene, method, cloths, double(frame) * scene.time.frame, dt);
   for (const Carry* carry : carried_)
-    if (carry) guard_.drive(carry->speed());
-  if (grab_) guard_.put_in(grab_->energy());
+    if (carry) guard_.energy().drive(carry->speed());
+  if (grab_) guard_.energy().put_in(grab_->energy());
 }
 
 bool Simulation::State::carried() const {
@@ -301,9 +228,9 @@ int Simulation::State::substeps_within(double limit) const {
   const int asked = scene.time.substeps;
   const int needed =
       clamp_to_int(std::ceil(scene.time.frame / (kLimitShare * limit)), 1, kFinest * kMostSubsteps);
-  if (asked == kAutoSubsteps) return finer_ * needed;
-  if (scene.time.frame / asked <= limit) return finer_ * asked;
-  return finer_ * asked * ((needed + asked - 1) / asked);
+  if (asked == kAutoSubsteps) return guard_.finer() * needed;
+  if (scene.time.frame / asked <= limit) return guard_.finer() * asked;
+  return guard_.finer() * asked * ((needed + asked - 1) / asked);
 }
 
 void Simulation::State::follow_stretch(double limit) {
