@@ -253,7 +253,8 @@ void add_run(CLI::App& program, int& exit_code) {
       ->check(number_in(1e-6, 1.0, "m, 1e-6 to 1"));
   command->add_option("--seed", arguments->seed, "Seeds every random choice (default: 1)")
       ->type_name("N")
-      ->check(number_in<std::uint64_t>(0, UINT64_MAX, "a whole number from 0"));
+      ->check(
+          number_in<std::uint64_t>(0, UINT64_MAX, "a whole number from 0 to 18446744073709551615"));
   command->add_option("--report", arguments->files.report, "Write what was measured, as JSON")
       ->type_name("FILE.json");
   command

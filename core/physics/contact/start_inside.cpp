@@ -18,7 +18,9 @@ void find_triangles_inside(const ClothParts& parts, const Collider& collider, St
   const Vec3 place = collider.keys.empty()
                          ? std::visit([](const auto& s) { return place_of(s); }, collider.shape)
                          : position_at(collider.keys, found.time);
-  for (const std::array<int, 3>& triangle : parts.model.surface().triangles) {
+  // The stage keeps triangles beside tears out as well.
+  const SurfaceMesh mesh = parts.model.whole_surface();
+  for (const std::array<int, 3>& triangle : mesh.triangles) {
     Corners c{};
     bool moves = false;
     for (int k = 0; k < 3; ++k) {

@@ -64,8 +64,9 @@ class ClothModel {
   virtual void append_limits(StageList& list) = 0;
   virtual double mass(int particle) const = 0;  // kg, held or not
 
-  // The triangles that are left.
+  // The triangles that are left, and those of the cloth before it tore.
   virtual const SurfaceMesh& surface() const = 0;
+  virtual SurfaceMesh whole_surface() const = 0;
   virtual ConstraintCounts constraints() const = 0;
   virtual Pull pull() const = 0;
 

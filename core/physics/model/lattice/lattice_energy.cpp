@@ -35,23 +35,26 @@ double segment_distance(const Vec3& p, const Vec3& d, const Vec3& q, const Vec3&
 const SurfaceMesh& LatticeModel::surface() const {
   const std::uint64_t version = tearing_ ? tearing_->version() : 0;
   if (!surface_.triangles.empty() && surface_.version == version) return surface_;
+  if (version == 0) return surface_ = whole_surface();
+  const auto number = [&](std::uint32_t lane) {
+    return int(lane) / lattice_.stride * lattice_.columns + int(lane) % lattice_.stride;
+  };
   surface_.version = version;
   surface_.triangles.clear();
-  if (version > 0) {
-    const auto number = [&](std::uint32_t lane) {
-      return int(lane) / lattice_.stride * lattice_.columns + int(lane) % lattice_.stride;
-    };
-    for (const auto& [a, b, c] : tearing_->triangles())
-      surface_.triangles.push_back({number(a), number(b), number(c)});
-    return surface_;
-  }
+  for (const auto& [a, b, c] : tearing_->triangles())
+    surface_.triangles.push_back({number(a), number(b), number(c)});
+  return surface_;
+}
+
+SurfaceMesh LatticeModel::whole_surface() const {
+  SurfaceMesh mesh;
   for (int j = 0; j + 1 < lattice_.rows; ++j)
     for (int i = 0; i + 1 < lattice_.columns; ++i) {
       const int p = lattice_.number(j, i), below = p + lattice_.columns;
-      surface_.triangles.push_back({p, p + 1, below});
-      surface_.triangles.push_back({p + 1, below + 1, below});
+      mesh.triangles.push_back({p, p + 1, below});
+      mesh.triangles.push_back({p + 1, below + 1, below});
     }
-  return surface_;
+  return mesh;
 }
 
 ConstraintCounts LatticeModel::constraints() const {

@@ -21,6 +21,7 @@ class LatticeModel final : public ClothModel {
   double mass(int particle) const override;
 
   const SurfaceMesh& surface() const override;
+  SurfaceMesh whole_surface() const override;
   ConstraintCounts constraints() const override;
   Pull pull() const override;
   void accelerations(std::vector<Vec3>& a) const override;
