@@ -18,6 +18,9 @@ const std::vector<Shape>& shapes() {
       Capsule{{-0.3, 0, 0.1}, {0.4, 0.2, 0}, 0.2},
       Box{{0.05, 0, 0}, {0.3, 0.2, 0.4}, {20, -35, 50}, 0},
       Box{{0.05, 0, 0}, {0.3, 0.2, 0.4}, {20, -35, 50}, 0.07},
+      Cylinder{{-0.3, 0, 0.1}, {0.4, 0.2, 0}, 0.25, 0},
+      Cylinder{{-0.3, 0, 0.1}, {0.4, 0.2, 0}, 0.25, 0.1},
+      Cylinder{{0, 0, 0}, {0.02, 0.06, 0}, 0.4, 0.02},
   };
   return all;
 }
@@ -58,6 +61,13 @@ double volume_of(const Shape& shape) {
   if (const auto* c = std::get_if<Capsule>(&shape)) {
     const double r = c->radius, l = std::sqrt(0.7 * 0.7 + 0.2 * 0.2 + 0.1 * 0.1);
     return 4 / 3. * M_PI * r * r * r + M_PI * r * r * l;
+  }
+  if (const auto* c = std::get_if<Cylinder>(&shape)) {
+    const Vec3 e = physics::minus(c->b, c->a);
+    const double r = c->rounding, big = c->radius - r, l = std::sqrt(physics::dot(e, e)) - 2 * r;
+    // Steiner's formula of the core: volume, surface, mean width.
+    return M_PI * big * big * l + (2 * M_PI * big * big + 2 * M_PI * big * l) * r +
+           (M_PI * M_PI * big + M_PI * l) * r * r + 4 / 3. * M_PI * r * r * r;
   }
   const auto& b = std::get<Box>(shape);
   const double r = b.rounding, x = b.half[0] - r, y = b.half[1] - r, z = b.half[2] - r;

@@ -227,13 +227,20 @@ Cloth Parts::layer(const Cloth& below) {
 
 Shape Parts::shape(const Vec3& at, double size) {
   const double radius = std::clamp(size * draw_.decades(0.02, 1), 1e-6, kFarthest);
-  switch (draw_.between(0, 3)) {
+  switch (draw_.between(0, 4)) {
     case 0:
       return Sphere{at, radius};
     case 1:
       return Plane{at, draw_.chance(0.7) ? Vec3{0, 1, 0} : draw_.vector(1)};
     case 2:
       return Capsule{at, plus(at, draw_.vector(size)), radius};
+    case 3: {
+      Cylinder cylinder{at, plus(at, draw_.vector(size)), radius, 0};
+      const Vec3 e = minus(cylinder.b, cylinder.a);
+      const double half = std::min(radius, 0.5 * std::sqrt(dot(e, e)));
+      if (draw_.chance(0.5)) cylinder.rounding = half * draw_.uniform(0, 1);
+      return cylinder;
+    }
     default:
       break;
   }

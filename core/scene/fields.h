@@ -117,6 +117,14 @@ void fields(Walk& walk, Capsule& capsule) {
 }
 
 template <class Walk>
+void fields(Walk& walk, Cylinder& cylinder) {
+  walk("a", cylinder.a);
+  walk("b", cylinder.b);
+  walk("radius", cylinder.radius);
+  walk("rounding", cylinder.rounding);
+}
+
+template <class Walk>
 void fields(Walk& walk, Box& box) {
   walk("center", box.center);
   walk("half", box.half);

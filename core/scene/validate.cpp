@@ -221,6 +221,7 @@ class Together {
   static double half_of(const Sphere& s) { return s.radius; }
   static double half_of(const Plane&) { return std::numeric_limits<double>::infinity(); }
   static double half_of(const Capsule& c) { return c.radius; }
+  static double half_of(const Cylinder& c) { return std::min(c.radius, 0.5 * length(axis_of(c))); }
   static double half_of(const Box& b) { return std::min({b.half[0], b.half[1], b.half[2]}); }
 
   void shape(const Sphere&, const std::string&) {}
@@ -230,12 +231,32 @@ class Together {
       fault(place + "/plane/normal", "normal is zero", "a direction at least 1e-6 long");
   }
 
+  template <class Shape>
+  static Vec3 axis_of(const Shape& s) {
+    return {s.b[0] - s.a[0], s.b[1] - s.a[1], s.b[2] - s.a[2]};
+  }
+
+  // Whether the ends of an axis are apart.
+  template <class Shape>
+  bool has_axis(const Shape& shape, const std::string& place, const char* otherwise) {
+    if (!sound({place + "/a", place + "/b"})) return false;
+    if (length(axis_of(shape)) >= kMinSpacing) return true;
+    fault(place, "a and b are the same point",
+          std::string("an axis at least 1e-6 m long") + otherwise);
+    return false;
+  }
+
   void shape(const Capsule& capsule, const std::string& place) {
-    const Vec3 axis{capsule.b[0] - capsule.a[0], capsule.b[1] - capsule.a[1],
-                    capsule.b[2] - capsule.a[2]};
-    if (sound({place + "/capsule/a", place + "/capsule/b"}) && length(axis) < kMinSpacing)
-      fault(place + "/capsule", "a and b are the same point",
-            "an axis at least 1e-6 m long, or a sphere");
+    has_axis(capsule, place + "/capsule", ", or a sphere");
+  }
+
+  void shape(const Cylinder& cylinder, const std::string& place) {
+    if (!has_axis(cylinder, place + "/cylinder", "")) return;
+    const double most = half_of(cylinder);
+    if (sound({place + "/cylinder/radius", place + "/cylinder/rounding"}) &&
+        cylinder.rounding > most)
+      fault(place + "/cylinder/rounding", "rounding is " + number_words(cylinder.rounding),
+            "0 to " + number_words(most) + " m, the radius or half of the length");
   }
 
   void shape(const Box& box, const std::string& place) {

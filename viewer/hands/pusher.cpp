@@ -27,7 +27,8 @@ float distance_to(ImVec2 p, ImVec2 a, ImVec2 b) {
 }
 
 std::string place_key(const Shape& shape) {
-  constexpr const char* keys[] = {"sphere/center", "plane/point", "capsule/a", "box/center"};
+  constexpr const char* keys[] = {"sphere/center", "plane/point", "capsule/a", "box/center",
+                                  "cylinder/a"};
   return keys[shape.index()];
 }
 
@@ -111,11 +112,13 @@ void Pusher::let_go(Workspace& workspace) {
   const Vec3 to = workspace.in_scene(now_);
   std::vector<Document::Change> changes{{place + "/" + place_key(collider.shape), to},
                                         {place + "/keys", text::Json::array()}};
-  if (const Capsule* capsule = std::get_if<Capsule>(&collider.shape)) {
-    Vec3 b = capsule->b;
-    for (std::size_t k = 0; k < 3; ++k) b[k] += to[k] - capsule->a[k];
-    changes.push_back({place + "/capsule/b", b});
-  }
+  // The other end of an axis comes along.
+  const Vec3 from = place_of(collider.shape);
+  const Shape there = moved(collider.shape, {to[0] - from[0], to[1] - from[1], to[2] - from[2]});
+  if (const Capsule* capsule = std::get_if<Capsule>(&there))
+    changes.push_back({place + "/capsule/b", capsule->b});
+  if (const Cylinder* cylinder = std::get_if<Cylinder>(&there))
+    changes.push_back({place + "/cylinder/b", cylinder->b});
   workspace.edit(changes);
 }
 

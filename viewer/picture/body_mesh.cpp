@@ -50,6 +50,18 @@ BodyMesh revolve(Vec3f a, Vec3f b, float radius, int around) {
   return {vertices, indices};
 }
 
+// A shape's own triangles; the texture runs around and along it by the order of its vertices' angles.
+BodyMesh plain_mesh(const ShapeMesh& mesh) {
+  Vertices vertices;
+  Indices indices;
+  for (std::size_t n = 0; n < mesh.positions.size(); ++n) {
+    const Vec3f p = to_float(mesh.positions[n]);
+    vertices.push_back({p, to_float(mesh.normals[n]), p.x + p.z, p.y});
+  }
+  for (const auto& t : mesh.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  return {vertices, indices};
+}
+
 struct Axes {
   Vec3f x, y, z;
   Vec3f turn(Vec3f p) const { return x * p.x + y * p.y + z * p.z; }
@@ -156,6 +168,7 @@ BodyMesh make_body(const Shape& shape, float size, int tessellation) {
   if (const Capsule* c = std::get_if<Capsule>(&shape))
     return revolve(to_float(c->a), to_float(c->b), static_cast<float>(c->radius), tessellation);
   if (const Box* b = std::get_if<Box>(&shape)) return box_mesh(*b, tessellation);
+  if (std::holds_alternative<Cylinder>(shape)) return plain_mesh(triangulate(shape));
   const Plane& plane = std::get<Plane>(shape);
   return square(to_float(plane.point), normalized(to_float(plane.normal)), size);
 }

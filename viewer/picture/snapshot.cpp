@@ -21,6 +21,11 @@ void add_bounds(const Capsule& c, Bounds& bounds) {
   bounds.add_ball(to_float(c.a), static_cast<float>(c.radius));
   bounds.add_ball(to_float(c.b), static_cast<float>(c.radius));
 }
+void add_bounds(const Cylinder& c, Bounds& bounds) {
+  const auto reach = static_cast<float>(c.radius);
+  bounds.add_ball(to_float(c.a), reach);
+  bounds.add_ball(to_float(c.b), reach);
+}
 void add_bounds(const Box& b, Bounds& bounds) {
   bounds.add_ball(to_float(b.center), length(to_float(b.half)));
 }
@@ -70,6 +75,7 @@ Collider collider_at(const Collider& collider, double time) {
 Shape about_its_place(const Shape& shape) {
   Shape about = moved(shape, negative(place_of(shape)));
   if (Capsule* capsule = std::get_if<Capsule>(&about)) capsule->b = to_double(to_float(capsule->b));
+  if (Cylinder* c = std::get_if<Cylinder>(&about)) c->b = to_double(to_float(c->b));
   return about;
 }
 

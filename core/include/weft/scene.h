@@ -109,6 +109,15 @@ struct Capsule {
   friend bool operator==(const Capsule&, const Capsule&) = default;
 };
 
+// All points within `radius` of the axis from a to b, between its ends: a disc where it is short. Its
+// edges are rounded by `rounding` [m] (0 <= rounding <= radius and half of the length).
+struct Cylinder {
+  Vec3 a{}, b{0, 1, 0};  // ends of the axis
+  double radius = 0.1;   // m
+  double rounding = 0;
+  friend bool operator==(const Cylinder&, const Cylinder&) = default;
+};
+
 // A box of half-sizes `half` about `center`, turned by `rotation` [degrees, about x then y then z],
 // its edges rounded by `rounding` [m] (0 <= rounding <= the smallest half-size).
 struct Box {
@@ -133,8 +142,9 @@ struct Friction {
 
 // The shapes of colliders: the type, and the name that scene files and messages have for it. All that goes
 // by shape is made from this list: the variant, the reader and the kernels.
-#define WEFT_SHAPES(apply) \
-  apply(Sphere, sphere) apply(Plane, plane) apply(Capsule, capsule) apply(Box, box)
+#define WEFT_SHAPES(apply)                                                          \
+  apply(Sphere, sphere) apply(Plane, plane) apply(Capsule, capsule) apply(Box, box) \
+      apply(Cylinder, cylinder)
 
 template <class, class... Shapes>
 struct OneOf {
@@ -155,7 +165,7 @@ struct Collider {
   Friction friction;
   double offset = 0;  // m; the cloth is kept this far off the surface
   std::vector<Key>
-      keys;           // path of the sphere's or box's center, the plane's point, the capsule's a
+      keys;  // path of the sphere's or box's center, the plane's point, the capsule's or cylinder's a
   bool cuts = false;  // cuts the constraints that pass through it instead of pushing
   friend bool operator==(const Collider&, const Collider&) = default;
 };

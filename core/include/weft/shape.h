@@ -19,7 +19,7 @@ struct ShapeMesh {
 ShapeMesh triangulate(const Shape& shape);
 
 // The point that a collider's keys move: the sphere's or box's center, the plane's point, the capsule's
-// a.
+// or cylinder's a.
 Vec3 place_of(const Shape& shape);
 // The shape moved by so much [m].
 Shape moved(Shape shape, const Vec3& by);
