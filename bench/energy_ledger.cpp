@@ -59,7 +59,7 @@ bool runs_springs(const weft::Simulation& simulation) {
 Ledger::Ledger(const weft::Scene& scene, bool springs, double dt)
     : scene_(scene),
       cloth_(scene_.cloths[0]),
-      stencils_(weft::physics::stencils_of(cloth_)),
+      stencils_(weft::physics::stencils_of(cloth_, scene_.solver)),
       springs_(springs),
       dt_(dt) {}
 

@@ -94,7 +94,8 @@ class CourseCloth final : public CoursePeer {
       for (int i = 0; i < cloth_.grid.nx; ++i) {
         for (int n = 1; n <= cloth_.level; ++n)
           for (const int di : {-n, 0, n})
-            connect(i, j, i + di, j - n, ks.structural, damping.structural);
+            if (di <= 0 || cloth_.level_diagonals == weft::LevelDiagonals::both)
+              connect(i, j, i + di, j - n, ks.structural, damping.structural);
         for (int n = 1; n <= cloth_.level; ++n)
           connect(i, j, i - n, j, ks.structural, damping.structural);
         if (cloth_.level > 0) continue;

@@ -75,7 +75,8 @@ std::vector<Springs> springs_of(const weft::Cloth& cloth) {
   }
   for (int n = 1; n <= cloth.level; ++n)
     for (const auto& [di, dj] : {std::pair{n, 0}, {0, n}, {n, n}, {-n, n}})
-      stencil(di, dj, cloth.stiffness.structural);
+      if (di >= 0 || cloth.level_diagonals == weft::LevelDiagonals::both)
+        stencil(di, dj, cloth.stiffness.structural);
   return all;
 }
 

@@ -133,7 +133,7 @@ void Parts::masses(Cloth& c) {
 void Parts::limits(Cloth& c) {
   if (some(0.25)) c.strain_limit = draw_.decades(1e-4, 10);
   if (some(0.2)) c.tear_strain = draw_.decades(1e-3, 10);
-  if (draw_.chance(0.3)) c.tears = Tears::holes;
+  if (draw_.chance(0.3)) c.tears = draw_.of({Tears::holes, Tears::particles});
 }
 
 SelfCollision Parts::self_collision(const Grid& g) {

@@ -31,8 +31,11 @@ constexpr std::array<const char*, 2> words(SelfCollisionResponse) {
   return {"stiff", "course"};
 }
 
-constexpr std::array<const char*, 2> words(Tears) {
-  return {"split", "holes"};
+constexpr std::array<const char*, 3> words(Tears) {
+  return {"split", "holes", "particles"};
+}
+constexpr std::array<const char*, 2> words(LevelDiagonals) {
+  return {"both", "one"};
 }
 
 template <class Walk>
@@ -49,6 +52,8 @@ void fields(Walk& walk, Solver& solver) {
   walk("tethers", solver.tethers);
   walk("order", solver.order);
   walk("iterations", solver.iterations);
+  walk("iterate_springs", solver.iterate_springs);
+  walk("full_first_kick", solver.full_first_kick);
   walk("collision_iterations", solver.collision_iterations);
   walk("sleep", solver.sleep);
 }
@@ -86,6 +91,7 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("stiffness", cloth.stiffness);
   walk("spring_damping", cloth.spring_damping);
   walk("level", cloth.level);
+  walk("level_diagonals", cloth.level_diagonals);
   walk("stiffness_gradient", cloth.stiffness_gradient);
   walk("positional_k", cloth.positional_k);
   walk("drag", cloth.drag);

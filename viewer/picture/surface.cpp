@@ -170,7 +170,8 @@ Offsets offsets_of(const Cloth& description) {
     for (int n = 1; n <= description.level; ++n) {
       auto& straight = n == 1 ? offsets.structural : offsets.bend;
       straight.insert(straight.end(), {{n, 0}, {0, n}});
-      offsets.shear.insert(offsets.shear.end(), {{n, n}, {n, -n}});
+      offsets.shear.push_back({n, n});
+      if (description.level_diagonals == LevelDiagonals::both) offsets.shear.push_back({n, -n});
     }
     return offsets;
   }

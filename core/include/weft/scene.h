@@ -65,9 +65,13 @@ struct SelfCollision {
   friend bool operator==(const SelfCollision&, const SelfCollision&) = default;
 };
 
-// What is shown of the triangles that a tear passes through: each side's share, so that the tear is a
-// line that opens, or nothing (seed 000).
-enum class Tears { split, holes };
+// What a constraint that ends takes with it, and what is shown: `split`, each side's share of the
+// triangles in its way, so that the tear is a line that opens; `holes`, none of these triangles;
+// `particles`, both particles that it joined lose all constraints and triangles (seed 000).
+enum class Tears { split, holes, particles };
+
+// Diagonals of a level: both, or (i+n, j+n) alone (seed 000).
+enum class LevelDiagonals { both, one };
 
 struct Cloth {
   Grid grid;
@@ -76,8 +80,9 @@ struct Cloth {
   std::vector<double> masses;        // kg, nx*ny in row-major order; not empty: replaces both
   Kinds stiffness{1000, 1000, 200};  // N/m; 0 = none of that kind
   Kinds spring_damping;              // N·s/m along the spring (method spring_friction)
-  int level = 0;  // n >= 1: constraints to distance 1..n along rows, columns and both
-                  // diagonals, all with stiffness.structural (seed 000)
+  int level = 0;                     // n >= 1: constraints to distance 1..n along rows, columns and
+                                     // diagonals, all with stiffness.structural (seed 000)
+  LevelDiagonals level_diagonals = LevelDiagonals::both;  // where level is not 0
   // 0 … 1: relative drop of stiffness from first row to last (seed 003).
   double stiffness_gradient = 0;
   double positional_k = 0.5;  // 0 … 0.5: share of the error each end takes (method positional)
@@ -187,9 +192,16 @@ struct Solver {
   bool tethers = false;               // one-sided distance to the pins (positional, compliant)
   int order = 1;                      // 2: second-order substep (compliant)
   int iterations = 1;                 // constraint sweeps per substep, 1 … 1000
-  int collision_iterations = 1;       // passes over the colliders per substep, 1 … 100
-  double sleep = 0;  // m/s; 0 … 1: row-blocks slower than this for half a second rest
-                     // until something moves them; 0 = nothing ever rests
+  bool iterate_springs =
+      false;  // methods spring and spring_friction: every iteration adds the spring
+              // forces again, so that stiffness and damping count `iterations`
+              // times (seed 000); false: springs have no iterations
+  bool full_first_kick = false;  // the same methods: the first substep adds a whole substep of
+                                 // acceleration to the velocities, as position Verlet does whose
+      // previous positions are its first (the course); false: half of one
+  int collision_iterations = 1;  // passes over the colliders per substep, 1 … 100
+  double sleep = 0;              // m/s; 0 … 1: row-blocks slower than this for half a second rest
+                                 // until something moves them; 0 = nothing ever rests
   friend bool operator==(const Solver&, const Solver&) = default;
 };
 

@@ -36,6 +36,10 @@ void Simulation::State::choose_method_and_substeps() {
     notes.push_back("nothing sleeps: gusts move the cloth");
   int count = scene.time.substeps;
   double limit = 0;
+  if (is_explicit(method) && scene.solver.iterations > 1 && !scene.solver.iterate_springs)
+    notes.push_back("iterations is " + std::to_string(scene.solver.iterations) +
+                    ", which does nothing here: springs have no iterations (iterate_springs adds "
+                    "their forces so many times)");
   if (is_explicit(method)) {
     limit = std::numeric_limits<double>::infinity();
     double safe = limit;  // for automatic substeps
@@ -73,7 +77,7 @@ void Simulation::State::choose_method_and_substeps() {
   take_substeps(count);
   if (is_explicit(method)) {
     lag = dt / 2;
-    stagger();
+    if (!scene.solver.full_first_kick) stagger();
   }
   open_guard();
 }

@@ -22,7 +22,7 @@ LatticeModel::LatticeModel(const Scene& scene, int index, Method method, std::ui
     : index_(index),
       seed_(seed),
       method_(method),
-      stencils_(stencils_of(scene.cloths[std::size_t(index)])),
+      stencils_(stencils_of(scene.cloths[std::size_t(index)], scene.solver)),
       lattice_(make_lattice(scene.cloths[std::size_t(index)], index, seed,
                             keeps_previous(scene.solver, method))),
       parts_{{scene, scene.cloths[std::size_t(index)], method_, lattice_, kernels, *this},

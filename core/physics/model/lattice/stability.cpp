@@ -185,7 +185,8 @@ double projection_substep(const Scene& scene) {
     if (solver.method != Method::positional) {
       double lightest = particle_mass(c, 0, 0);
       for (const double mass : c.masses) lightest = std::min(lightest, mass);
-      const double k = std::max({c.stiffness.structural, c.stiffness.shear, c.stiffness.bend});
+      const double k = spring_repeats(solver) *
+                       std::max({c.stiffness.structural, c.stiffness.shear, c.stiffness.bend});
       needed = std::max(needed, std::sqrt(lightest / std::max(k, 1e-12)));
     }
     dt = std::min(dt, needed);

@@ -17,12 +17,19 @@ double rest_length(const Grid& g, int di, int dj) {
 
 }  // namespace
 
-std::vector<Stencil> stencils_of(const Cloth& cloth) {
+double spring_repeats(const Solver& solver) {
+  const bool springs = solver.method == Method::spring || solver.method == Method::spring_friction;
+  return springs && solver.iterate_springs ? solver.iterations : 1;
+}
+
+std::vector<Stencil> stencils_of(const Cloth& cloth, const Solver& solver) {
   std::vector<Stencil> stencils;
   const Grid& g = cloth.grid;
+  const double repeats = spring_repeats(solver);
   const auto add = [&](int di, int dj, Kind kind, double stiffness, double damping) {
     if (stiffness <= 0 || std::abs(di) >= g.nx || dj >= g.ny) return;
-    stencils.push_back({di, dj, kind, rest_length(g, di, dj), stiffness, damping});
+    stencils.push_back(
+        {di, dj, kind, rest_length(g, di, dj), repeats * stiffness, repeats * damping});
   };
   const Kinds &k = cloth.stiffness, &d = cloth.spring_damping;
   if (cloth.level == 0) {
@@ -39,7 +46,8 @@ std::vector<Stencil> stencils_of(const Cloth& cloth) {
     add(n, 0, axis, k.structural, d.structural);
     add(0, n, axis, k.structural, d.structural);
     add(n, n, diagonal, k.structural, d.structural);
-    add(-n, n, diagonal, k.structural, d.structural);
+    if (cloth.level_diagonals == LevelDiagonals::both)
+      add(-n, n, diagonal, k.structural, d.structural);
   }
   return stencils;
 }

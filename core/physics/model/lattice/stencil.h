@@ -50,9 +50,13 @@ struct Stencil {
   int per_row(int columns) const { return columns - (di < 0 ? -di : di); }
 };
 
+// How often a substep adds each spring's force: positions do not change in between, so this is a factor
+// on stiffness and damping.
+double spring_repeats(const Solver& solver);
+
 // The stencils of a cloth that exist on its grid: structural, shear and bend of non-zero stiffness,
-// or those of its level (seed 000).
-std::vector<Stencil> stencils_of(const Cloth& cloth);
+// or those of its level (seed 000), as stiff as the solver's repeats make them.
+std::vector<Stencil> stencils_of(const Cloth& cloth, const Solver& solver = {});
 
 // Factor on the stiffness of constraints between rows j and j+dj (seed 003's stiffness gradient).
 double gradient_factor(const Cloth& cloth, int j, int dj);

@@ -15,6 +15,7 @@ LatticeTearing::LatticeTearing(const Lattice& l, std::vector<Stencil>& stencils,
       columns_(l.columns),
       rows_(l.rows),
       stride_(l.stride),
+      tears_(tears),
       stencils_(stencils),
       bend_links_(bends ? std::make_unique<BendLinks>(l) : nullptr),
       died_(static_cast<std::size_t>(l.rows)),
@@ -25,6 +26,8 @@ LatticeTearing::LatticeTearing(const Lattice& l, std::vector<Stencil>& stencils,
     links_.push_back(std::make_unique<Links>(rows_, stride_, f.per_row(columns_)));
     f.links = links_.back().get();
   }
+  if (tears_ == Tears::particles)
+    removed_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   make_whole();
   triangles_.reserve(2 * squares_.size());
   rows_about_.reserve(static_cast<std::size_t>(l.rows));
@@ -40,6 +43,7 @@ void LatticeTearing::make_whole() {
   std::fill(died_.begin(), died_.end(), 0);
   followed_ = died_;
   std::fill(squares_.begin(), squares_.end(), std::uint8_t(0));
+  std::fill(removed_.begin(), removed_.end(), std::uint8_t(0));
   torn_ = 0;
 }
 
@@ -64,6 +68,8 @@ void LatticeTearing::end_joined(const Joined& constraint) {
 void LatticeTearing::set_torn(const std::vector<Joined>& torn) {
   make_whole();
   for (const Joined& constraint : torn) end_joined(constraint);
+  for (std::size_t p = 0; p < removed_.size(); ++p)
+    removed_[p] = free(static_cast<int>(p) % columns_, static_cast<int>(p) / columns_);
   update();
   ++version_;
   list_triangles();
@@ -115,6 +121,43 @@ void LatticeTearing::end_spanning(int row) {
   }
 }
 
+// Whether a particle has no constraint left, where it had one.
+bool LatticeTearing::free(int i, int j) const {
+  bool had = false;
+  for (const Stencil& f : stencils_)
+    for (const int side : {1, -1}) {
+      const int x = i + side * f.di, y = j + side * f.dj;
+      if (x < 0 || y < 0 || x >= columns_ || y >= rows_) continue;
+      had = true;
+      if (f.alive(std::min(j, y), std::min(i, x))) return false;
+    }
+  return had;
+}
+
+// What is dead about the rows where something died, and joins no particle that is gone already, takes
+// its own two with it.
+void LatticeTearing::end_particles() {
+  const auto at = [&](int i, int j) { return static_cast<std::size_t>(j) * columns_ + i; };
+  std::vector<std::array<int, 2>> gone;
+  for (const int j : rows_about_)
+    for (const Stencil& f : stencils_)
+      for (int a = 0; j + f.dj < rows_ && a < f.per_row(columns_); ++a) {
+        if (f.alive(j, a)) continue;
+        const std::array<int, 2> near{a + f.near(), j}, far{a + f.far(), j + f.dj};
+        if (removed_[at(near[0], near[1])] || removed_[at(far[0], far[1])]) continue;
+        gone.push_back(near);
+        gone.push_back(far);
+      }
+  for (const auto& [i, j] : gone) {
+    removed_[at(i, j)] = 1;
+    for (const Stencil& f : stencils_)
+      for (const int side : {1, -1}) {
+        const int x = i + side * f.di, y = j + side * f.dj;
+        if (x >= 0 && y >= 0 && x < columns_ && y < rows_) end(f, std::min(j, y), std::min(i, x));
+      }
+  }
+}
+
 // Bending goes with the structural constraints that it bends.
 void LatticeTearing::end_bending(int row) {
   BendLinks& b = *bend_links_;
@@ -142,6 +185,11 @@ bool LatticeTearing::look_at_squares(int row) {
                              alive(1, 0, i, j + 1), diagonal};
       std::uint8_t gone = 0;
       for (int n = 0; n < 6; ++n) gone |= static_cast<std::uint8_t>(!edges[n] << n);
+      if (!removed_.empty()) {
+        const std::size_t p = static_cast<std::size_t>(j) * columns_ + i, below = p + columns_;
+        if (removed_[p] || removed_[p + 1] || removed_[below]) gone |= 7;
+        if (removed_[p + 1] || removed_[below + 1] || removed_[below]) gone |= 7 << 3;
+      }
       std::uint8_t& square = squares_[static_cast<std::size_t>(j) * (columns_ - 1) + i];
       changed |= square != gone;
       square = gone;
@@ -180,21 +228,32 @@ void LatticeTearing::end_pinches(int j) {
   }
 }
 
+// Where something died that has not been followed.
+void LatticeTearing::list_rows() {
+  rows_about_.clear();
+  for (int j = 0; j < rows_; ++j)
+    if (died_[static_cast<std::size_t>(j)] != followed_[static_cast<std::size_t>(j)])
+      rows_about_.push_back(j);
+}
+
 // What dies at a pinch vertex may make another one.
 bool LatticeTearing::update() {
   if (died_ == followed_) return false;
   bool changed = false;
   while (died_ != followed_) {
-    rows_about_.clear();
-    for (int j = 0; j < rows_; ++j)
-      if (died_[static_cast<std::size_t>(j)] != followed_[static_cast<std::size_t>(j)])
-        rows_about_.push_back(j);
+    const bool particles = tears_ == Tears::particles;
+    list_rows();
+    if (particles) {
+      end_particles();
+      list_rows();
+    }
     for (const int j : rows_about_) {
-      end_spanning(j);
+      if (!particles) end_spanning(j);
       if (bend_links_) end_bending(j);
       changed |= look_at_squares(j);
     }
     followed_ = died_;
+    if (particles) continue;
     // Constraints of a row join particles that have it in their neighbourhood.
     int next = 0;
     for (const int row : rows_about_)
@@ -222,7 +281,8 @@ void LatticeTearing::go_back() {
 }
 
 std::size_t LatticeTearing::bytes() const {
-  std::size_t bytes = squares_.size() + died_.size() * 16 + triangles_.capacity() * 12;
+  std::size_t bytes =
+      squares_.size() + removed_.size() + died_.size() * 16 + triangles_.capacity() * 12;
   for (const auto& l : links_) bytes += l->bytes();
   for (const auto& l : remembered_) bytes += l->bytes();
   return bytes + (bend_links_ ? bend_links_->bytes() : 0) + (boundary_ ? boundary_->bytes() : 0);

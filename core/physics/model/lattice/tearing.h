@@ -5,6 +5,9 @@
 // constraints along a line die the longer ones that span it, with a structural one the bending over
 // it, and with an edge the triangles at it, of which each side keeps its part (tear_boundary.h). Looked at
 // again is only what lies about the rows where something died.
+//
+// With Tears::particles (seed 000) a constraint takes both its particles with it: these lose all their
+// constraints, with the bending and the triangles there, and nothing else dies.
 #pragma once
 
 #include <array>
@@ -73,6 +76,9 @@ class LatticeTearing final : public Tearing {
   void end_joined(const Joined& constraint);
   const Stencil* stencil_at(int di, int dj) const;
   void end_spanning(int row);
+  void end_particles();
+  void list_rows();
+  bool free(int i, int j) const;
   void end_bending(int row);
   bool look_at_squares(int row);
   void end_pinches(int j);
@@ -80,6 +86,7 @@ class LatticeTearing final : public Tearing {
 
   const Lattice& lattice_;
   int columns_, rows_, stride_;
+  const Tears tears_;
   std::vector<Stencil>& stencils_;
   std::vector<std::unique_ptr<Links>> links_, remembered_;
   std::unique_ptr<BendLinks> bend_links_;
@@ -88,6 +95,7 @@ class LatticeTearing final : public Tearing {
   std::int64_t torn_ = 0;
   std::uint64_t version_ = 0;
   std::vector<std::uint8_t> squares_;
+  std::vector<std::uint8_t> removed_;  // of each particle, j*columns + i (Tears::particles)
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::unique_ptr<TearBoundary> boundary_;  // null: not shown
 };
