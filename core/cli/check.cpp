@@ -17,6 +17,7 @@ int check(const SceneArgument& argument) {
   const Estimate needed = estimate(loaded.scene);
   std::cout << printable(loaded.path) << ": ok, " << needed.particles << " particles\n"
             << needs_words(needed);
+  for (const std::string& note : loaded.notes) std::cout << "note: " << printable(note) << "\n";
   return kDone;
 }
 

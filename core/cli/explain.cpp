@@ -19,6 +19,7 @@ int explain(const SceneArgument& argument) {
   const Simulation simulation = simulate(loaded, options);
   std::cout << printable(loaded.scene.name.empty() ? loaded.path : loaded.scene.name) << ": "
             << to_text(simulation.plan()) << needs_words(estimate(loaded.scene));
+  for (const std::string& note : loaded.notes) std::cout << "note: " << printable(note) << "\n";
   return kDone;
 }
 

@@ -17,6 +17,7 @@
 #include "takeover.h"
 #include "tolerance.h"
 #include "weft/output.h"
+#include "weft/printable.h"
 
 namespace weft::cli {
 
@@ -201,7 +202,10 @@ int run(const RunArguments& arguments) {
   Simulation simulation = simulate(loaded, options);
   Files files(arguments.files, simulation, frames, recordings);
   const Report report = advance(simulation, frames, recordings, files, takeover);
-  std::cout << summary(report, simulation.plan().notes, files.written());
+  std::vector<std::string> notes;
+  for (const std::string& note : loaded.notes) notes.push_back(printable(note));
+  notes.insert(notes.end(), simulation.plan().notes.begin(), simulation.plan().notes.end());
+  std::cout << summary(report, notes, files.written());
   if (!simulation.status().ok) {
     const std::string why = "the simulation stopped itself: " + simulation.status().text;
     throw Failure{kStopped, {{loaded.path, why, ""}}};

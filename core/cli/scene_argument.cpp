@@ -49,7 +49,7 @@ LoadedScene load(const SceneArgument& argument) {
   SceneFile file = read_scene(argument.scene, overrides);
   const std::string path = file.path.empty() ? argument.scene : file.path;
   if (!file.faults.empty()) throw Failure{kBadScene, in_file(path, std::move(file.faults))};
-  return {std::move(file.scene), path};
+  return {std::move(file.scene), path, std::move(file.notes)};
 }
 
 Simulation simulate(const LoadedScene& loaded, const Options& options) {

@@ -108,26 +108,12 @@ Collider collider_of(Shape shape, double friction, double offset) {
   return collider;
 }
 
-// Which place of a course document became which place of the scene, the more special first.
-std::vector<std::pair<std::string, std::string>> places(const Json& document) {
-  std::vector<std::pair<std::string, std::string>> pairs = {
-      {"/cloth/pinned", "/cloths/0/pins"},
-      {"/cloth/num_width_points", "/cloths/0/grid/points/0"},
-      {"/cloth/num_height_points", "/cloths/0/grid/points/1"},
-      {"/cloth/width", "/cloths/0/grid/u"},
-      {"/cloth/height", "/cloths/0/grid/v"},
-      {"/cloth/orientation", "/cloths/0/grid/origin"},
-      {"/cloth/thickness", "/cloths/0/self_collision/thickness"},
-      {"/cloth/damping", "/cloths/0/drag"},
-      {"/cloth/density", "/cloths/0/particle_mass"},
-      {"/cloth/ks", "/cloths/0/stiffness"},
-      {"/cloth", "/cloths/0"}};
-  const bool sphere = document.contains("sphere");
-  const std::string plane = sphere ? "/colliders/1" : "/colliders/0";
-  if (sphere) pairs.push_back({"/sphere", "/colliders/0"});
-  pairs.push_back({"/plane/normal", plane + "/plane/normal"});
-  pairs.push_back({"/plane", plane});
-  return pairs;
+// Calls visit(document, place in the file) for every body of a kind.
+template <class Visit>
+void each_body(const CourseFile& file, const std::string& kind, const Visit& visit) {
+  if (file.document.contains(kind)) visit(file.document, "/" + kind);
+  for (const CourseBody& body : file.more)
+    if (body.kind == kind) visit(body.document, body.place);
 }
 
 bool starts(const std::string& place, const std::string& prefix) {
@@ -142,42 +128,79 @@ bool is_course(const Json& document) {
   return document.contains("cloth") || document.contains("sphere") || document.contains("plane");
 }
 
-Scene scene_of_course(const Json& document) {
+Scene scene_of_course(const CourseFile& file) {
   Scene scene;
-  FieldReader walk(document);
+  FieldReader walk(file.document);
   walk("name", scene.name);
   walk("about", scene.about);
   scene.gravity = {0, kGravity, 0};
   scene.time.frame = 1.0 / kFramesPerSecond;
   scene.time.substeps = kSteps;
+  scene.solver.full_first_kick = true;
   CourseCloth cloth;
   walk("cloth", cloth);
+  std::vector<Pin> pins;
+  for (const std::size_t k : first_pins(file.document)) pins.push_back(cloth.pinned[k]);
+  cloth.pinned = std::move(pins);
   scene.cloths.push_back(cloth_of(cloth));
-  if (document.contains("sphere")) {
+  each_body(file, "sphere", [&](const Json& document, const std::string&) {
     CourseSphere sphere;
-    walk("sphere", sphere);
+    FieldReader body(document);
+    body("sphere", sphere);
     scene.colliders.push_back(
         collider_of(Sphere{sphere.origin, sphere.radius}, sphere.friction, 0));
-  }
-  if (document.contains("plane")) {
+  });
+  each_body(file, "plane", [&](const Json& document, const std::string&) {
     CoursePlane plane;
-    walk("plane", plane);
+    FieldReader body(document);
+    body("plane", plane);
     scene.colliders.push_back(
         collider_of(Plane{plane.point, plane.normal}, plane.friction, kSurfaceOffset));
-  }
+  });
   return scene;
 }
 
-std::string scene_place(const Json& document, const std::string& course_place) {
-  for (const auto& [course, scene] : places(document))
-    if (starts(course_place, course)) return scene + course_place.substr(course.size());
-  return course_place;
+CoursePlaces::CoursePlaces(const CourseFile& file)
+    : pairs_{{"/cloth/pinned", "/cloths/0/pins"},
+             {"/cloth/num_width_points", "/cloths/0/grid/points/0"},
+             {"/cloth/num_height_points", "/cloths/0/grid/points/1"},
+             {"/cloth/width", "/cloths/0/grid/u"},
+             {"/cloth/height", "/cloths/0/grid/v"},
+             {"/cloth/orientation", "/cloths/0/grid/origin"},
+             {"/cloth/thickness", "/cloths/0/self_collision/thickness"},
+             {"/cloth/damping", "/cloths/0/drag"},
+             {"/cloth/density", "/cloths/0/particle_mass"},
+             {"/cloth/ks", "/cloths/0/stiffness"},
+             {"/cloth", "/cloths/0"}} {
+  int number = 0;
+  each_body(file, "sphere", [&](const Json&, const std::string& place) {
+    pairs_.push_back({place, "/colliders/" + std::to_string(number++)});
+  });
+  each_body(file, "plane", [&](const Json&, const std::string& place) {
+    const std::string collider = "/colliders/" + std::to_string(number++);
+    pairs_.push_back({place + "/normal", collider + "/plane/normal"});
+    pairs_.push_back({place, collider});
+  });
+  pins_ = first_pins(file.document);
+  const Json* cloth = member(file.document, "cloth");
+  const Json* pinned = cloth ? member(*cloth, "pinned") : nullptr;
+  if (pinned && pinned->is_array()) repeated_ = pinned->size() - pins_.size();
+  if (repeated_ == 0) pins_.clear();
 }
 
-std::string course_place(const Json& document, const std::string& scene_place) {
-  for (const auto& [course, scene] : places(document))
-    if (starts(scene_place, scene)) return course + scene_place.substr(scene.size());
-  return scene_place;
+std::string CoursePlaces::in_scene(const std::string& place) const {
+  for (const auto& [course, scene] : pairs_)
+    if (starts(place, course)) return scene + place.substr(course.size());
+  return place;
+}
+
+std::string CoursePlaces::in_file(const std::string& place) const {
+  const std::string pins = "/cloths/0/pins/";
+  if (!pins_.empty() && place.starts_with(pins))
+    return "/cloth/pinned/" + std::to_string(pins_.at(std::stoul(place.substr(pins.size()))));
+  for (const auto& [course, scene] : pairs_)
+    if (starts(place, scene)) return course + place.substr(scene.size());
+  return place;
 }
 
 }  // namespace weft::text

@@ -35,25 +35,63 @@ bool in_course(const Override& change) {
   return split_pointer(change.pointer, tokens) && descend(course_schema_json(), nullptr, tokens[0]);
 }
 
-Scene read_course(Json& document, const std::vector<Override>& overrides, Check& result) {
-  std::vector<Override> of_scene;
-  for (const Override& change : overrides) {
-    if (in_course(change))
-      apply_override(course_schema_json(), change, document, result);
-    else
-      of_scene.push_back(change);
+// A place below a body's own in the file, as a place of the document with that body alone.
+bool within_body(const CourseBody& body, const std::string& place) {
+  return place.starts_with(body.place) &&
+         (place.size() == body.place.size() || place[body.place.size()] == '/');
+}
+
+// Overrides one value of a course file; false where it means a value of the scene.
+bool override_course(CourseFile& file, const Override& change, Check& result) {
+  for (CourseBody& body : file.more) {
+    if (!within_body(body, change.pointer)) continue;
+    Check found;
+    apply_override(course_schema_json(),
+                   {"/" + body.kind + change.pointer.substr(body.place.size()), change.value},
+                   body.document, found);
+    for (const Fault& fault : found.faults) result.fault(change.pointer, fault.what, fault.allowed);
+    return true;
   }
+  if (!in_course(change)) return false;
+  apply_override(course_schema_json(), change, file.document, result);
+  return true;
+}
+
+// All that the schema has against a course file, at the file's places; drops what cannot be relied on.
+void check_course(CourseFile& file, Check& result) {
+  check(course_schema_json(), file.document, result);
+  drop_unsound(result, file.document);
+  for (CourseBody& body : file.more) {
+    Check found;
+    check(course_schema_json(), body.document, found);
+    drop_unsound(found, body.document);
+    const auto place = [&](const std::string& in_document) {
+      return body.place + in_document.substr(1 + body.kind.size());
+    };
+    for (const Fault& fault : found.faults)
+      result.fault(place(fault.place), fault.what, fault.allowed);
+    for (const std::string& unsound : found.unsound) result.unsound.push_back(place(unsound));
+  }
+}
+
+Scene read_course(CourseFile& file, const std::vector<Override>& overrides, Check& result) {
+  std::vector<Override> of_scene;
+  for (const Override& change : overrides)
+    if (!override_course(file, change, result)) of_scene.push_back(change);
   Check course = std::move(result);
-  check(course_schema_json(), document, course);
-  drop_unsound(course, document);
-  const Scene scene = scene_of_course(document);
+  check_course(file, course);
+  const Scene scene = scene_of_course(file);
+  const CoursePlaces places(file);
+  if (places.repeated_pins() > 0)
+    file.notes.push_back("/cloth/pinned names " + std::to_string(places.repeated_pins()) +
+                         " particles again; each is held once");
 
   Check together;  // in places of the scene
   for (const std::string& place : course.unsound)
-    together.unsound.push_back(scene_place(document, place));
+    together.unsound.push_back(places.in_scene(place));
   check_together(scene, together);
   for (Fault& fault : together.faults)
-    course.fault(course_place(document, fault.place), fault.what, fault.allowed);
+    course.fault(places.in_file(fault.place), fault.what, fault.allowed);
   result = std::move(course);
   if (of_scene.empty()) return scene;
   Json meant = document_of(scene);
@@ -98,7 +136,10 @@ SceneFile read_scene_text(std::string_view json, const std::vector<Override>& ov
   if (!file.faults.empty()) return file;
   Check result;
   if (is_course(document)) {
-    file.scene = read_course(document, overrides, result);
+    CourseFile course = take_apart(std::move(document));
+    file.scene = read_course(course, overrides, result);
+    file.notes = std::move(course.notes);
+    release(course.document);
   } else if (is_neither(document)) {
     result.fault("",
                  document.is_object() ? "this is neither a Weft scene nor a course scene"

@@ -51,6 +51,9 @@ std::string range_words(const Json& schema);
 // What the schema takes: "a number, 0 to 1e9 N/m", "a list of 3 numbers", "spring or compliant".
 std::string kind_words(const Json& schema);
 
+// Edits (of one character each) between a word, cut to 64 bytes, and a name.
+std::size_t edit_distance(std::string_view word, std::string_view name);
+
 // The key of the schema's objects nearest to a misspelt one by edit distance, "" when it has none.
 std::string nearest(const std::vector<std::string>& names, std::string_view word);
 std::vector<std::string> keys_of(const Json& schema);

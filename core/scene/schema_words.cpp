@@ -93,26 +93,29 @@ std::vector<std::string> keys_of(const Json& schema) {
   return keys;
 }
 
-std::string nearest(const std::vector<std::string>& names, std::string_view word) {
+std::size_t edit_distance(std::string_view word, std::string_view name) {
   word = word.substr(0, 64);
-  std::string best;
-  std::size_t least = std::string::npos;
-  for (const std::string& name : names) {
-    std::vector<std::size_t> row(name.size() + 1);  // Levenshtein distance, one row at a time
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < word.size(); ++i) {
-      std::size_t diagonal = std::exchange(row[0], i + 1);
-      for (std::size_t j = 0; j < name.size(); ++j) {
-        const std::size_t change = diagonal + (word[i] == name[j] ? 0 : 1);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({change, diagonal + 1, row[j] + 1});
-      }
-    }
-    if (row.back() < least) {
-      least = row.back();
-      best = name;
+  std::vector<std::size_t> row(name.size() + 1);  // Levenshtein's, one row at a time
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < word.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < name.size(); ++j) {
+      const std::size_t change = diagonal + (word[i] == name[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({change, diagonal + 1, row[j] + 1});
     }
   }
+  return row.back();
+}
+
+std::string nearest(const std::vector<std::string>& names, std::string_view word) {
+  std::string best;
+  std::size_t least = std::string::npos;
+  for (const std::string& name : names)
+    if (const std::size_t distance = edit_distance(word, name); distance < least) {
+      least = distance;
+      best = name;
+    }
   return best;
 }
 

@@ -24,7 +24,9 @@ struct SceneFile {
   std::string path;           // the file it came from; "" for text
   std::vector<Fault> faults;  // all that is wrong (the first 100): values in the order of the file,
                               // then what does not fit together
-  bool found = true;          // false: no such file and no shipped scene of that name
+  std::vector<std::string> notes;  // of a course file: what is ignored or read otherwise than it is
+                                   // written, a sentence each that begins with its place
+  bool found = true;               // false: no such file and no shipped scene of that name
 };
 
 struct ShippedScene {

@@ -1,0 +1,116 @@
+// Course scenes against the course's simulator in double precision (course_solver.h): the same file for
+// both, position for position. Self-collision and the strain limit are off in both.
+#include "course_solver.h"
+#include "truth.h"
+#include "weft/read_scene.h"
+#include "weft/simulation.h"
+
+namespace weft {
+namespace {
+
+using course::operator-;
+
+// Greatest distance between the two after so many seconds [m]. What is random at the start of a vertical
+// sheet is Weft's. Where a sheet that is pressed together in its plane begins to fold, rounding decides to
+// which side, and a particle that meets a plane does so a step earlier or later: from then on both are right.
+double distance_after(const course::File& file, double seconds, int threads) {
+  const SceneFile read =
+      read_scene_text(course::text_of(file),
+                      {{"/cloths/0/strain_limit", "0"}, {"/cloths/0/self_collision/mode", "off"}});
+  EXPECT_TRUE(read.faults.empty());
+  Simulation simulation(read.scene, {.threads = threads});
+  course::Solver truth(file);
+  const std::vector<double> start = simulation.positions();
+  for (std::size_t p = 0; p < truth.points.size(); ++p)
+    truth.points[p].position =
+        truth.points[p].last_position = {start[3 * p], start[3 * p + 1], start[3 * p + 2]};
+  const int frames = int(std::lround(90 * seconds));
+  for (int f = 0; f < frames; ++f) {
+    simulation.advance_frame();
+    truth.advance_frame();
+  }
+  EXPECT_EQ(simulation.substeps(), 30);
+  double most = 0;
+  const std::vector<double> x = simulation.positions();
+  for (std::size_t p = 0; p < truth.points.size(); ++p)
+    most = std::max(most, course::length(truth.points[p].position -
+                                         course::Vec{x[3 * p], x[3 * p + 1], x[3 * p + 2]}));
+  return most;
+}
+
+course::File hung(int columns, int rows, double ks, double density, double damping) {
+  course::File file;
+  file.columns = columns;
+  file.rows = rows;
+  file.ks = ks;
+  file.density = density;
+  file.damping = damping;
+  file.pinned = {{0, 0}, {columns - 1, 0}};
+  return file;
+}
+
+TEST(Course, SpringsDampingAndPinsAreTheCoursesForFiveSeconds) {
+  const auto row = [](const std::string& what, const course::File& file, int threads) {
+    expect({"course scene against the course's solver", what + ", after 5 s", 0, 1e-4, "m"},
+           distance_after(file, 5, threads));
+  };
+  row("25 x 25 pinned by two corners", hung(25, 25, 5000, 150, 0.2), 2);
+  row("17 x 29, ks 1000, density 300, damping 0.9", hung(17, 29, 1000, 300, 0.9), 1);
+  row("20 x 20, ks 20000, density 1000, damping 0.1", hung(20, 20, 20000, 1000, 0.1), 3);
+  course::File four = hung(24, 18, 5000, 150, 0.3);
+  four.width = 1.3;
+  four.pinned = {{0, 0}, {23, 0}, {0, 17}, {23, 17}, {11, 8}};
+  row("24 x 18 over 1.3 m pinned by four corners and the middle", four, 2);
+  course::File vertical = hung(20, 20, 5000, 150, 0.5);
+  vertical.vertical = true;
+  vertical.pinned = {{0, 19}, {19, 19}};
+  row("20 x 20 vertical, pinned above", vertical, 1);
+  course::File threads = hung(21, 21, 5000, 150, 0.2);
+  threads.bending = false;
+  row("21 x 21 without bending springs", threads, 2);
+}
+
+TEST(Course, APlaneAndASphereAreTheCoursesUntilTheFirstFold) {
+  const auto row = [](const std::string& what, const course::File& file, double seconds,
+                      int threads) {
+    expect({"course scene against the course's solver", what, 0, 1e-3, "m"},
+           distance_after(file, seconds, threads));
+  };
+  course::File plane;
+  plane.plane = true;
+  row("a sheet falls flat on the plane, 2 s", plane, 2, 2);
+  plane.normal = {0.3, 2, 0.1};  // not a unit vector
+  plane.plane_friction = 0.2;
+  row("its edge meets a tilted plane, 0.74 s", plane, 0.74, 1);
+  course::File sphere;
+  sphere.sphere = true;
+  for (const double ks : {500.0, 5000.0, 50000.0}) {
+    sphere.ks = ks;
+    row("on the sphere, ks " + std::to_string(int(ks)) + ", 0.6 s", sphere, 0.6, 2);
+  }
+  sphere.ks = 5000;
+  sphere.plane = true;
+  sphere.sphere_friction = 0.05;
+  sphere.damping = 0.05;
+  row("on a smoother sphere over a plane, 0.5 s", sphere, 0.5, 3);
+}
+
+// The first step from rest adds a whole step's acceleration: x = x0 + g dt².
+TEST(Course, BeginsWithAWholeKick) {
+  const SceneFile read = read_scene_text(R"({"cloth": {"num_width_points": 8,
+    "num_height_points": 8, "ks": 0, "damping": 0}})");
+  ASSERT_TRUE(read.faults.empty());
+  Scene scene = read.scene;
+  EXPECT_TRUE(scene.solver.full_first_kick);
+  scene.time = {0.1, 1, 1};
+  Simulation whole(scene);
+  whole.advance_frame();
+  EXPECT_NEAR(whole.positions()[1], 1 - 9.8 * 0.01, 1e-6);
+  scene.solver.full_first_kick = false;
+  Simulation half(scene);
+  half.advance_frame();
+  EXPECT_NEAR(half.positions()[1], 1 - 9.8 * 0.005, 1e-6);
+}
+
+}  // namespace
+}  // namespace weft
