@@ -33,6 +33,13 @@ uniform sampler2DShadow u_shadow;
 uniform sampler2D u_texture;
 uniform sampler2D u_height;
 
+// The maps of the look pbr; u_maps: 1 they count, 0 the plain values above do.
+uniform float u_maps;
+uniform sampler2D u_base_color_map;
+uniform sampler2D u_metallic_map;
+uniform sampler2D u_roughness_map;
+uniform sampler2D u_normal_map;
+
 const float kPi = 3.14159265;
 
 #ifdef WEFT_VERTEX

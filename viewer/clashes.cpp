@@ -15,6 +15,10 @@ void refuse_clashes(const Arguments& arguments, const std::string& scene) {
                                          {"--keys", arguments.keys},
                                          {"--texture", pictures.texture},
                                          {"--height-map", pictures.height_map},
+                                         {"--base-color-map", pictures.material[0]},
+                                         {"--metallic-map", pictures.material[1]},
+                                         {"--roughness-map", pictures.material[2]},
+                                         {"--normal-map", pictures.material[3]},
                                          {"standard output", "/dev/stdout"},
                                          {"standard error", "/dev/stderr"}};
   std::error_code error;

@@ -2,6 +2,7 @@
 #include "command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <charconv>
 #include <iostream>
 
@@ -84,6 +85,14 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
   program
       .add_option("--height-map", a.pictures.height_map, "A height map for bump and displacement")
       ->type_name("FILE");
+  constexpr std::array<std::pair<const char*, const char*>, 4> kMaps{
+      {{"--base-color-map", "The look pbr's base colour"},
+       {"--metallic-map", "Its share of metal, 0 … 1 in red"},
+       {"--roughness-map", "Its roughness, 0 … 1 in red"},
+       {"--normal-map", "Its normals (y along v)"}}};
+  for (std::size_t map = 0; map < kMaps.size(); ++map)
+    program.add_option(kMaps[map].first, a.pictures.material[map], kMaps[map].second)
+        ->type_name("FILE");
   program.add_option("--sky", a.pictures.sky, "A folder of posx, negx, … negz (.png or .jpg)")
       ->type_name("FOLDER");
 }

@@ -62,11 +62,22 @@ void draw_material(Workspace& workspace) {
   LookSettings& s = workspace.settings;
   const std::string_view look = workspace.look->name;
   const auto is = [&](std::string_view name) { return look == name; };
-  color("front", s.color);
-  ImGui::SameLine();
-  color("back", s.back_color);
-  if (is("colour") || is("ggx_force") || is("pbr")) slider("roughness", s.roughness, 0.05f, 1);
-  if (is("pbr")) slider("metallic", s.metallic, 0, 1);
+  if (is("pbr")) {
+    switches({{"maps", s.maps}});
+    tooltip("Base colour, metallic, roughness and normals from maps (--base-color-map, …)");
+  }
+  const bool maps = is("pbr") && s.maps;
+  if (maps) {
+    slider("normal scale", s.normal_scale, 0, 10);
+    slider("repeats", s.texture_repeats, 1, 20, "%.0f");
+  } else {
+    color("front", s.color);
+    ImGui::SameLine();
+    color("back", s.back_color);
+  }
+  if (is("colour") || is("ggx_force") || (is("pbr") && !maps))
+    slider("roughness", s.roughness, 0.05f, 1);
+  if (is("pbr") && !maps) slider("metallic", s.metallic, 0, 1);
   if (is("blinn_phong") || is("phong_force")) {
     switches({{"ambient", s.ambient}, {"diffuse", s.diffuse}, {"specular", s.specular}});
     slider("shininess", s.shininess, 2, 200, "%.0f", ImGuiSliderFlags_Logarithmic);

@@ -56,6 +56,7 @@ void Panel::draw_side(Workspace& workspace, Wishes& wishes) {
     };
     tab("Scene", [&] {
       draw_fabrics(workspace);
+      draw_spring_cloth(workspace);
       parameters_.draw(workspace);
       draw_machine(workspace);
     });

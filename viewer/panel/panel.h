@@ -40,6 +40,7 @@ class Panel {
 void draw_scenes(Workspace& workspace, std::string& path);
 void draw_files(Workspace& workspace, Wishes& wishes, bool filming);
 void draw_fabrics(Workspace& workspace);
+void draw_spring_cloth(Workspace& workspace);
 void draw_looks(Workspace& workspace);
 void draw_machine(Workspace& workspace);  // threads, instruction set
 // Keys [t, x, y, z] of a path; a first one is put at `now` [s] and `place`. True when they have

@@ -199,6 +199,16 @@ void Parameters::member(const std::string& pointer, const std::string& key, cons
   }
   mark(pointer);
   tooltip(help_of(pointer, schema).c_str());
+  if (key == "particle_mass") area_density(pointer);
+}
+
+// What the cloth weighs, in the units of files and of the course (15 g/cm² = 150 kg/m²).
+void Parameters::area_density(const std::string& pointer) {
+  const std::size_t number = std::stoul(pointer.substr(std::string("/cloths/").size()));
+  const Cloth& cloth = workspace_->document().scene().cloths[number];
+  const double density =
+      particle_mass(cloth, 0, 0) / (spacing_u(cloth.grid) * spacing_v(cloth.grid));
+  ImGui::TextColored(kQuiet, "a particle's square: %.4g kg/m² = %.4g g/cm²", density, density / 10);
 }
 
 void Parameters::members(const std::string& pointer, const Json& schema, const Json& value) {

@@ -26,6 +26,7 @@ class Parameters {
                const Json& value);
   void choice(const std::string& pointer, const std::string& label, const Json& schema,
               const Json& value);
+  void area_density(const std::string& pointer);
   void pins(const std::string& pointer, const Json& value);
   void collider_path(const std::string& pointer, const Json& value);
   void change(const std::string& pointer, const Json& value);

@@ -46,6 +46,21 @@ Vec3f thread_color(int index) {
   return {0.10f, 0.16f, 0.32f};
 }
 
+// A brocade: matt blue warp, and weft of metal wire that shows in diamonds.
+struct Material {
+  Vec3f color;
+  float metallic, roughness;
+};
+Material brocade(const Thread& thread, float u, float v) {
+  constexpr float kDiamonds = 4;  // across the tile
+  const float a = std::abs(2 * (u * kDiamonds - std::floor(u * kDiamonds)) - 1),
+              b = std::abs(2 * (v * kDiamonds - std::floor(v * kDiamonds)) - 1);
+  const float shade = 0.6f + 0.4f * thread.height;
+  if (!thread.warp && a + b < 1) return {Vec3f{1.0f, 0.71f, 0.29f} * shade, 1, 0.28f};
+  return {(thread.warp ? Vec3f{0.05f, 0.10f, 0.30f} : Vec3f{0.30f, 0.05f, 0.09f}) * shade, 0,
+          0.85f};
+}
+
 std::uint8_t to_byte(float linear) {
   const float c = std::clamp(linear, 0.0f, 1.0f);
   const float srgb = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
@@ -228,6 +243,36 @@ Texture load_height_map(const std::string& path, std::string& error) {
       rgb.insert(rgb.end(), 3, static_cast<std::uint8_t>(std::lround(thread.height * 255)));
     }
   return upload(rgb.data(), kWeaveSize, kWeaveSize, GL_RGB8);
+}
+
+Texture load_material_map(MaterialMap map, const std::string& path, std::string& error) {
+  const GLint format = map == MaterialMap::base_color ? GL_SRGB8 : GL_RGB8;
+  if (!path.empty())
+    if (Texture texture = load_file(path, format, error)) return texture;
+  constexpr float kRelief = 3;  // steepness of the threads' sides
+  const auto place = [](int texel) { return (static_cast<float>(texel) + 0.5f) / kWeaveSize; };
+  const auto height = [&](int i, int j) { return weave(place(i), place(j), kThreads).height; };
+  const auto level = [](float share) {
+    return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0f, 1.0f)));
+  };
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(3 * kWeaveSize * kWeaveSize);
+  for (int j = 0; j < kWeaveSize; ++j)
+    for (int i = 0; i < kWeaveSize; ++i) {
+      const Material m = brocade(weave(place(i), place(j), kThreads), place(i), place(j));
+      if (map == MaterialMap::base_color) {
+        rgb.insert(rgb.end(), {to_byte(m.color.x), to_byte(m.color.y), to_byte(m.color.z)});
+      } else if (map == MaterialMap::normal) {
+        const float h = height(i, j);
+        const Vec3f n = normalized({-kRelief * (height((i + 1) % kWeaveSize, j) - h),
+                                    -kRelief * (height(i, (j + 1) % kWeaveSize) - h), 1});
+        rgb.insert(rgb.end(),
+                   {level(0.5f * n.x + 0.5f), level(0.5f * n.y + 0.5f), level(0.5f * n.z + 0.5f)});
+      } else {
+        rgb.insert(rgb.end(), 3, level(map == MaterialMap::metallic ? m.metallic : m.roughness));
+      }
+    }
+  return upload(rgb.data(), kWeaveSize, kWeaveSize, format);
 }
 
 Texture load_sky(const std::string& path, Vec3f light, std::string& error) {

@@ -24,6 +24,11 @@ void write_png(const std::string& path, const Picture& picture);
 Texture load_texture(const std::string& path, std::string& error);     // woven check; sRGB
 Texture load_height_map(const std::string& path, std::string& error);  // its threads; red = height
 
+// The four maps of the look pbr: base colour (sRGB), metallic and roughness (red, linear), normals in the
+// surface's axes (x along u, y along v, 0 … 1 for -1 … 1). The program's own are a brocade.
+enum class MaterialMap { base_color, metallic, roughness, normal };
+Texture load_material_map(MaterialMap map, const std::string& path, std::string& error);
+
 // The sky as a cube map with all levels. `path`: a folder of posx, negx, posy, negy, posz, negz
 // (.png or .jpg).
 Texture load_sky(const std::string& path, Vec3f light, std::string& error);

@@ -30,7 +30,8 @@ inline constexpr std::array kLooks{
     Look{"bump", "A height map in the normals", false, false, true},
     Look{"displacement", "A height map that raises the surface", false, false, true, true},
     Look{"mirror", "Reflects the sky", false, false, true},
-    Look{"pbr", "Metallic-roughness material, lit by the sky's image", false, false, true},
+    Look{"pbr", "Metallic-roughness material from four maps, lit by the sky's image", false, false,
+         true},
     Look{"strain", "Heat map of the strain", false, true},
     Look{"wireframe", "Constraints in the colours of their kinds", false, false, false, false,
          Look::Draw::lines},
@@ -50,6 +51,7 @@ struct LookSettings {
   Vec3f back_color{0.50f, 0.20f, 0.12f};
   float roughness = 0.55f;
   float metallic = 0;
+  bool maps = true;  // look pbr: base colour, metallic, roughness and normals from maps
   bool ambient = true, diffuse = true, specular = true;
   float shininess = 40;
   float normal_scale = 1;

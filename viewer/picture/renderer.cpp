@@ -61,6 +61,10 @@ void Renderer::set_pictures(const PictureFiles& files) {
   keep();
   sky_ = load_sky(files.sky, kLight, error);
   keep();
+  for (std::size_t map = 0; map < material_.size(); ++map) {
+    material_[map] = load_material_map(static_cast<MaterialMap>(map), files.material[map], error);
+    keep();
+  }
 }
 
 const Shader& Renderer::shader(std::string_view name) {
@@ -91,10 +95,11 @@ void Renderer::draw(const Snapshot& snapshot, const Setting& setting, const Look
   update_bodies(snapshot, setting, settings);
   draw_shadow_map(snapshot, setting, settings);
   upload_frame(setting, settings, camera, aspect);
-  const std::pair<GLenum, GLuint> textures[] = {{GL_TEXTURE_CUBE_MAP, sky_.id()},
-                                                {GL_TEXTURE_2D, shadow_map_.texture()},
-                                                {GL_TEXTURE_2D, texture_.id()},
-                                                {GL_TEXTURE_2D, height_map_.id()}};
+  const std::pair<GLenum, GLuint> textures[] = {
+      {GL_TEXTURE_CUBE_MAP, sky_.id()},   {GL_TEXTURE_2D, shadow_map_.texture()},
+      {GL_TEXTURE_2D, texture_.id()},     {GL_TEXTURE_2D, height_map_.id()},
+      {GL_TEXTURE_2D, material_[0].id()}, {GL_TEXTURE_2D, material_[1].id()},
+      {GL_TEXTURE_2D, material_[2].id()}, {GL_TEXTURE_2D, material_[3].id()}};
   for (GLuint unit = 0; unit < std::size(textures); ++unit) {
     glActiveTexture(GL_TEXTURE0 + unit);
     glBindTexture(textures[unit].first, textures[unit].second);
@@ -130,7 +135,10 @@ void Renderer::update_meshes(const Snapshot& snapshot, const Setting& setting, c
   const Cloth& first = snapshot.scene->cloths.front();
   const float weight =
       static_cast<float>(particle_mass(first, 0, 0)) * length(to_float(snapshot.scene->gravity));
-  particle_weight_ = std::max(weight, 1e-6f);
+  // Forces are drawn of one iteration, of which a substep may add several.
+  const Solver& solver = snapshot.scene->solver;
+  const auto repeats = static_cast<float>(solver.iterate_springs ? solver.iterations : 1);
+  particle_weight_ = std::max(weight / repeats, 1e-6f);
   if (shown_scene_ != snapshot.scene_serial) {
     floor_.clear();
     if (setting.has_ground) {
@@ -225,6 +233,7 @@ void Renderer::set_material(const Shader& shader, const LookSettings& settings, 
   shader.set("u_back_color", cloth ? settings.back_color : kBodyColor);
   shader.set("u_roughness", settings.roughness);
   shader.set("u_metallic", settings.metallic);
+  shader.set("u_maps", settings.maps ? 1.0f : 0.0f);
   shader.set("u_translucency", cloth ? 0.22f : 0.0f);
   shader.set("u_parts", Vec3f{settings.ambient ? 1.0f : 0.0f, settings.diffuse ? 1.0f : 0.0f,
                               settings.specular ? 1.0f : 0.0f});

@@ -1,6 +1,7 @@
 // Draws a snapshot: shadow map, background, floor, colliders, cloth.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ namespace weft::viewer {
 // The user's files in the place of the program's own pictures; "" = the program's own.
 struct PictureFiles {
   std::string texture, height_map, sky;
+  std::array<std::string, 4> material;  // in the order of MaterialMap
   friend bool operator==(const PictureFiles&, const PictureFiles&) = default;
 };
 
@@ -59,6 +61,7 @@ class Renderer {
   ShadowMap shadow_map_;
   PictureFiles files_;
   Texture texture_, height_map_, sky_;
+  std::array<Texture, 4> material_;  // in the order of MaterialMap
   std::vector<std::string> picture_problems_;
   Buffer frame_;
   VertexArray nothing_;  // for the background's triangle
