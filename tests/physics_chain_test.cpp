@@ -95,7 +95,6 @@ class Bundle final : public ClothModel {
   void append_limits(StageList&) override {}
   double mass(int) const override { return parts_.cloth.particle_mass; }
   const SurfaceMesh& surface() const override { return surface_; }
-  SurfaceMesh whole_surface() const override { return {}; }
   ConstraintCounts constraints() const override {
     return {particles_.count() - particles_.count(0), 0, 0};
   }

@@ -10,10 +10,10 @@ std::string detail_of(const Collider& c) {
          (c.keys.empty() ? "" : ", moving");
 }
 
-class ColliderStage final : public RowStage {
+class ColliderStage final : public ParticlesStage {
  public:
   ColliderStage(const ClothParts& parts, const Collider& collider, const StartInside& start)
-      : RowStage("collider", detail_of(collider), 0, parts.particles.count(), "particles"),
+      : ParticlesStage("collider", detail_of(collider), 0, parts.particles.count(), "particles"),
         parts_(parts),
         collider_(parts, collider, start),
         far_(parts, collider_.fastest()),
@@ -24,6 +24,7 @@ class ColliderStage final : public RowStage {
     if (far_.skip(j, s)) return;
     far_.found(j, s, kernel_(collider_.row(parts_, j, s)));
   }
+  const SpeculativeCulling& far() const override { return far_; }
   double idle() const override { return far_.share(); }
   void follow(const Collider& collider) override {
     if (&collider != &collider_.collider()) return;
@@ -40,8 +41,8 @@ class ColliderStage final : public RowStage {
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_collider(const ClothParts& parts, const Collider& collider,
-                                        const StartInside& start) {
+std::unique_ptr<ParticlesStage> make_collider(const ClothParts& parts, const Collider& collider,
+                                              const StartInside& start) {
   return std::make_unique<ColliderStage>(parts, collider, start);
 }
 

@@ -7,12 +7,20 @@
 namespace weft::physics {
 
 // Particles against a collider.
-std::unique_ptr<RowStage> make_collider(const ClothParts& parts, const Collider& collider,
-                                        const StartInside& start);
-// Triangles against a collider; null where the mesh is fine enough for particles alone.
+class ParticlesStage : public RowStage {
+ public:
+  using RowStage::RowStage;
+  // Which rows are out of reach.
+  virtual const SpeculativeCulling& far() const = 0;
+};
+std::unique_ptr<ParticlesStage> make_collider(const ClothParts& parts, const Collider& collider,
+                                              const StartInside& start);
+// Triangles against a collider, right after its particles; null for planes, and where nothing holds the
+// corners of triangles together. `particles`: what that stage found.
 std::unique_ptr<RowStage> make_collider_triangles(const LatticeParts& parts,
                                                   const Collider& collider,
-                                                  const StartInside& start);
+                                                  const StartInside& start,
+                                                  const SpeculativeCulling& particles);
 // A collider that cuts.
 std::unique_ptr<RowStage> make_cut(const LatticeParts& parts, const Collider& collider,
                                    const StartInside& start);

@@ -1,5 +1,7 @@
-// Stage "collider_faces": a collider with features smaller than the mesh is caught by the triangles
-// that it would slip through between the particles (seed 000 names this failure).
+// Stages "collider_faces" and "stretched_faces": a collider with features smaller than the mesh as it is now is caught by the
+// triangles that it would slip through between the particles (seed 000 names this failure). How deep a
+// triangle may lie is said by AllowedDepth. Where the mesh at rest resolves the collider, rows are looked
+// at closely only while a triangle of theirs is stretched (the second of the two). What a tear has ended is no triangle.
 //
 // The point p = Σ b_k x_k of a triangle deepest in the collider is lifted out by `depth` along the
 // normal there, each corner by its share:  x_k += w_k b_k / (Σ w b²) n depth.  It rubs like a
@@ -18,10 +20,11 @@ namespace weft::physics {
 namespace {
 
 constexpr int kMostPlaces = 16;   // on the way of a fast collider
-constexpr double kSlack = 1e-3;   // of an edge: a triangle may be as deep
 constexpr double kDeep = 3e-2;    // of an edge: one that was as deep is looked at again at once
 constexpr int kTurns = 8;         // of one triangle in a substep
 constexpr double kMostLever = 2;  // the greatest share of a corner; 1.37 where masses are equal
+// Edges up to so many times the flat ones lie within the kernel's reach for those (kFaceReach).
+constexpr double kReached = 2;
 
 struct Touch {
   Weights weights{};
@@ -44,17 +47,65 @@ Touch first_touch(const Shape& shape, double offset, const Corners& end, int pla
   return {};
 }
 
+// The links of a triangle's edges, which end where a tear goes through.
+class Edges {
+ public:
+  explicit Edges(const LatticeParts& parts) : parts_(parts) {
+    for (const Stencil& f : parts.stencils)
+      for (std::size_t n = 0; n < kOffsets.size(); ++n)
+        if (f.di == kOffsets[n][0] && f.dj == kOffsets[n][1]) links_[n] = f.links;
+  }
+  // The longest of the triangles between rows j and j+1 [m].
+  double longest(int j) const {
+    const Lattice& l = parts_.lattice;
+    float square = 0;
+    const auto look = [&](std::size_t edge, int row) {
+      Stencil f;
+      f.di = kOffsets[edge][0];
+      f.dj = kOffsets[edge][1];
+      f.links = links_[edge];
+      square = std::max(square, parts_.kernels.greatest_square(far_rows(f, l.x, l.columns, row)));
+    };
+    look(kAlong, j);
+    look(kAlong, j + 1);
+    look(kAcross, j);
+    look(kDiagonal, j);
+    return std::sqrt(double(square));
+  }
+  // Whether the first or second triangle of square (i, j) is whole.
+  bool whole(int i, int j, int triangle) const {
+    const auto alive = [&](std::size_t edge, int row, int lane) {
+      return !links_[edge] || links_[edge]->alive(row, lane);
+    };
+    return alive(kDiagonal, j, i) &&
+           (triangle == 0 ? alive(kAlong, j, i) && alive(kAcross, j, i)
+                          : alive(kAcross, j, i + 1) && alive(kAlong, j + 1, i));
+  }
+
+ private:
+  static constexpr std::size_t kAlong = 0, kAcross = 1, kDiagonal = 2;
+  static constexpr std::array<std::array<int, 2>, 3> kOffsets{{{1, 0}, {0, 1}, {-1, 1}}};
+  const LatticeParts& parts_;
+  std::array<Links*, 3> links_{};  // null: cannot tear
+};
+
 class ColliderTriangles final : public RowStage {
  public:
-  ColliderTriangles(const LatticeParts& parts, const Collider& collider, const StartInside& start)
-      : RowStage("collider_faces", "triangles of the sheet against its small features", 1,
-                 2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1),
+  ColliderTriangles(const LatticeParts& parts, const Collider& collider, const StartInside& start,
+                    const SpeculativeCulling* particles)
+      : RowStage(particles ? "stretched_faces" : "collider_faces",
+                 particles ? "triangles of the sheet where it is stretched"
+                           : "triangles of the sheet against its small features",
+                 1, 2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1),
                  "triangles"),
         parts_(parts),
         collider_(parts, collider, start, true),
         far_(parts, collider_.fastest()),
+        particles_(particles),
         upright_(collider.shape),
-        edge_(longest_edge(parts.cloth.grid)) {}
+        edge_(longest_edge(parts.cloth.grid)),
+        allowed_(parts.cloth, collider),
+        edges_(parts_) {}
 
   void reserve_slots(int slots) override {
     bound_ = Rows(slots, parts_.lattice.stride);
@@ -71,32 +122,47 @@ class ColliderTriangles final : public RowStage {
   }
 
   void run(int j, const Substep& s) override {
+    if (j + 1 >= parts_.lattice.rows || far_.skip(j, s)) return;
+    const double longest = edges_.longest(j);
+    // A triangle's points are no nearer than its corners by more than an edge.
+    const double reach = std::max(1.5 * edge_, longest);
+    RowReach row = particles_ && longest <= allowed_.harmless() ? reach_of_particles(j, s)
+                                                                : look(j, s, longest);
+    row.clearance -= float(reach);
+    far_.found(j, s, row, longest / edge_);
+  }
+
+ private:
+  // Of the rows beside the triangles, as the stage before this one has found them.
+  RowReach reach_of_particles(int j, const Substep& s) const {
+    const RowReach a = particles_->reach_at(j, s.time), b = particles_->reach_at(j + 1, s.time);
+    return {std::min(a.clearance, b.clearance), std::max(a.speed, b.speed)};
+  }
+
+  RowReach look(int j, const Substep& s, double longest) {
     Lattice& l = parts_.lattice;
-    if (j + 1 >= l.rows || far_.skip(j, s)) return;
     FacesRow f;
     f.row = collider_.row(parts_, j, s);
     f.x_next = l.x.row(j + 1);
     f.v_next = l.v.row(j + 1);
-    f.edge = float(edge_);
-    f.slack = float(kSlack * edge_);
+    f.edge = float(std::max(edge_, longest / kReached));
+    f.slack = float(allowed_.at(longest));
     const Row3 bound = bound_.row(s.slot);
     f.bound[0] = bound.x;
     f.bound[1] = bound.y;
     f.room = room_.data() + room() * std::size_t(s.slot);
-    RowReach reach = parts_.kernels.collider[collider_.shape()]->below_faces(f);
+    const RowReach reach = parts_.kernels.collider[collider_.shape()]->below_faces(f);
     // The way of a substep matters only where it is long against the collider.
     const float way = reach.speed * f.row.dt;
-    const float near = way > 0.5f * f.row.shape.thin ? way : float(-kSlack * edge_);
-    // Between its corners a triangle may be nearer by as much as an edge, stretched by half.
-    reach.clearance -= float(1.5 * edge_);
-    far_.found(j, s, reach);
+    const float near = way > 0.5f * f.row.shape.thin ? way : -f.slack;
     for (int i = 0; i + 1 < l.columns; ++i) {
-      if (f.bound[0][i] < near) lift(f.row, {j, j, j + 1}, {i, i + 1, i});
-      if (f.bound[1][i] < near) lift(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
+      if (f.bound[0][i] < near && edges_.whole(i, j, 0)) lift(f.row, {j, j, j + 1}, {i, i + 1, i});
+      if (f.bound[1][i] < near && edges_.whole(i, j, 1))
+        lift(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
     }
+    return reach;
   }
 
- private:
   // An edge or a corner of the collider leaves a triangle by one of its sides after another.
   void lift(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i) {
     for (int n = 0; n < kTurns && touch(r, j, i); ++n) continue;
@@ -108,20 +174,21 @@ class ColliderTriangles final : public RowStage {
     const Vec3 place{r.cx, r.cy, r.cz}, u{r.ux, r.uy, r.uz};
     std::array<Vec3, 3> v;
     Corners c;
-    double longest = 0;
+    double path = 0;
     for (int k = 0; k < 3; ++k) {
       v[k] = minus({l.v.at(0, j[k], i[k]), l.v.at(1, j[k], i[k]), l.v.at(2, j[k], i[k])}, u);
       c.x[k] = upright_.into(
           minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place));
       c.path[k] = upright_.into(times(v[k], r.dt));
-      longest = std::max(longest, std::sqrt(dot(c.path[k], c.path[k])));
+      path = std::max(path, std::sqrt(dot(c.path[k], c.path[k])));
     }
+    // It rests as deep as may be: lifted all the way it would fall back and ring.
+    const double offset = r.offset - allowed_.at(longest_side(c.x));
     Touch touch = std::visit(
         [&](const auto& shape) {
           const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
-          const int places = clamp_to_int(std::ceil(2 * longest / size), 1, kMostPlaces);
-          // It rests as deep as may be: lifted all the way it would fall back and ring.
-          return first_touch(shape, r.offset - kSlack * edge_, c, places, edge_);
+          const int places = clamp_to_int(std::ceil(2 * path / size), 1, kMostPlaces);
+          return first_touch(shape, offset, c, places, edge_);
         },
         upright_.shape);
     if (touch.depth <= 0) return false;
@@ -166,8 +233,12 @@ class ColliderTriangles final : public RowStage {
   LatticeParts parts_;
   MovingCollider collider_;
   SpeculativeCulling far_;
+  const SpeculativeCulling*
+      particles_;  // null where the mesh at rest does not resolve the collider
   Upright upright_;
   double edge_;  // m, longest of a flat triangle
+  AllowedDepth allowed_;
+  Edges edges_;
   Rows bound_;
   AlignedArray<std::int32_t> room_;
 };
@@ -176,9 +247,13 @@ class ColliderTriangles final : public RowStage {
 
 std::unique_ptr<RowStage> make_collider_triangles(const LatticeParts& parts,
                                                   const Collider& collider,
-                                                  const StartInside& start) {
-  if (!caught_by_triangles(parts.cloth, collider)) return nullptr;
-  return std::make_unique<ColliderTriangles>(parts, collider, start);
+                                                  const StartInside& start,
+                                                  const SpeculativeCulling& particles) {
+  if (!caught_by_triangles(collider)) return nullptr;
+  const bool resolved = resolves(parts.cloth, collider);
+  if (resolved && parts.stencils.empty()) return nullptr;
+  return std::make_unique<ColliderTriangles>(parts, collider, start,
+                                             resolved ? &particles : nullptr);
 }
 
 }  // namespace weft::physics

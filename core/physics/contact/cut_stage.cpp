@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "physics/contact/collider_stage.h"
+#include "physics/contact/triangle_shape.h"
 #include "physics/model/lattice/tearing.h"
 
 namespace weft::physics {
@@ -17,6 +18,7 @@ class CutStage final : public RowStage {
         parts_(parts),
         collider_(parts, collider, start),
         far_(parts, collider_.fastest()),
+        upright_(collider.shape),
         tearing_(*parts.tearing) {
     for (const Stencil& f : parts.stencils) longest_ = std::max(longest_, f.rest);
   }
@@ -36,7 +38,7 @@ class CutStage final : public RowStage {
     const CollideRow r = collider_.row(parts_, j, s);
     const Vec3 place{r.cx, r.cy, r.cz};
     const auto at = [&](int row, int i) {
-      return minus({l.x.at(0, row, i), l.x.at(1, row, i), l.x.at(2, row, i)}, place);
+      return upright_.into(minus({l.x.at(0, row, i), l.x.at(1, row, i), l.x.at(2, row, i)}, place));
     };
     RowReach reach{1e30f, 0};
     float* const distance = distances_.data() + std::size_t(s.slot) * l.stride;
@@ -53,7 +55,7 @@ class CutStage final : public RowStage {
             for (const Stencil& f : parts_.stencils)
               cut_stencil(shape, r.offset, f, j, at, distance);
         },
-        collider_.collider().shape);
+        upright_.shape);
     reach.clearance -= float(2 * longest_);
     far_.found(j, s, reach);
   }
@@ -83,6 +85,7 @@ class CutStage final : public RowStage {
   LatticeParts parts_;
   MovingCollider collider_;
   SpeculativeCulling far_;
+  Upright upright_;
   LatticeTearing& tearing_;
   double longest_ = 0;  // m, of a constraint at rest
   AlignedArray<float> distances_;

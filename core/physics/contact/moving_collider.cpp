@@ -1,11 +1,17 @@
 // Colliders in motion (moving_collider.h).
 #include "physics/contact/moving_collider.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/model/path.h"
 
 namespace weft::physics {
+namespace {
+
+constexpr double kStrain = 0.2;  // SpeculativeCulling's
+
+}  // namespace
 
 double longest_edge(const Grid& grid) {
   return std::hypot(spacing_u(grid), spacing_v(grid));
@@ -16,8 +22,29 @@ bool resolves(const Cloth& cloth, const Collider& collider) {
   return feature + collider.offset > kSmallFeature * longest_edge(cloth.grid);
 }
 
-bool caught_by_triangles(const Cloth& cloth, const Collider& collider) {
-  return collider.friction.model == FrictionModel::coulomb && !resolves(cloth, collider);
+AllowedDepth::AllowedDepth(const Cloth& cloth, const Collider& collider)
+    : edge_(longest_edge(cloth.grid)), at_rest_(0), stretched_(kSlack * edge_), harmless_(0) {
+  if (!resolves(cloth, collider)) return;
+  const double radius =
+      collider.offset + std::visit([](const auto& s) { return feature_of(s); }, collider.shape);
+  const double half = kAtRest * edge_ / 2;
+  constexpr double kMargin = 1.1;  // corners are on the surface to rounding, and to second order
+  at_rest_ = kMargin * half * half / (radius + std::sqrt(radius * radius - half * half));
+  stretched_ = std::max(kTight * edge_, collider.offset / 2);
+  // s(e) = stretched_ / kMargin
+  const double deep = std::min(stretched_ / kMargin, radius);
+  harmless_ = std::max(kAtRest * edge_, 2 * std::sqrt(deep * (2 * radius - deep)));
+}
+
+double AllowedDepth::at(double longest) const {
+  const double left = (kStretched - longest / edge_) / (kStretched - kAtRest);
+  return std::max(stretched_, at_rest_ * std::clamp(left, 0.0, 1.0));
+}
+
+bool caught_by_triangles(const Collider& collider) {
+  const bool flat =
+      std::isinf(std::visit([](const auto& s) { return feature_of(s); }, collider.shape));
+  return collider.friction.model == FrictionModel::coulomb && !flat;
 }
 
 MovingCollider::MovingCollider(const ClothParts& parts, const Collider& collider,
@@ -84,7 +111,6 @@ CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s)
 
 SpeculativeCulling::SpeculativeCulling(const ClothParts& parts, double collider_speed)
     : rows_(parts.particles.rows), acceleration_(1), collider_speed_(collider_speed) {
-  constexpr double kStrain = 0.2;
   double heaviest = 0;
   parts.particles.for_each(
       [&](int j, int i) { heaviest = std::max(heaviest, double(parts.particles.w(j, i))); });
@@ -107,12 +133,23 @@ bool SpeculativeCulling::skip(int j, const Substep& s) {
   return skipped;
 }
 
-void SpeculativeCulling::found(int j, const Substep& s, const RowReach& reach) {
-  const double speed = 2 * (reach.speed + collider_speed_), a = acceleration_;
+double SpeculativeCulling::approach(double speed, double time) const {
+  return 2 * (speed + collider_speed_) * time + acceleration_ * time * time / 2;
+}
+
+RowReach SpeculativeCulling::reach_at(int j, double time) const {
+  const Row& row = rows_[j];
+  return {float(row.reach.clearance - approach(row.reach.speed, time - row.ran)), row.reach.speed};
+}
+
+void SpeculativeCulling::found(int j, const Substep& s, const RowReach& reach, double stretch) {
+  const double pull = std::max(1.0, (stretch - 1) / kStrain);
+  const double speed = 2 * (reach.speed + collider_speed_), a = pull * acceleration_;
   const double c = std::max(0.0, double(reach.clearance));
   const double wait = (std::sqrt(speed * speed + 2 * a * c) - speed) / a;
   rows_[j].ran = s.time;
   rows_[j].resume = s.time + wait;
+  rows_[j].reach = reach;
 }
 
 double SpeculativeCulling::share() const {

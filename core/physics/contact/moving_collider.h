@@ -26,8 +26,36 @@ double longest_edge(const Grid& grid);
 // edges. Else it could slip through between the particles.
 inline constexpr double kSmallFeature = 1.5;
 bool resolves(const Cloth& cloth, const Collider& collider);
-// Whether triangles, too, are kept out of it.
-bool caught_by_triangles(const Cloth& cloth, const Collider& collider);
+// How deep a triangle of the cloth may lie below a collider's offset surface.
+//
+// With its corners on a surface of curvature radius R, the middle of an edge of length e lies below it by
+//   s(e) = R - sqrt(R² - e²/4).
+// Where the mesh at rest resolves the collider, that is left to the offset, and triangles that are hardly
+// longer than at rest may lie so deep. The more one is stretched the less it may: from kStretched times
+// its length on, half of the offset, so that no point of it is inside the body. Where the mesh does not
+// resolve the collider no triangle may lie deeper than kSlack of an edge.
+class AllowedDepth {
+ public:
+  static constexpr double kSlack = 1e-3;  // of a flat triangle's longest edge
+  static constexpr double kTight = 1e-4;  // the same, where the mesh at rest resolves the collider
+  static constexpr double kAtRest = 1.1;  // times that edge: as good as not stretched
+  static constexpr double kStretched = 1.5;  // times that edge
+
+  AllowedDepth(const Cloth& cloth, const Collider& collider);
+  // Of a triangle with this longest edge [m].
+  double at(double longest) const;
+  // Triangles with no longer edges [m] are as deep as they may be when their corners are on the surface.
+  double harmless() const { return harmless_; }
+
+ private:
+  double edge_;       // m
+  double at_rest_;    // m; 0 where the mesh does not resolve the collider
+  double stretched_;  // m
+  double harmless_;   // m
+};
+
+// Whether triangles, too, can get into a collider whose particles are all out of it.
+bool caught_by_triangles(const Collider& collider);
 
 // A collider in motion, as the kernels take it. What is inside when it meets the cloth would be torn
 // from its neighbours if it were put onto the surface at once: the collider begins as much smaller as
@@ -69,16 +97,22 @@ class SpeculativeCulling {
   bool skip(int j, const Substep& s);
   // All rows are looked at again: the collider's path has changed.
   void restart(double collider_speed);
-  // Row j has just been worked on and lies so.
-  void found(int j, const Substep& s, const RowReach& reach);
+  // Row j has just been worked on and lies so. `stretch`: how many times as long as at rest its edges are.
+  void found(int j, const Substep& s, const RowReach& reach, double stretch = 1);
+  // What row j keeps at least of its clearance until then [m], and its greatest speed [m/s].
+  RowReach reach_at(int j, double time) const;
   // Share of the rows so far that were skipped.
   double share() const;
 
  private:
   struct Row {
     double ran = -1, resume = -1;  // s
+    RowReach reach{};              // as it ran
     std::int64_t skipped = 0, all = 0;
   };
+  // How much nearer a row of this speed may have come after a time [s].
+  double approach(double speed, double time) const;
+
   std::vector<Row> rows_;
   double acceleration_, collider_speed_;
 };

@@ -1,4 +1,4 @@
-// What of a cloth lies inside a collider when the two meet (start_inside.h).
+// What of a cloth lies inside a collider (start_inside.h).
 #include "physics/contact/start_inside.h"
 
 #include <algorithm>
@@ -10,17 +10,42 @@
 namespace weft::physics {
 namespace {
 
+Vec3 place_at(const Collider& collider, double time) {
+  return collider.keys.empty()
+             ? std::visit([](const auto& s) { return place_of(s); }, collider.shape)
+             : position_at(collider.keys, time);
+}
+
+// The least distance of a point of a triangle that cuts the core of a shape. That of a convex shape is a
+// convex function, so that nested golden sections find it.
+template <class Shape>
+double least_of_cut(const Shape& shape, const Corners& c) {
+  constexpr int kSections = 40;  // to 1e-8 of an edge
+  constexpr double kGolden = 0.6180339887498949;
+  const auto least = [](const auto& f) {
+    double low = 0, high = 1;
+    for (int n = 0; n < kSections; ++n) {
+      const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+      (f(a) < f(b) ? high : low) = f(a) < f(b) ? b : a;
+    }
+    return f((low + high) / 2);
+  };
+  return least([&](double u) {
+    return least([&](double v) {
+      return nearest_of(shape, c.at({1 - u, u * (1 - v), u * v})).distance;
+    });
+  });
+}
+
 void find_triangles_inside(const ClothParts& parts, const Collider& collider, StartInside& found) {
-  if (!caught_by_triangles(parts.cloth, collider)) return;
+  if (!caught_by_triangles(collider)) return;
   const Particles& l = parts.particles;
+  const bool resolved = resolves(parts.cloth, collider);
+  const AllowedDepth allowed(parts.cloth, collider);
   const double edge = longest_edge(parts.cloth.grid);
   const Upright upright(collider.shape);
-  const Vec3 place = collider.keys.empty()
-                         ? std::visit([](const auto& s) { return place_of(s); }, collider.shape)
-                         : position_at(collider.keys, found.time);
-  // The stage keeps triangles beside tears out as well.
-  const SurfaceMesh mesh = parts.model.whole_surface();
-  for (const std::array<int, 3>& triangle : mesh.triangles) {
+  const Vec3 place = place_at(collider, found.time);
+  for (const std::array<int, 3>& triangle : parts.model.surface().triangles) {
     Corners c{};
     bool moves = false;
     for (int k = 0; k < 3; ++k) {
@@ -28,16 +53,13 @@ void find_triangles_inside(const ClothParts& parts, const Collider& collider, St
       c.x[k] = upright.into(minus(l.position(j, i), place));
       moves |= l.w(j, i) > 0;
     }
-    double longest = 0;
-    for (int k = 0; k < 3; ++k) {
-      const Vec3 side = minus(c.x[(k + 1) % 3], c.x[k]);
-      longest = std::max(longest, std::sqrt(dot(side, side)));
-    }
+    const double longest = longest_side(c.x);
+    const double offset = collider.offset - (resolved ? allowed.at(longest) : 0);
     const double depth = std::visit(
         [&](const auto& shape) {
           // No point of a triangle is further from a corner than its longest side.
-          if (!moves || nearest_of(shape, c.x[0]).distance > collider.offset + longest) return 0.0;
-          return collider.offset - deepest_on(shape, c, collider.offset, edge).nearest.distance;
+          if (!moves || nearest_of(shape, c.x[0]).distance > offset + longest) return 0.0;
+          return offset - deepest_on(shape, c, offset, edge).nearest.distance;
         },
         upright.shape);
     found.deepest_triangle = std::max(found.deepest_triangle, depth);
@@ -62,6 +84,39 @@ StartInside start_inside(const ClothParts& parts, const Collider& collider, doub
   if (found.particles == 0) found.deepest_particle = 0;
   find_triangles_inside(parts, collider, found);
   return found;
+}
+
+double deepest_in(const Collider& collider, double time, std::span<const Vec3> x,
+                  std::span<const std::array<std::int32_t, 3>> triangles) {
+  const Vec3 place = place_at(collider, time);
+  const Upright upright(collider.shape);
+  return std::visit(
+      [&](const auto& shape) {
+        std::vector<double> distances(x.size());
+        std::vector<Vec3> seen(x.size());
+        double least = 0;
+        for (std::size_t p = 0; p < x.size(); ++p) {
+          seen[p] = upright.into(minus(x[p], place));
+          distances[p] = nearest_of(shape, seen[p]).distance;
+          least = std::min(least, distances[p]);
+        }
+        if (std::isinf(feature_of(shape))) return -least;
+        for (const auto& t : triangles) {
+          Corners c{};
+          double nearest = 1e300;
+          for (std::size_t k = 0; k < 3; ++k) {
+            c.x[k] = seen[std::size_t(t[k])];
+            nearest = std::min(nearest, distances[std::size_t(t[k])]);
+          }
+          const double edge = longest_side(c.x);
+          if (nearest - edge >= least) continue;  // no point is further from a corner
+          const double depth = deepest_on(shape, c, 0, edge).nearest.distance;
+          const bool cut = depth < -core_of(shape, c.x[0]).radius;
+          least = std::min(least, cut ? least_of_cut(shape, c) : depth);
+        }
+        return -least;
+      },
+      upright.shape);
 }
 
 }  // namespace weft::physics

@@ -21,6 +21,15 @@ struct Corners {
   }
 };
 
+inline double longest_side(const Triangle& t) {
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 side = minus(t[(k + 1) % 3], t[k]);
+    square = std::max(square, dot(side, side));
+  }
+  return std::sqrt(square);
+}
+
 // The point of a triangle nearest to q (Ericson, Real-Time Collision Detection, 5.1.5).
 inline Weights nearest_on(const Triangle& t, const Vec3& q) {
   const Vec3 ab = minus(t[1], t[0]), ac = minus(t[2], t[0]), aq = minus(q, t[0]);
@@ -56,17 +65,19 @@ struct Deepest {
   Nearest nearest;
 };
 
-inline constexpr int kProjections = 12;  // between triangle and core
-
-// The point of a triangle nearest to the core of a shape, by alternating projections between the two.
-// They end early at a plane that holds the two further apart than `enough`.
+// The point of a triangle nearest to the core of a shape.
 struct Approach {
   Weights weights{1 / 3., 1 / 3., 1 / 3.};
-  bool apart = false;  // a plane was found between the two
-  bool far = false;    // and it holds them apart by enough
+  bool apart = false;  // the two do not cut each other
+  bool far = false;    // and are further apart than is asked for
 };
+
+inline constexpr int kProjections = 12;  // between triangle and core
+
+// By alternating projections between the two, which mostly need two or three. They end early at a plane
+// that holds the two further apart than `enough`. `exact`: whether the last plane proves the result.
 template <class Shape>
-Approach approach(const Shape& shape, const Corners& c, double enough, double edge) {
+Approach project(const Shape& shape, const Corners& c, double enough, double edge, bool& exact) {
   Approach a;
   Core core = core_of(shape, c.at(a.weights));
   for (int n = 0; n < kProjections; ++n) {
@@ -78,13 +89,118 @@ Approach approach(const Shape& shape, const Corners& c, double enough, double ed
     const double square = dot(way, way);
     double least = 1e300;
     for (const Vec3& x : c.x) least = std::min(least, dot(way, minus(x, here)));
-    const double gap = (square + least) / std::sqrt(std::max(square, 1e-300));
+    const double apart = std::sqrt(std::max(square, 1e-300)), gap = (square + least) / apart;
     a.apart |= gap > 1e-6 * edge;  // more than rounding
     a.far = a.apart && gap >= enough;
+    exact = a.far || apart - gap < 1e-4 * edge;
     const Vec3 change = minus(a.weights, before);
     if (a.far || dot(change, change) < 1e-12) break;
   }
   return a;
+}
+
+// Up to four differences between corners of a triangle and points of a core, and where among them the
+// origin's nearest point lies (Gilbert, Johnson, Keerthi 1988).
+class Differences {
+ public:
+  bool holds(const Vec3& y) const { return std::find(y_, y_ + count_, y) != y_ + count_; }
+  void add(const Vec3& y, int corner) {
+    y_[count_] = y;
+    corner_[count_++] = corner;
+  }
+  // Finds the nearest point and keeps only what it lies between. False: the origin is inside.
+  bool reduce() {
+    if (count_ == 4) return reduce_four();
+    const Triangle t{y_[0], y_[count_ > 1 ? 1 : 0], y_[count_ - 1]};
+    const Weights w = nearest_on(t, {});
+    if (count_ == 3)
+      keep({0, 1, 2}, w);
+    else
+      keep({0, count_ - 1, count_ - 1}, {w[0], count_ > 1 ? w[1] + w[2] : 0, 0});
+    return true;
+  }
+  Vec3 nearest() const {
+    Vec3 v{};
+    for (int n = 0; n < count_; ++n) v = plus(v, times(y_[n], weight_[n]));
+    return v;
+  }
+  Weights on_triangle() const {
+    Weights w{};
+    for (int n = 0; n < count_; ++n) w[std::size_t(corner_[n])] += weight_[n];
+    return w;
+  }
+
+ private:
+  bool reduce_four() {
+    double least = 1e300;
+    std::array<int, 3> best{};
+    Weights weights{};
+    for (int out = 0; out < 4; ++out) {
+      const std::array<int, 3> f{(out + 1) % 4, (out + 2) % 4, (out + 3) % 4};
+      const Triangle t{y_[f[0]], y_[f[1]], y_[f[2]]};
+      const Vec3 n = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+      if (-dot(n, t[0]) * dot(n, minus(y_[out], t[0])) > 0)
+        continue;  // the origin is on its inner side
+      const Weights w = nearest_on(t, {});
+      const Vec3 p = plus(plus(times(t[0], w[0]), times(t[1], w[1])), times(t[2], w[2]));
+      if (dot(p, p) >= least) continue;
+      least = dot(p, p);
+      best = f;
+      weights = w;
+    }
+    if (least == 1e300) return false;
+    keep(best, weights);
+    return true;
+  }
+  void keep(const std::array<int, 3>& which, const Weights& weights) {
+    const auto y = std::to_array(y_);
+    const auto corner = std::to_array(corner_);
+    count_ = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+      if (weights[n] <= 0) continue;
+      weight_[count_] = weights[n];
+      add(y[std::size_t(which[n])], corner[std::size_t(which[n])]);
+    }
+  }
+
+  int count_ = 0;
+  Vec3 y_[4];
+  int corner_[4];
+  double weight_[4];
+};
+
+inline constexpr int kDifferences = 40;  // looked at, at most
+
+// The same for triangle and core of any proportions: both are polytopes, so that the search ends.
+template <class Shape>
+Approach search(const Shape& shape, const Corners& c, double enough, double edge) {
+  Differences found;
+  found.add(minus(c.x[0], support_of(shape, minus(Vec3{}, c.x[0]))), 0);
+  Approach a;
+  for (int n = 0; n < kDifferences; ++n) {
+    if (!found.reduce()) return a;
+    const Vec3 v = found.nearest();
+    const double square = dot(v, v);
+    a.weights = found.on_triangle();
+    if (square < 1e-12 * edge * edge) return a;
+    int k = 0;
+    for (int m = 1; m < 3; ++m)
+      if (dot(v, c.x[std::size_t(m)]) < dot(v, c.x[std::size_t(k)])) k = m;
+    const Vec3 y = minus(c.x[std::size_t(k)], support_of(shape, v));
+    if (square - dot(v, y) <= 1e-9 * square || found.holds(y)) break;
+    found.add(y, k);
+  }
+  a.apart = true;
+  const Vec3 v = found.nearest();
+  a.far = dot(v, v) >= enough * enough;
+  return a;
+}
+
+template <class Shape>
+Approach approach(const Shape& shape, const Corners& c, double enough, double edge) {
+  bool exact = false;
+  const Approach a = project(shape, c, enough, edge, exact);
+  return exact ? a : search(shape, c, enough, edge);
 }
 
 // The deepest point of a triangle in a shape. One that cuts the core is first moved out of it, along the

@@ -82,23 +82,27 @@ void ClothStep::choose_stages() {
 // Colliders, and what cuts. Triangles and constraints are those of a grid.
 void ClothStep::choose_contact() {
   const auto& colliders = parts().scene.colliders;
-  const LatticeParts* const lattice = model_->lattice();
-  bool pushed = false, triangles = false, cut = false;
+  LatticeParts* const lattice = model_->lattice();
+  bool pushed = false, cut = false;
   for (int n = 0; n < parts().scene.solver.collision_iterations; ++n)
     for (std::size_t k = 0; k < colliders.size(); ++k) {
       if (colliders[k].cuts) continue;
-      list_.stages.push_back(make_collider(parts(), colliders[k], starts_[k]));
+      auto particles = make_collider(parts(), colliders[k], starts_[k]);
+      auto faces =
+          lattice ? make_collider_triangles(*lattice, colliders[k], starts_[k], particles->far())
+                  : nullptr;
+      list_.stages.push_back(std::move(particles));
+      if (faces) list_.stages.push_back(std::move(faces));
       pushed = true;
-      if (!lattice) continue;
-      if (auto stage = make_collider_triangles(*lattice, colliders[k], starts_[k])) {
-        list_.stages.push_back(std::move(stage));
-        triangles = true;
-      }
     }
-  if (!pushed)
-    list_.skip("collider", "the scene has none");
-  else if (!triangles)
-    list_.skip("collider_faces", "no collider is small against the mesh");
+  const auto runs = [&](const char* name) {
+    return std::any_of(stages().begin(), stages().end(), [&](auto& s) { return s->name == name; });
+  };
+  if (!pushed) list_.skip("collider", "the scene has none");
+  if (pushed && !runs("collider_faces"))
+    list_.skip("collider_faces", "no collider is small against the mesh at rest");
+  if (pushed && !runs("stretched_faces"))
+    list_.skip("stretched_faces", "no collider is curved and large against the mesh");
   for (std::size_t k = 0; lattice && k < colliders.size(); ++k) {
     if (!colliders[k].cuts) continue;
     list_.stages.push_back(make_cut(*lattice, colliders[k], starts_[k]));

@@ -8,6 +8,7 @@
 
 #include "physics/contact/colliders/shapes.h"
 #include "physics/contact/self/crossings.h"
+#include "physics/contact/start_inside.h"
 #include "physics/model/vector.h"
 #include "weft/shape.h"
 
@@ -47,11 +48,11 @@ void add_constraints(const ClothStep& step, Report& r) {
 
 void add_penetration(const Simulation::State& s, const ClothStep& step, Report& r) {
   const double time = double(s.frame) * s.scene.time.frame;
-  for (const Vec3& x : step.particles().gather(step.particles().x))
-    for (const Collider& c : s.scene.colliders)
-      if (!c.cuts)
-        r.penetration.collider_max =
-            std::max(r.penetration.collider_max, -signed_distance(c, time, x));
+  const std::vector<Vec3> x = step.particles().gather(step.particles().x);
+  for (const Collider& c : s.scene.colliders)
+    if (!c.cuts)
+      r.penetration.collider_max = std::max(
+          r.penetration.collider_max, deepest_in(c, time, x, step.model().surface().triangles));
 }
 
 // Strain over all cloths: the largest, and the mean weighted by constraints.

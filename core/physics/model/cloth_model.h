@@ -64,9 +64,8 @@ class ClothModel {
   virtual void append_limits(StageList& list) = 0;
   virtual double mass(int particle) const = 0;  // kg, held or not
 
-  // The triangles that are left, and those of the cloth before it tore.
+  // The triangles that are left.
   virtual const SurfaceMesh& surface() const = 0;
-  virtual SurfaceMesh whole_surface() const = 0;
   virtual ConstraintCounts constraints() const = 0;
   virtual Pull pull() const = 0;
 

@@ -128,6 +128,16 @@ Nearest nearest_of(const Box& box, const Vec3& p) {
   return {length - box.rounding, normal};
 }
 
+Vec3 support_of(const Box& box, const Vec3& way) {
+  Vec3 furthest{};
+  const std::array<Vec3, 3> axes = axes_of(box);
+  for (int k = 0; k < 3; ++k) {
+    const double h = box.half[k] - box.rounding;
+    furthest = plus(furthest, times(axes[k], dot(axes[k], way) < 0 ? -h : h));
+  }
+  return furthest;
+}
+
 // Separating axes of a box and a triangle (Gottschalk et al. 1996): the faces' three normals, the
 // triangle's, and the nine products of their edges. The one of least overlap leads out.
 Overlap overlap_of(const Box& box, const Triangle& t) {

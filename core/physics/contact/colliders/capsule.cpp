@@ -65,6 +65,11 @@ Nearest nearest_of(const Capsule& capsule, const Vec3& p) {
   return {length - capsule.radius, length > 0 ? times(d, 1 / length) : Vec3{0, 1, 0}};
 }
 
+Vec3 support_of(const Capsule& capsule, const Vec3& way) {
+  const Vec3 e = minus(capsule.b, capsule.a);
+  return dot(e, way) > 0 ? e : Vec3{};
+}
+
 // The axis cuts a triangle when its ends lie on both sides of it, and the point between inside. Out
 // is the way of the end that is nearer.
 Overlap overlap_of(const Capsule& capsule, const Triangle& t) {

@@ -134,6 +134,15 @@ Nearest nearest_of(const Cylinder& cylinder, const Vec3& p) {
           plus(times(at.side, out1 / length), times(end, out2 / length))};
 }
 
+Vec3 support_of(const Cylinder& cylinder, const Vec3& way) {
+  const Frame f(cylinder);
+  const double along = dot(way, f.axis);
+  const Vec3 across = minus(way, times(f.axis, along));
+  const double size = std::sqrt(dot(across, across));
+  const Vec3 rim = size > 0 ? times(across, f.across / size) : Vec3{};
+  return plus(f.middle, plus(times(f.axis, along < 0 ? -f.along : f.along), rim));
+}
+
 // Directions along which the two may be apart: the axis, the triangle's normal, and across the axis
 // those to its sides and corners, seen along the axis. The one of least overlap leads out. Two that
 // touch only between such directions count as overlapping, and are moved out a little too far.

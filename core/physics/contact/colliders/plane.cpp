@@ -97,6 +97,11 @@ Core core_of(const Plane& plane, const Vec3& p) {
   return {minus(p, times(n.normal, n.distance)), 0};
 }
 
+// Without bounds it has none.
+Vec3 support_of(const Plane&, const Vec3&) {
+  return {};
+}
+
 // Triangles are as deep as their corners.
 Overlap overlap_of(const Plane&, const Triangle&) {
   return {};

@@ -36,11 +36,13 @@ struct Core {
   void move(Shape& shape, const Vec3& by);                   \
   Nearest nearest_of(const Shape& shape, const Vec3& p);     \
   Core core_of(const Shape& shape, const Vec3& p);           \
+  Vec3 support_of(const Shape& shape, const Vec3& way);      \
   Overlap overlap_of(const Shape& shape, const Triangle& t); \
   double feature_of(const Shape& shape);                     \
   ShapeMesh mesh_of(const Shape& shape);
 // constants_of: for the kernels; place_of: where it stands without keys; move: to elsewhere;
-// nearest_of, core_of: seen from p, in double; overlap_of: of the core and a triangle; feature_of: its smallest radius of
+// nearest_of, core_of: seen from p, in double; support_of: the point of the core that lies
+// furthest along `way`; overlap_of: of the core and a triangle; feature_of: its smallest radius of
 // curvature, infinite for a plane [m]; mesh_of: triangles for drawing.
 WEFT_SHAPES(WEFT_SHAPE)
 #undef WEFT_SHAPE

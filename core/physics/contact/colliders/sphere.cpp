@@ -50,6 +50,10 @@ Core core_of(const Sphere& sphere, const Vec3&) {
   return {{}, sphere.radius};
 }
 
+Vec3 support_of(const Sphere&, const Vec3&) {
+  return {};
+}
+
 // Its core is a point, which a triangle cannot cut.
 Overlap overlap_of(const Sphere&, const Triangle&) {
   return {};

@@ -21,7 +21,6 @@ class LatticeModel final : public ClothModel {
   double mass(int particle) const override;
 
   const SurfaceMesh& surface() const override;
-  SurfaceMesh whole_surface() const override;
   ConstraintCounts constraints() const override;
   Pull pull() const override;
   void accelerations(std::vector<Vec3>& a) const override;
@@ -44,6 +43,7 @@ class LatticeModel final : public ClothModel {
  private:
   void append_forces(StageList& list);
   void append_projections(StageList& list);
+  SurfaceMesh whole_surface() const;
   const BendLinks* bend_links() const { return tearing_ ? tearing_->bend_links() : nullptr; }
   double stretch_energy(const Rows& x, double dt) const;
   double greatest_coordinate(const Rows& x) const;

@@ -1,0 +1,230 @@
+// Triangles as they are now stay out of bodies, however long the sheet is drawn: by an independent measure
+// of every triangle (body_distance.h).
+#include <random>
+
+#include "body_distance.h"
+#include "contact_scenes.h"
+#include "physics/contact/moving_collider.h"
+#include "physics/contact/triangle_shape.h"
+#include "weft/report.h"
+#include "weft/shape.h"
+
+namespace weft {
+namespace {
+
+constexpr double kRounding = 1e-5;  // m
+
+double deepest(const Simulation& simulation, std::size_t collider = 0) {
+  const Scene& scene = simulation.scene();
+  const Collider& c = scene.colliders[collider];
+  const Grid& g = scene.cloths[0].grid;
+  const Vec3 by = displacement(c, simulation.time());
+  return tests::deepest_triangle(simulation.positions(), g.nx, g.ny, c, by);
+}
+
+const std::vector<Method> kMethods{Method::spring, Method::spring_friction, Method::compliant,
+                                   Method::positional};
+
+// The nearest points of triangles and cores of any proportions, against minimisation.
+TEST(ContactTriangles, FindsTheDeepestPointOfAnyTriangle) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const double offset = 0.01;
+  const std::vector<Shape> shapes{Box{{}, {0.1, 0.05, 0.2}, {}, 0.01},
+                                  Box{{}, {0.3, 0.001, 0.2}, {}, 0},
+                                  Capsule{{}, {0.3, 0.1, 0.2}, 0.03}, Sphere{{}, 0.1}};
+  for (const Shape& shape : shapes)
+    for (const double size : {0.05, 0.3, 1.0, 5.0, 20.0})
+      for (int n = 0; n < 300; ++n) {
+        const Vec3 middle{unit(random) / 4, unit(random) / 4, unit(random) / 4};
+        physics::Corners c{};
+        for (Vec3& x : c.x)
+          for (int k = 0; k < 3; ++k) x[k] = middle[k] + size / 2 * unit(random);
+        const double truth = tests::least_on_triangle(c.x, [&](const Vec3& p) {
+          return std::visit([&](const auto& s) { return tests::distance_from(s, p); }, shape);
+        });
+        std::visit(
+            [&](const auto& s) {
+              const double found = physics::deepest_on(s, c, offset, size).nearest.distance;
+              const double core = -physics::core_of(s, c.x[0]).radius;
+              if (truth > offset)
+                EXPECT_GE(found, offset - 1e-9);
+              else if (truth > core + 1e-6)
+                EXPECT_NEAR(found, truth, 2e-5 * size) << shape.index() << ", " << size << " m";
+              else  // cut: what it takes to get out is no less than that
+                EXPECT_LE(found, truth + 1e-9);
+            },
+            shape);
+      }
+}
+
+// A soft sheet that two edges draw to three times its length, above a body that its mesh at rest
+// resolves; then the edges go down beside the body.
+Scene drawn_over(const Shape& shape, Method method, int points, double offset) {
+  Scene scene;
+  scene.time.substeps = 40;
+  scene.solver.method = method;
+  scene.cloths.push_back(flat_sheet(points, 0.5, {0, 0.25, 0}));
+  Cloth& cloth = scene.cloths[0];
+  cloth.stiffness = {2, 1, 0.2};
+  cloth.positional_k = 0.02;  // else it cannot be drawn so far
+  cloth.drag = 2;
+  for (int j = 0; j < points; ++j)
+    for (const int side : {-1, 1}) {
+      const double z = 0.5 * (j / double(points - 1) - 0.5);
+      cloth.pins.push_back({side < 0 ? 0 : points - 1,
+                            j,
+                            {{0, {0.25 * side, 0.25, z}},
+                             {0.3, {0.75 * side, 0.25, z}},
+                             {0.7, {0.6 * side, -0.3, z}}}});
+    }
+  scene.colliders.push_back(collider_of(shape, 0.3));
+  scene.colliders[0].offset = offset;
+  return scene;
+}
+
+TEST(ContactTriangles, SheetDrawnToThreeTimesItsLengthStaysOut) {
+  const std::vector<Shape> shapes{Sphere{{0, 0, 0}, 0.2},
+                                  Capsule{{0, 0, -0.15}, {0, 0, 0.15}, 0.15},
+                                  Box{{0, 0, 0}, {0.2, 0.15, 0.2}, {0, 30, 0}, 0.12}};
+  for (const Shape& shape : shapes)
+    for (const Method method : kMethods)
+      for (const int points : {9, 21})
+        for (const double offset : {0.0, 0.005}) {
+          if (!physics::resolves(drawn_over(shape, method, points, offset).cloths[0],
+                                 collider_of(shape, 0)))
+            continue;
+          Simulation simulation(drawn_over(shape, method, points, offset));
+          double worst = -1, strain = 0;
+          for (int frame = 0; frame < 60; ++frame) {
+            simulation.advance_frame();
+            if (frame % 3 == 2 && frame > 20) {
+              worst = std::max(worst, deepest(simulation));
+              strain = std::max(strain, simulation.report(false).strain.max);
+            }
+          }
+          EXPECT_GT(strain, 1.5);
+          EXPECT_LT(worst, kRounding) << shape.index() << ", method " << int(method) << ", "
+                                      << points << " points, offset " << offset << " m";
+          EXPECT_NEAR(simulation.report().penetration.collider_max,
+                      std::max(0.0, deepest(simulation)), 1e-6);
+        }
+}
+
+// A ball of any size against the mesh flies at 50 m/s into a curtain held by its border.
+TEST(ContactTriangles, CurtainHoldsAFastBall) {
+  for (const Method method : kMethods)
+    for (const double radius : {0.01, 0.06, 0.2})
+      for (const double speed : {5.0, 50.0}) {
+        Scene scene;
+        scene.gravity = {0, 0, 0};
+        scene.time = {1.0 / 240, 20, 1};
+        scene.solver.method = method;
+        scene.cloths.push_back(flat_sheet(13, 0.6, {0, 0, 0}));
+        scene.cloths[0].stiffness = {500, 300, 50};
+        for (int n = 0; n < 13; ++n)
+          for (const auto& [i, j] : {std::pair{n, 0}, {n, 12}})
+            scene.cloths[0].pins.push_back({i, j, {}});
+        const Vec3 from{0.013, 0.3, 0.007};
+        scene.colliders.push_back(collider_of(Sphere{from, radius}, 0.2));
+        scene.colliders[0].offset = 0.002;
+        const double way = 0.42 - radius;  // to 12 cm below the curtain
+        scene.colliders[0].keys = {{0, from}, {way / speed, {from[0], from[1] - way, from[2]}}};
+        Simulation simulation(scene);
+        double worst = -1;
+        const int frames = int(1.2 * way / speed * 240) + 2;
+        for (int frame = 0; frame < frames; ++frame) {
+          simulation.advance_frame();
+          worst = std::max(worst, deepest(simulation));
+          ASSERT_TRUE(simulation.status().ok);
+        }
+        EXPECT_LT(worst, 0.001) << "method " << int(method) << ", radius " << radius << " m, "
+                                << speed << " m/s";
+        // The ball carries it along: its lowest particle is below the ball.
+        double lowest = 0;
+        const std::vector<double> x = simulation.positions();
+        for (std::size_t p = 1; p < x.size(); p += 3) lowest = std::min(lowest, x[p]);
+        EXPECT_LT(lowest, -0.1) << radius << ' ' << speed << ' ' << int(method);
+      }
+}
+
+// A sheet falls onto the sharp corner of a box that stands on its tip, which the mesh does not resolve.
+TEST(ContactTriangles, ConeOfClothOnTheTipOfABox) {
+  for (const Method method : kMethods)
+    for (const double edge : {0.02, 0.2}) {
+      Scene scene;
+      scene.time.substeps = 40;
+      scene.solver.method = method;
+      scene.cloths.push_back(flat_sheet(17, 0.5, {0.011, 0.2 + edge, 0.007}));
+      scene.cloths[0].drag = 2;
+      scene.colliders.push_back(collider_of(Box{{}, {edge, edge, edge}, {45, 0, 35.264}, 0}, 0.6));
+      scene.colliders[0].offset = 0.003;
+      Simulation simulation(scene);
+      double worst = -1;
+      for (int frame = 0; frame < 40; ++frame) {
+        simulation.advance_frame();
+        if (frame % 4 == 3) worst = std::max(worst, deepest(simulation));
+      }
+      EXPECT_LT(worst, kRounding) << "method " << int(method) << ", edge " << edge << " m";
+      const Report report = simulation.report();
+      EXPECT_TRUE(report.finite);
+      EXPECT_LT(report.energy.kinetic, 0.5);
+    }
+}
+
+// Two halves of a torn curtain are no triangle: a ball passes between them and moves neither.
+TEST(ContactTriangles, NothingHoldsWhatIsTorn) {
+  for (const Method method : kMethods) {
+    Scene scene;
+    scene.gravity = {0, 0, 0};
+    scene.time.substeps = 20;
+    scene.solver.method = method;
+    scene.cloths.push_back(flat_sheet(12, 0.55, {0, 0, 0}));
+    Cloth& cloth = scene.cloths[0];
+    cloth.tear_strain = 10;
+    for (int j = 0; j < 12; ++j)
+      for (int i = 0; i < 12; ++i) {
+        const double side = i < 6 ? -1 : 1;
+        const Vec3 start{(i - 5.5) * 0.05, 0, (j - 5.5) * 0.05};
+        const Vec3 apart{start[0] + 0.3 * side, 0, start[2]};
+        cloth.pins.push_back({i, j, {{0, start}, {0.1, apart}}});
+      }
+    scene.colliders.push_back(collider_of(Sphere{{0, 0.5, 0}, 0.2}));
+    scene.colliders[0].keys = {{0.2, {0, 0.5, 0}}, {0.7, {0, -0.5, 0}}};
+    Simulation simulation(scene);
+    simulation.cut({0, 0, -1}, {0, 0, 1}, 0.01);
+    advance(simulation, 0.15);
+    // From now on the halves are free.
+    for (int j = 0; j < 12; ++j)
+      for (int i = 0; i < 12; ++i) simulation.unpin(0, i, j);
+    const std::vector<double> before = simulation.positions();
+    simulation.set_state(before, std::vector<double>(before.size()));
+    advance(simulation, 0.8);
+    const std::vector<double> after = simulation.positions();
+    for (std::size_t p = 0; p < after.size(); ++p) ASSERT_NEAR(after[p], before[p], 1e-3);
+  }
+}
+
+// The long edges of one sheet do not make a far one look, and what is far costs nothing.
+TEST(ContactTriangles, FarRowsArePassedOver) {
+  Scene scene;
+  scene.gravity = {0, 0, 0};
+  scene.time.substeps = 20;
+  scene.cloths.push_back(flat_sheet(33, 0.5, {0, 0, 0}));
+  scene.colliders.push_back(collider_of(Sphere{{0, 3, 0}, 0.4}));
+  Simulation simulation(scene);
+  advance(simulation, 1);
+  int told = 0;
+  for (const SkippedStage& s : simulation.report().skipped)
+    if (s.name == "stretched_faces") {
+      ++told;
+      double percent = 0;
+      const std::size_t at = s.why.find_first_of("0123456789");
+      percent = std::stod(s.why.substr(at));
+      EXPECT_GT(percent, 50);
+    }
+  EXPECT_EQ(told, 1);
+}
+
+}  // namespace
+}  // namespace weft
