@@ -41,6 +41,18 @@ TEST(CliCommands, CheckSaysOk) {
   EXPECT_EQ(run_weft(folder, "check pinned2").exit_code, 0);
 }
 
+TEST(CliCommands, TellWhatOfACourseFileIsIgnored) {
+  const Folder folder;
+  folder.write("wild.json", R"({"cloth": {"num_width_points": 6, "num_height_points": 6, "depth": 2,
+    "pinned": [[0, 0], [0, 0]]}, "sphere0": {"pinned": "no\u001b[31m"}})");
+  for (const std::string command : {"check", "explain", "run --frames 1"}) {
+    const Outcome outcome = run_weft(folder, command + " wild.json");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    for (const char* place : {"/cloth/depth ", "/sphere0/pinned ", "/cloth/pinned "})
+      EXPECT_NE(outcome.out.find(place), std::string::npos) << command << outcome.out;
+  }
+}
+
 TEST(CliCommands, ExplainPrintsThePlan) {
   const Folder folder;
   small_scene(folder);

@@ -83,8 +83,9 @@ Scene read_course(CourseFile& file, const std::vector<Override>& overrides, Chec
   const Scene scene = scene_of_course(file);
   const CoursePlaces places(file);
   if (places.repeated_pins() > 0)
-    file.notes.push_back("/cloth/pinned names " + std::to_string(places.repeated_pins()) +
-                         " particles again; each is held once");
+    file.notes.push_back("/cloth/pinned has " + std::to_string(places.repeated_pins()) +
+                         (places.repeated_pins() == 1 ? " pin" : " pins") +
+                         " that it had before; each particle is held once");
 
   Check together;  // in places of the scene
   for (const std::string& place : course.unsound)

@@ -48,6 +48,7 @@ std::vector<Fault> Document::open(const std::string& path_or_name,
   shipped_ = false;
   for (const ShippedScene& shipped : shipped_scenes()) shipped_ = shipped_ || shipped.path == path_;
   scene_ = std::move(file.scene);
+  notes_ = std::move(file.notes);
   name_ = scene_.name.empty() ? fs::path(path_).stem().string() : scene_.name;
   json_ = text::document_of(scene_);
   time_ = time_of(path_);

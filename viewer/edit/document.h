@@ -17,6 +17,8 @@ class Document {
   std::vector<Fault> open(const std::string& path_or_name,
                           const std::vector<Override>& overrides = {});
 
+  // What was read otherwise than the file has it (SceneFile::notes).
+  const std::vector<std::string>& notes() const { return notes_; }
   const Scene& scene() const { return scene_; }
   const text::Json& json() const { return json_; }
   const std::string& path() const { return path_; }  // of the file
@@ -64,6 +66,7 @@ class Document {
   std::string keep_path() const;
 
   text::Json json_;
+  std::vector<std::string> notes_;
   Scene scene_;
   std::string path_, name_;
   bool shipped_ = false;

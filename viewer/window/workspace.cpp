@@ -36,6 +36,7 @@ Workspace::Workspace(const Arguments& arguments)
   refuse_clashes(arguments, document_.path());
   session_.emplace(document_.scene(), options, arguments.paused, !arguments.log.empty());
   simulated_ = kept_ = document_.revision();
+  tell_notes();
   tell_kept();
   aim(arguments, camera);
   show_start();
@@ -69,7 +70,12 @@ void Workspace::open(const std::string& path_or_name) {
   session_->post([scene = document_.scene()](Player& player) { player.open(scene); });
   kept_ = simulated_;
   messages.tell("Opened " + document_.name(), now_);
+  tell_notes();
   tell_kept();
+}
+
+void Workspace::tell_notes() {
+  for (const std::string& note : document_.notes()) messages.warn(printable(note), now_);
 }
 
 void Workspace::open_neighbour(int step) {

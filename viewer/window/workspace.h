@@ -74,6 +74,7 @@ class Workspace {
   void post_change();
   void watch_file();
   void keep_edits();
+  void tell_notes();
   void tell_kept();
 
   Document document_;
