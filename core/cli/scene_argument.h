@@ -18,7 +18,7 @@ void add_scene_argument(CLI::App& command, SceneArgument& argument);
 
 struct LoadedScene {
   Scene scene;
-  std::string path;  // the file, as error lines name it
+  std::string path;                     // the file, as error lines name it
   std::vector<std::string> notes = {};  // on how it was read
 };
 

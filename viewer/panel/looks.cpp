@@ -65,19 +65,19 @@ void draw_material(Workspace& workspace) {
   if (is("pbr")) {
     switches({{"maps", s.maps}});
     tooltip("Base colour, metallic, roughness and normals from maps (--base-color-map, …)");
-  }
-  const bool maps = is("pbr") && s.maps;
-  if (maps) {
     slider("normal scale", s.normal_scale, 0, 10);
     slider("repeats", s.texture_repeats, 1, 20, "%.0f");
-  } else {
-    color("front", s.color);
-    ImGui::SameLine();
-    color("back", s.back_color);
   }
-  if (is("colour") || is("ggx_force") || (is("pbr") && !maps))
-    slider("roughness", s.roughness, 0.05f, 1);
-  if (is("pbr") && !maps) slider("metallic", s.metallic, 0, 1);
+  color("front", s.color);
+  ImGui::SameLine();
+  color("back", s.back_color);
+  bool plain = false;
+  if (is("colour") || is("ggx_force") || is("pbr"))
+    plain = slider("roughness", s.roughness, 0.05f, 1);
+  if (is("pbr")) {
+    plain = slider("metallic", s.metallic, 0, 1) || plain;
+    if (plain) s.maps = false;  // who moves a plain value wants to see it
+  }
   if (is("blinn_phong") || is("phong_force")) {
     switches({{"ambient", s.ambient}, {"diffuse", s.diffuse}, {"specular", s.specular}});
     slider("shininess", s.shininess, 2, 200, "%.0f", ImGuiSliderFlags_Logarithmic);
