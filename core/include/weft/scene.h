@@ -192,13 +192,12 @@ struct Solver {
   bool tethers = false;               // one-sided distance to the pins (positional, compliant)
   int order = 1;                      // 2: second-order substep (compliant)
   int iterations = 1;                 // constraint sweeps per substep, 1 … 1000
-  bool iterate_springs =
-      false;  // methods spring and spring_friction: every iteration adds the spring
-              // forces again, so that stiffness and damping count `iterations`
-              // times (seed 000); false: springs have no iterations
-  bool full_first_kick = false;  // the same methods: the first substep adds a whole substep of
-                                 // acceleration to the velocities, as position Verlet does whose
-      // previous positions are its first (the course); false: half of one
+  // Methods spring and spring_friction: every iteration adds the spring forces again, so that stiffness
+  // and damping count `iterations` times (seed 000); false: springs have no iterations.
+  bool iterate_springs = false;
+  // The same methods: the first substep adds a whole substep of acceleration to the velocities, as
+  // position Verlet does whose previous positions are its first (the course); false: half of one.
+  bool full_first_kick = false;
   int collision_iterations = 1;  // passes over the colliders per substep, 1 … 100
   double sleep = 0;              // m/s; 0 … 1: row-blocks slower than this for half a second rest
                                  // until something moves them; 0 = nothing ever rests
