@@ -226,5 +226,38 @@ TEST(ContactTriangles, FarRowsArePassedOver) {
   EXPECT_EQ(told, 1);
 }
 
+// Two bodies close on a sheet until they leave no room for it: it stays where they are, and calm.
+TEST(ContactTriangles, SheetPinchedBetweenTwoBodiesDoesNotExplode) {
+  const std::vector<std::pair<Shape, Shape>> pairs{
+      {Box{{0, 0.3, 0}, {0.15, 0.05, 0.15}, {}, 0.01},
+       Box{{0, -0.06, 0}, {0.15, 0.05, 0.15}, {}, 0}},
+      {Sphere{{0.02, 0.4, 0.01}, 0.15}, Plane{{0, -0.01, 0}, {0, 1, 0}}},
+      {Sphere{{0, 0.5, 0}, 0.02}, Sphere{{0, -0.12, 0}, 0.1}}};
+  for (const auto& [upper, lower] : pairs)
+    for (const Method method : kMethods)
+      for (const double speed : {0.2, 5.0}) {
+        Scene scene;
+        scene.time.substeps = 30;
+        scene.solver.method = method;
+        scene.cloths.push_back(flat_sheet(17, 0.5, {0, 0.02, 0}));
+        scene.cloths[0].drag = 1;
+        scene.colliders = {collider_of(lower, 0.3), collider_of(upper, 0.3)};
+        for (Collider& c : scene.colliders) c.offset = 0.005;
+        const Vec3 from = place_of(upper);
+        const double way = 0.4;
+        scene.colliders[1].keys = {{0.1, from},
+                                   {0.1 + way / speed, {from[0], from[1] - way, from[2]}}};
+        Simulation simulation(scene);
+        double fastest = 0;
+        for (int frame = 0; frame < int(60 * (0.3 + way / speed)); ++frame) {
+          simulation.advance_frame();
+          ASSERT_TRUE(simulation.status().ok);
+          for (const double v : simulation.velocities()) fastest = std::max(fastest, std::abs(v));
+        }
+        EXPECT_LT(fastest, 10 * (speed + 1))
+            << upper.index() << ", method " << int(method) << ", " << speed << " m/s";
+      }
+}
+
 }  // namespace
 }  // namespace weft

@@ -46,10 +46,12 @@ Sheet crumpled(int nx, int ny, Stencil stencil, double gradient = 0) {
 void sweep(Sheet& s, Simd simd, const LineOptions& options, int threads = 1) {
   const KernelTable& kernels = kernel_table(simd);
   const auto model = make_model(s.scene, 0, s.scene.solver.method, 1, kernels);
+  const std::vector<Vec3> first_moves;
   const LatticeParts parts{
       {s.scene, s.scene.cloths[0], s.scene.solver.method, s.lattice, kernels, *model},
       s.lattice,
-      s.stencils};
+      s.stencils,
+      first_moves};
   Threads pool(threads);
   make_line(parts, options)->run_alone(s.lattice.rows, {kDt, kDt, 0}, pool);
 }

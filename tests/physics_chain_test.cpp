@@ -99,8 +99,8 @@ class Bundle final : public ClothModel {
     return {particles_.count() - particles_.count(0), 0, 0};
   }
   Pull pull() const override { return {}; }
-  void accelerations(std::vector<Vec3>& a) const override {
-    a.assign(std::size_t(particles_.count()), parts_.scene.gravity);
+  void accelerations(const Vec3& gravity, std::vector<Vec3>& a) const override {
+    a.assign(std::size_t(particles_.count()), gravity);
   }
   double elastic_energy() const override { return 0; }
   Strain strain() const override {
@@ -116,6 +116,10 @@ class Bundle final : public ClothModel {
     });
     strain.mean /= double(strain.constraints);
     return strain;
+  }
+  double limited_strain() const override { return strain().max; }
+  Vec3 pin_position(const Pin& pin, double) const override {
+    return particles_.position(pin.j, pin.i);
   }
   double held_energy(const Rows&, double) const override { return 0; }
   float greatest_stretch(const Rows&) const override { return 1; }

@@ -36,6 +36,13 @@ class FieldWriter {
     return Json::array({write(field[0]), write(field[1]), write(field[2])});
   }
 
+  static Json write(VectorInTime field) {
+    if (field.keys.empty()) return write(field.value);
+    Json object = Json::object();
+    object["keys"] = write(field.keys);
+    return object;
+  }
+
   static Json write(Substeps field) {
     if (field.value == kAutoSubsteps) return "auto";
     return field.value;
@@ -48,12 +55,18 @@ class FieldWriter {
     return Json::array({write(key.time), write(p[0]), write(p[1]), write(p[2])});
   }
 
+  static Json write(const Angle& angle) {
+    return Json::array({write(angle.time), write(angle.degrees)});
+  }
+
   static Json write(Pin& pin) {
     Json at = write(Points{pin.i, pin.j});
-    if (pin.keys.empty()) return at;
+    if (pin == Pin{pin.i, pin.j, {}, {}, -1}) return at;
     Json object = Json::object();
     object["at"] = std::move(at);
-    object["keys"] = write(pin.keys);
+    if (!pin.keys.empty()) object["keys"] = write(pin.keys);
+    if (pin.rotate != Rotation{}) object["rotate"] = write(pin.rotate);
+    if (pin.follow != -1) object["follow"] = write(pin.follow);
     return object;
   }
 

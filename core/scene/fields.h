@@ -17,6 +17,11 @@ struct Points {  // [nx, ny]
   int& ny;
 };
 
+struct VectorInTime {  // a vector, or {"keys": [[t, x, y, z], …]}
+  Vec3& value;
+  std::vector<Key>& keys;
+};
+
 // The words for the values of each enum, in their order.
 constexpr std::array<const char*, 4> words(Method) {
   return {"positional", "spring", "spring_friction", "compliant"};
@@ -36,6 +41,13 @@ constexpr std::array<const char*, 3> words(Tears) {
 }
 constexpr std::array<const char*, 2> words(LevelDiagonals) {
   return {"both", "one"};
+}
+
+template <class Walk>
+void fields(Walk& walk, Rotation& rotation) {
+  walk("axis", rotation.axis);
+  walk("about", rotation.about);
+  walk("keys", rotation.keys);
 }
 
 template <class Walk>
@@ -94,6 +106,8 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("level_diagonals", cloth.level_diagonals);
   walk("stiffness_gradient", cloth.stiffness_gradient);
   walk("positional_k", cloth.positional_k);
+  walk("velocity", cloth.velocity);
+  walk("spin", cloth.spin);
   walk("drag", cloth.drag);
   walk("bending", cloth.bending);
   walk("strain_limit", cloth.strain_limit);
@@ -149,7 +163,7 @@ void fields(Walk& walk, Collider& collider) {
 
 template <class Walk>
 void fields(Walk& walk, Wind& wind) {
-  walk("velocity", wind.velocity);
+  walk("velocity", VectorInTime{wind.velocity, wind.velocity_keys});
   walk("drag", wind.drag);
   walk("lift", wind.lift);
   walk("turbulence", wind.turbulence);
@@ -159,7 +173,7 @@ template <class Walk>
 void fields(Walk& walk, Scene& scene) {
   walk("name", scene.name);
   walk("about", scene.about);
-  walk("gravity", scene.gravity);
+  walk("gravity", VectorInTime{scene.gravity, scene.gravity_keys});
   walk("time", scene.time);
   walk("solver", scene.solver);
   walk("cloths", scene.cloths);

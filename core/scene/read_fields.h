@@ -51,6 +51,12 @@ class FieldReader {
       for (std::size_t k = 0; k < 3; ++k) read(value[k], field[k]);
   }
 
+  static void read(const Json& value, VectorInTime field) {
+    read(value, field.value);
+    FieldReader walk(value);
+    walk("keys", field.keys);
+  }
+
   static void read(const Json& value, Substeps field) {
     if (value == "auto")
       field.value = kAutoSubsteps;
@@ -70,11 +76,19 @@ class FieldReader {
     for (std::size_t k = 0; k < 3; ++k) read(value[k + 1], field.position[k]);
   }
 
+  static void read(const Json& value, Angle& field) {
+    if (!value.is_array() || value.size() != 2) return;
+    read(value[0], field.time);
+    read(value[1], field.degrees);
+  }
+
   static void read(const Json& value, Pin& field) {
     if (const Json* at = member(value, "at")) {
       read(*at, Points{field.i, field.j});
       FieldReader walk(value);
       walk("keys", field.keys);
+      walk("rotate", field.rotate);
+      walk("follow", field.follow);
     } else {
       read(value, Points{field.i, field.j});
     }

@@ -43,6 +43,8 @@ class Together {
 
   void run() {
     solver();
+    if (sound({"/gravity"})) keys(scene_.gravity_keys, "/gravity/keys");
+    if (sound({"/wind/velocity"})) keys(scene_.wind.velocity_keys, "/wind/velocity/keys");
     std::int64_t particles = 0;
     for (std::size_t c = 0; c < scene_.cloths.size() && !result_.full(); ++c) {
       const Cloth& one = scene_.cloths[c];
@@ -176,10 +178,18 @@ class Together {
       else if (!held.insert({pin.i, pin.j}).second)
         fault(here, "the particle " + at(pin.i, pin.j) + " is pinned twice", "once");
       keys(pin.keys, here + "/keys");
+      keys(pin.rotate.keys, here + "/rotate/keys");
+      if (length(pin.rotate.axis) < kMinSpacing)
+        fault(here + "/rotate/axis", "axis is zero", "a direction at least 1e-6 long");
+      const auto colliders = static_cast<int>(scene_.colliders.size());
+      if (pin.follow >= colliders)
+        fault(here + "/follow", "there is no collider " + std::to_string(pin.follow),
+              colliders == 0 ? "the scene has none" : "0 to " + std::to_string(colliders - 1));
     }
   }
 
-  void keys(const std::vector<Key>& keys, const std::string& place) {
+  template <class AnyKey>
+  void keys(const std::vector<AnyKey>& keys, const std::string& place) {
     for (std::size_t k = 1; k < keys.size() && !result_.full(); ++k)
       if (keys[k].time <= keys[k - 1].time)
         fault(

@@ -41,7 +41,7 @@ void Pusher::follow_scene(const Workspace& workspace) {
   const Scene& scene = workspace.document().scene();
   bool carried = false;
   for (const Cloth& cloth : scene.cloths)
-    for (const Pin& pin : cloth.pins) carried = carried || !pin.keys.empty();
+    for (const Pin& pin : cloth.pins) carried = carried || pin.moves();
   chosen_ = kCloth;
   for (std::size_t n = scene.colliders.size(); n-- > 0 && !carried;)
     if (!std::holds_alternative<Plane>(scene.colliders[n].shape)) chosen_ = static_cast<int>(n);
@@ -127,7 +127,7 @@ void Pusher::carry(Workspace& workspace, Vec3f velocity) {
   std::vector<Document::Change> changes;  // pins leave their paths
   for (std::size_t c = 0; c < scene.cloths.size(); ++c)
     for (std::size_t p = 0; p < scene.cloths[c].pins.size(); ++p)
-      if (const Pin& pin = scene.cloths[c].pins[p]; !pin.keys.empty())
+      if (const Pin& pin = scene.cloths[c].pins[p]; pin.moves())
         changes.push_back({"/cloths/" + std::to_string(c) + "/pins/" + std::to_string(p),
                            text::Json{pin.i, pin.j}});
   if (!changes.empty()) {

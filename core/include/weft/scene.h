@@ -22,11 +22,32 @@ struct Key {
   friend bool operator==(const Key&, const Key&) = default;
 };
 
-// A held particle of the grid. Without keys it stays where it starts.
+// One point of a rotation: at `time` [s] it has turned by so many degrees; linear in between, held before
+// the first key and after the last. Times increase strictly.
+struct Angle {
+  double time = 0;
+  double degrees = 0;
+  friend bool operator==(const Angle&, const Angle&) = default;
+};
+
+// A rotation about the line through `about` [m] along `axis` (not zero, any length), right-handed.
+struct Rotation {
+  Vec3 axis{0, 1, 0};
+  Vec3 about{};
+  std::vector<Angle> keys;  // none: it does not turn
+  friend bool operator==(const Rotation&, const Rotation&) = default;
+};
+
+// A held particle of the grid. Its place is where it starts or where its keys say, turned by its
+// rotation, and then moved by as much as the collider that it follows has moved since the start.
 struct Pin {
   int i = 0;  // column, 0 … nx-1
   int j = 0;  // row, 0 … ny-1
   std::vector<Key> keys;
+  Rotation rotate{};
+  int follow = -1;  // number of a collider, or -1: none
+  // Whether it moves on its own, whatever a person carries.
+  bool moves() const { return !keys.empty() || !rotate.keys.empty() || follow >= 0; }
   friend bool operator==(const Pin&, const Pin&) = default;
 };
 
@@ -86,6 +107,8 @@ struct Cloth {
   // 0 … 1: relative drop of stiffness from first row to last (seed 003).
   double stiffness_gradient = 0;
   double positional_k = 0.5;  // 0 … 0.5: share of the error each end takes (method positional)
+  Vec3 velocity{};            // m/s; of all free particles at the start
+  Vec3 spin{};                // rad/s; at the start, about the cloth's center of mass
   double drag = 0;            // 1/s; velocity is multiplied by 1 - dt*drag each substep
   double bending = 0;         // N·m; flexural rigidity of a curvature energy
   double strain_limit = 0;    // 0.1 = structural and shear constraints never beyond 110 %; 0 = off
@@ -176,10 +199,11 @@ struct Collider {
 };
 
 struct Wind {
-  Vec3 velocity{};        // m/s
-  double drag = 0;        // kg/m³; force per area and speed² along the normal
-  double lift = 0;        // kg/m³; the same across the flow
-  double turbulence = 0;  // 0 … 1; relative size of random gusts
+  Vec3 velocity{};                   // m/s
+  double drag = 0;                   // kg/m³; force per area and speed² along the normal
+  double lift = 0;                   // kg/m³; the same across the flow
+  double turbulence = 0;             // 0 … 1; relative size of random gusts
+  std::vector<Key> velocity_keys{};  // m/s in place of m; not empty: replaces velocity
   friend bool operator==(const Wind&, const Wind&) = default;
 };
 
@@ -215,8 +239,9 @@ struct Time {
 
 struct Scene {
   std::string name;
-  std::string about;          // one line for `weft scenes`
-  Vec3 gravity{0, -9.81, 0};  // m/s²
+  std::string about;                // one line for `weft scenes`
+  Vec3 gravity{0, -9.81, 0};        // m/s²
+  std::vector<Key> gravity_keys{};  // m/s² in place of m; not empty: replaces gravity
   Time time;
   Solver solver;
   std::vector<Cloth> cloths;

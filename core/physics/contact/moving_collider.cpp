@@ -115,8 +115,7 @@ SpeculativeCulling::SpeculativeCulling(const ClothParts& parts, double collider_
   parts.particles.for_each(
       [&](int j, int i) { heaviest = std::max(heaviest, double(parts.particles.w(j, i))); });
   acceleration_ += parts.model.pull().all * kStrain * heaviest;
-  const Vec3& g = parts.scene.gravity;
-  acceleration_ += 2 * std::sqrt(dot(g, g));
+  acceleration_ += 2 * greatest_gravity(parts.scene);
 }
 
 void SpeculativeCulling::restart(double collider_speed) {

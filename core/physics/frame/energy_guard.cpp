@@ -47,7 +47,8 @@ EnergySum motion(const Scene& scene, const ClothStep& step, const Rows& x, const
   const Particles& l = step.particles();
   EnergySum sum;
   for (int j = 0; j < l.rows; ++j)
-    sum += step.parts().kernels.energy_sum(energy_row(l, x.row(j), v.row(j), j, scene.gravity));
+    sum += step.parts().kernels.energy_sum(
+        energy_row(l, x.row(j), v.row(j), j, EnergyGuard::counted_gravity(scene)));
   return sum;
 }
 
@@ -68,10 +69,22 @@ double fastest_drive(const Scene& scene, double from, double to) {
     }
     return most;
   };
-  double most = std::sqrt(dot(scene.wind.velocity, scene.wind.velocity));
+  const auto turning = [&](const Cloth& cloth, const Pin& pin) {
+    double most = 0;
+    const std::vector<Angle>& keys = pin.rotate.keys;
+    for (std::size_t n = 1; n < keys.size(); ++n) {
+      if (keys[n].time <= from || keys[n - 1].time >= to) continue;
+      const Vec3 r = minus(pin_alone_at(cloth, pin, keys[n].time), pin.rotate.about);
+      const double turn = (keys[n].degrees - keys[n - 1].degrees) * std::numbers::pi / 180;
+      most =
+          std::max(most, std::abs(turn) * std::sqrt(dot(r, r)) / (keys[n].time - keys[n - 1].time));
+    }
+    return most;
+  };
+  double most = greatest_wind(scene.wind);
   for (const Collider& c : scene.colliders) most = std::max(most, fastest(c.keys));
   for (const Cloth& c : scene.cloths)
-    for (const Pin& p : c.pins) most = std::max(most, fastest(p.keys));
+    for (const Pin& p : c.pins) most = std::max(most, fastest(p.keys) + turning(c, p));
   return most;
 }
 
@@ -134,6 +147,12 @@ void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, 
   fall_ = 0;
   put_in_ += kinetic_ + 0.5 * free_mass_ * kStillness * kStillness;
   fastest_ = fastest_drive(scene, 0, std::numeric_limits<double>::infinity());
+  gained_ = scene.gravity_keys.empty() ? 0 : greatest_gravity(scene) * scene.time.frame;
+  fastest_ += gained_;
+}
+
+Vec3 EnergyGuard::counted_gravity(const Scene& scene) {
+  return scene.gravity_keys.empty() ? scene.gravity : Vec3{};
 }
 
 void EnergyGuard::drive(double speed) {
@@ -158,6 +177,7 @@ void EnergyGuard::accept(int substeps) {
   highest_ = std::max(highest_, potential_);
   released_ = fall_;
   put_in_ += substeps * rounding_;
+  fastest_ += gained_;
 }
 
 double EnergyGuard::reduction() const {

@@ -54,6 +54,9 @@ class EnergyGuard {
  public:
   static constexpr double kBound = 4;
 
+  // Gravity whose potential counts [m/s²]. One that changes over time has none; what it does counts as
+  // driving instead, by the speed that it can give in every frame.
+  static Vec3 counted_gravity(const Scene& scene);
   // Counts what the state holds that a run begins with, or goes on from after it was set.
   void open(const Scene& scene, Method method, const Cloths& cloths, double time, double dt);
   // Something that a hand moves goes at so many m/s from now on.
@@ -78,6 +81,7 @@ class EnergyGuard {
   double rounding_ = 0;   // J; what stiff springs make of the rounding of positions in a substep
   double free_mass_ = 0;  // kg
   double fastest_ = 0;    // m/s; what drives the sheets, at most
+  double gained_ = 0;     // m/s; by gravity that changes, in every frame
   double highest_ = 0;    // J; potential of gravity
   double released_ = 0;   // J; by gravity so far
   // J; of the frame last looked at: motion, potential, what gravity has released.

@@ -50,6 +50,7 @@ void Simulation::State::advance_frame() {
     if (Tearing* tearing = step->model().tearing()) tearing->update();
   ++frame;
   total_substeps += substeps;
+  check_strain_limits();
 
   if (sleeping) sleeping->end_frame([&](std::size_t c) -> const Rows& { return records_[c].x(); });
   if (is_explicit(method) && !(sleeping && sleeping->all_asleep())) follow_stretch(limit_);
@@ -84,6 +85,30 @@ FrameRun Simulation::State::frame_run() {
   if (run.finite && is_explicit(method) && !(sleeping && sleeping->all_asleep()))
     run.limit = limit_ = stretched_limit();
   return run;
+}
+
+// Keeps the first frame at whose end a cloth is longer somewhere than its strain limit allows.
+void Simulation::State::check_strain_limits() {
+  constexpr double kTolerance = 1e-2;  // of the limit
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const ClothStep& step = *cloths[c];
+    const double limit = step.cloth().strain_limit;
+    if (limit == 0 || overlong_[c].frame > 0 || asleep(c)) continue;
+    const double strain = step.model().limited_strain();
+    if (strain > limit * (1 + kTolerance)) overlong_[c] = {frame, strain, false};
+  }
+}
+
+void Simulation::State::tell_of_limits() {
+  for (std::size_t c = 0; c < overlong_.size(); ++c) {
+    Overlong& o = overlong_[c];
+    if (o.frame == 0 || o.told) continue;
+    o.told = true;
+    plan.notes.push_back("cloth " + std::to_string(c) + ": the strain limit of " +
+                         number(scene.cloths[c].strain_limit) + " did not hold in frame " +
+                         std::to_string(o.frame) + " (" + number(o.strain) +
+                         "); more substeps hold it better");
+  }
 }
 
 void Simulation::State::run_with_contact() {

@@ -9,6 +9,7 @@
 #include "physics/contact/colliders/shapes.h"
 #include "physics/contact/self/crossings.h"
 #include "physics/contact/start_inside.h"
+#include "physics/model/path.h"
 #include "physics/model/vector.h"
 #include "weft/shape.h"
 
@@ -19,6 +20,7 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   const ClothStep& step = *s.cloths[index];
   const Particles& particles = step.particles();
   const AlignedArray<float>& masses = s.masses(index);
+  const Vec3 gravity = gravity_at(s.scene, double(s.frame) * s.scene.time.frame);
   const std::vector<Vec3> x = particles.gather(particles.x);
   // A strain limit takes back much of what springs alone would add in the half substep to now.
   const std::vector<Vec3> v =
@@ -31,7 +33,7 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
     const Vec3& b = v[p];
     for (int k = 0; k < 3; ++k) {
       r.energy.kinetic += 0.5 * m * b[k] * b[k];
-      r.energy.gravity -= m * s.scene.gravity[k] * a[k];
+      r.energy.gravity -= m * gravity[k] * a[k];
       r.momentum[k] += m * b[k];
       const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
       r.angular_momentum[k] += m * (a[k1] * b[k2] - a[k2] * b[k1]);

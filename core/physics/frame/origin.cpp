@@ -16,8 +16,10 @@ Scene moved(Scene scene, const Vec3& by) {
   const auto move = [&](Vec3& p) { p = plus(p, by); };
   for (Cloth& cloth : scene.cloths) {
     move(cloth.grid.origin);
-    for (Pin& pin : cloth.pins)
+    for (Pin& pin : cloth.pins) {
       for (Key& key : pin.keys) move(key.position);
+      if (!pin.rotate.keys.empty()) move(pin.rotate.about);
+    }
   }
   for (Collider& collider : scene.colliders) {
     collider.shape = moved(collider.shape, by);

@@ -72,6 +72,7 @@ int Simulation::substeps() const {
   return state_->substeps;
 }
 const Plan& Simulation::plan() const {
+  state_->tell_of_limits();
   return state_->plan;
 }
 const Status& Simulation::status() const {

@@ -32,8 +32,9 @@ double distance_of(const Spread& a, const Spread& b) {
 
 std::unique_ptr<Sleeping> Sleeping::make(const Scene& scene, const Cloths& cloths,
                                          const KernelTable& kernels) {
-  const bool gusts = scene.wind.turbulence > 0 && (scene.wind.drag > 0 || scene.wind.lift > 0);
-  if (scene.solver.sleep == 0 || gusts) return nullptr;
+  const bool gusts = (scene.wind.turbulence > 0 || !scene.wind.velocity_keys.empty()) &&
+                     (scene.wind.drag > 0 || scene.wind.lift > 0);
+  if (scene.solver.sleep == 0 || gusts || !scene.gravity_keys.empty()) return nullptr;
   return std::unique_ptr<Sleeping>(new Sleeping(scene, cloths, kernels));
 }
 
@@ -52,7 +53,7 @@ Sleeping::Sleeping(const Scene& scene, const Cloths& cloths, const KernelTable& 
     std::copy_n(l.inverse_mass.data(), l.inverse_mass.size(), r.masses.data());
     r.reach = std::max(step->reach(), 2);
     for (const Pin& pin : step->cloth().pins)
-      if (!pin.keys.empty()) r.moving.push_back(&pin);
+      if (pin.moves()) r.moving.push_back(&pin);
     const int height = sleeps_in_blocks(scene, *step) ? kBlockRows : l.rows;
     for (int j = 0; j < l.rows; j += height)
       r.blocks.push_back({{j, std::min(j + height, l.rows)}, 0, false, false, {}});
@@ -147,7 +148,8 @@ bool Sleeping::met_by_collider(const Block& block, double time) const {
 bool Sleeping::pulled(const Resting& cloth, const Block& block, double time) const {
   return std::any_of(cloth.moving.begin(), cloth.moving.end(), [&](const Pin* pin) {
     return pin->j >= block.rows.begin && pin->j < block.rows.end &&
-           position_at(pin->keys, time) != position_at(pin->keys, time + scene_.time.frame);
+           cloth.step->model().pin_position(*pin, time) !=
+               cloth.step->model().pin_position(*pin, time + scene_.time.frame);
   });
 }
 

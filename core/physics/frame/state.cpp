@@ -60,13 +60,10 @@ struct FarPins {
   double most = 0;
 };
 FarPins far_pins(const Cloth& cloth, double distance) {
-  const Grid& g = cloth.grid;
   FarPins far;
   for (const Pin& pin : cloth.pins) {
-    if (pin.keys.empty()) continue;
-    const Vec3 place = plus(
-        g.origin, plus(times(g.u, pin.i / double(g.nx - 1)), times(g.v, pin.j / double(g.ny - 1))));
-    const Vec3 off = minus(position_at(pin.keys, 0), place);
+    if (!pin.moves()) continue;
+    const Vec3 off = minus(pin_alone_at(cloth, pin, 0), place_on(cloth.grid, pin.i, pin.j));
     const double length = std::sqrt(dot(off, off));
     if (length <= distance) continue;
     ++far.count;
@@ -111,12 +108,14 @@ void Simulation::State::build_cloths() {
   asleep_.assign(scene.cloths.size(), 0);
   stage_ns.clear();
   apart_.reserve(scene.cloths.size());
+  overlong_.resize(scene.cloths.size());
   busy_.reserve(std::size_t(threads.count()));
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     cloths.push_back(std::make_unique<ClothStep>(scene, int(c), method, options.seed,
                                                  kernel_table(simd), make_model_));
     carried_.push_back(nullptr);
-    records_.emplace_back(cloths.back()->particles(), scene.gravity, kernel_table(simd));
+    records_.emplace_back(cloths.back()->particles(), EnergyGuard::counted_gravity(scene),
+                          kernel_table(simd));
     stage_ns.emplace_back(cloths.back()->stages().size());
     if (options.profile) cloths.back()->schedule().profile(stage_ns.back());
   }
@@ -152,8 +151,9 @@ Plan Simulation::State::describe_stages() const {
           0, meeting, "squares"},
          self_collision ? "self_collision is particles in all cloths" : "off in the scene");
   if (!sleeping)
-    all.skipped.push_back(
-        {"sleep", scene.solver.sleep > 0 ? "gusts move the cloth" : "sleep is 0"});
+    all.skipped.push_back({"sleep", scene.solver.sleep > 0
+                                        ? "gusts or changing gravity move the cloth"
+                                        : "sleep is 0"});
   return all;
 }
 
@@ -213,8 +213,9 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
 void Simulation::State::accelerations_now(std::size_t cloth, double behind,
                                           std::vector<Vec3>& a) const {
   const ClothStep& step = *cloths[cloth];
-  step.model().accelerations(a);
-  support(scene, step.cloth(), double(frame) * scene.time.frame, {dt, behind}, step.particles(), a);
+  const double time = double(frame) * scene.time.frame;
+  step.model().accelerations(gravity_at(scene, time), a);
+  support(scene, step.cloth(), time, {dt, behind}, step.particles(), a);
 }
 
 // v <- v - a lag: velocities of explicit springs are taken to where they lie behind the positions.

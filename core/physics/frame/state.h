@@ -49,6 +49,9 @@ struct Simulation::State {
   // A collider has been put where cloths may be.
   void meet(std::size_t collider);
   std::size_t record_bytes() const;
+  // Adds the notes of strain limits that did not hold. Frames only keep what these say: they allocate
+  // nothing.
+  void tell_of_limits();
   void accelerations_now(std::size_t cloth, double behind, std::vector<Vec3>& a) const;
 
   // As simulated, about the origin; only move_collider(), restore() and go_on_as() change it. And where
@@ -89,9 +92,16 @@ struct Simulation::State {
  private:
   const physics::MakeModel make_model_;
   std::vector<physics::RollbackBuffer> records_;  // of each cloth
-  std::vector<std::size_t> apart_;                // cloths that take a thread each
-  std::vector<std::int64_t> busy_;                // of each thread, with so many particles
-  std::vector<std::uint8_t> asleep_;              // each cloth as a whole, in this frame
+  // The first frame at whose end a cloth was longer somewhere than its strain limit allows.
+  struct Overlong {
+    std::int64_t frame = 0;  // 0: none
+    double strain = 0;
+    bool told = false;
+  };
+  std::vector<Overlong> overlong_;    // of each cloth
+  std::vector<std::size_t> apart_;    // cloths that take a thread each
+  std::vector<std::int64_t> busy_;    // of each thread, with so many particles
+  std::vector<std::uint8_t> asleep_;  // each cloth as a whole, in this frame
   int saved_substeps_ = 1;
   double saved_lag_ = 0;
   physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
@@ -138,6 +148,7 @@ struct Simulation::State {
   void touch(int cloth = -1);
   bool asleep(std::size_t cloth) const { return sleeping && sleeping->rows(cloth).empty(); }
   void run_frame();
+  void check_strain_limits();
   void run_with_contact();
   void begin_surfaces();
   physics::ClothStep& step_with(int cloth, int particle);

@@ -181,7 +181,8 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
 
 // Whether nothing but gravity and paths of pins can do work.
 bool Simulation::State::nothing_else_acts() const {
-  return !(grab_ || carried() || self_collision || blown() || !scene.colliders.empty());
+  return !(grab_ || carried() || self_collision || blown() || !scene.colliders.empty() ||
+           !scene.gravity_keys.empty());
 }
 
 void Simulation::State::open_guard() {
@@ -196,11 +197,12 @@ bool Simulation::State::carried() const {
 }
 
 bool Simulation::State::driven() const {
-  const auto moves = [](const auto& thing) { return !thing.keys.empty(); };
-  return grab_ || carried() || self_collision || sleeping || blown() ||
-         std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
+  const auto moves = [](const Collider& c) { return !c.keys.empty(); };
+  const auto pulls = [](const Pin& pin) { return pin.moves(); };
+  return grab_ || carried() || self_collision || !scene.gravity_keys.empty() || sleeping ||
+         blown() || std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
          std::any_of(scene.cloths.begin(), scene.cloths.end(), [&](const Cloth& c) {
-           return std::any_of(c.pins.begin(), c.pins.end(), moves);
+           return std::any_of(c.pins.begin(), c.pins.end(), pulls);
          });
 }
 

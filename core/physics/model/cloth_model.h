@@ -71,9 +71,14 @@ class ClothModel {
 
   // Of the cloth as it lies now, in double precision: accelerations [m/s²] by gravity and all inner
   // forces, zero for held particles; energy [J] of stretching and bending; strain.
-  virtual void accelerations(std::vector<Vec3>& a) const = 0;
+  virtual void accelerations(const Vec3& gravity, std::vector<Vec3>& a) const = 0;
   virtual double elastic_energy() const = 0;
   virtual Strain strain() const = 0;
+
+  // The greatest strain of the constraints that the strain limit holds.
+  virtual double limited_strain() const = 0;
+  // Where a pin of the cloth is held at a time [s].
+  virtual Vec3 pin_position(const Pin& pin, double time) const = 0;
 
   // Of the cloth with its particles at `x`: the energy that its constraints hold as the method feels
   // them in substeps of dt, with what rounding of the positions puts in at once [J]; the greatest

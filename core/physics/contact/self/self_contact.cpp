@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "physics/model/clamp_to_int.h"
+#include "physics/model/path.h"
 
 namespace weft::physics {
 namespace {
@@ -202,8 +203,7 @@ void SelfContact::restart() {
 double SelfContact::most_substeps(double dt, double swing) const {
   if (!may_touch_) return kMostSubsteps;
   if (course_) return kMostSubstepsCourse;
-  const Vec3& g = scene_.gravity;
-  const double pull = std::sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+  const double pull = greatest_gravity(scene_);
   const double fall = std::sqrt(kFall * thickness_ / std::max(pull, 1e-12));
   return std::min<double>(std::min(fall, swing) / dt, most_touching_);
 }

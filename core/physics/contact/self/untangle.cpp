@@ -9,6 +9,7 @@
 
 #include "physics/contact/colliders/shapes.h"
 #include "physics/model/lattice/stages.h"
+#include "physics/model/path.h"
 
 namespace weft::physics {
 namespace {
@@ -57,10 +58,8 @@ Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
 bool starts_flat(const Cloth& cloth) {
   const Grid& g = cloth.grid;
   return std::all_of(cloth.pins.begin(), cloth.pins.end(), [&](const Pin& p) {
-    if (p.keys.empty()) return true;
-    const Vec3 place = plus(
-        g.origin, plus(times(g.u, p.i / double(g.nx - 1)), times(g.v, p.j / double(g.ny - 1))));
-    const Vec3 off = minus(p.keys.front().position, place);
+    if (!p.moves()) return true;
+    const Vec3 off = minus(pin_alone_at(cloth, p, 0), place_on(g, p.i, p.j));
     return std::sqrt(dot(off, off)) < kOnGrid * std::min(spacing_u(g), spacing_v(g));
   });
 }

@@ -68,9 +68,9 @@ class Tethers final : public RowStage {
         parts_(parts),
         compliant_(compliant) {
     const Lattice& l = parts.lattice;
-    keys_.resize(std::size_t(l.columns) * l.rows);
+    moving_.resize(std::size_t(l.columns) * l.rows);
     for (const Pin& pin : parts.cloth.pins)
-      if (!pin.keys.empty()) keys_[std::size_t(pin.j) * l.columns + pin.i] = &pin.keys;
+      if (pin.moves()) moving_[std::size_t(pin.j) * l.columns + pin.i] = &pin;
     for (auto& places : slots) {
       Slot& slot = slots_.emplace_back();
       slot.reach = AlignedArray<float>(std::size_t(l.rows) * l.stride);
@@ -82,7 +82,7 @@ class Tethers final : public RowStage {
           if (p.i < 0) continue;
           slot.reach[std::size_t(j) * l.stride + i] =
               float(std::sqrt(squared_distance(parts.cloth.grid, p, i, j)));
-          if (keys_[std::size_t(p.j) * l.columns + p.i]) slot.moves[j] = true;
+          if (moving_[std::size_t(p.j) * l.columns + p.i]) slot.moves[j] = true;
         }
       slot.places = std::move(places);
       share_rows(slot);
@@ -162,9 +162,9 @@ class Tethers final : public RowStage {
     const Lattice& l = parts_.lattice;
     for (int i = 0; i < l.columns; ++i) {
       const Place p = slot.places[std::size_t(j) * l.columns + i];
-      const auto* keys = p.i < 0 ? nullptr : keys_[std::size_t(p.j) * l.columns + p.i];
-      if (!keys) continue;
-      const Vec3 x = position_at(*keys, time);
+      const Pin* pin = p.i < 0 ? nullptr : moving_[std::size_t(p.j) * l.columns + p.i];
+      if (!pin) continue;
+      const Vec3 x = pin_at(parts_, *pin, time);
       for (int k = 0; k < 3; ++k) slot.pin.at(k, slot.row[std::size_t(j)], i) = float(x[k]);
     }
   }
@@ -172,7 +172,7 @@ class Tethers final : public RowStage {
   LatticeParts parts_;
   bool compliant_;  // velocities gain the corrections as computed
   std::vector<Slot> slots_;
-  std::vector<const std::vector<Key>*> keys_;  // of every particle, null where it has no path
+  std::vector<const Pin*> moving_;  // of every particle, null where it has no path
 };
 
 }  // namespace

@@ -47,7 +47,7 @@ std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Stencil>& 
   return force;
 }
 
-void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Stencil>& stencils,
+void accelerations(const Vec3& gravity, const Cloth& cloth, const std::vector<Stencil>& stencils,
                    const Lattice& l, const BendLinks* left, bool damped, std::vector<Vec3>& a) {
   a.assign(std::size_t(l.columns) * l.rows, Vec3{});
   for (const Stencil& f : stencils)
@@ -74,7 +74,7 @@ void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Ste
     for (int i = 0; i < l.columns; ++i) {
       const double w = l.w(j, i);
       Vec3& f = a[std::size_t(j) * l.columns + i];
-      for (int c = 0; c < 3; ++c) f[c] = w > 0 ? f[c] * w + scene.gravity[c] : 0;
+      for (int c = 0; c < 3; ++c) f[c] = w > 0 ? f[c] * w + gravity[c] : 0;
     }
 }
 

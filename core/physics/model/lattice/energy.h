@@ -35,7 +35,7 @@ std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Stencil>& 
 
 // Accelerations by springs, bending (the terms that are `left`, null: all) and gravity, zero for
 // pinned particles [m/s²]. Into `a`, which allocates nothing when it is large enough already.
-void accelerations(const Scene& scene, const Cloth& cloth, const std::vector<Stencil>& stencils,
+void accelerations(const Vec3& gravity, const Cloth& cloth, const std::vector<Stencil>& stencils,
                    const Lattice& lattice, const BendLinks* left, bool damped,
                    std::vector<Vec3>& a);
 

@@ -1,6 +1,7 @@
-// Stage "keyed_pins": held particles that move along keys are put where their keys say.
+// Stage "keyed_pins": held particles that move along keys, turn or follow a collider are put where they are.
 #include "physics/model/lattice/stages.h"
 #include "physics/model/path.h"
+#include "weft/shape.h"
 
 namespace weft::physics {
 namespace {
@@ -16,7 +17,8 @@ class KeyedPins final : public RowStage {
     Lattice& l = parts_.lattice;
     for (const Pin* pin : by_row_[j]) {
       if (l.w(j, pin->i) > 0) continue;  // let go since
-      const Vec3 x = position_at(pin->keys, s.time), v = velocity_over(pin->keys, s.time, s.dt);
+      const Vec3 x = pin_at(parts_, *pin, s.time);
+      const Vec3 v = times(minus(x, pin_at(parts_, *pin, s.time - s.dt)), 1 / s.dt);
       for (int k = 0; k < 3; ++k) {
         l.x.at(k, j, pin->i) = coordinate(x[k]);
         l.v.at(k, j, pin->i) = float(v[k]);
@@ -31,11 +33,18 @@ class KeyedPins final : public RowStage {
 
 }  // namespace
 
+Vec3 pin_at(const LatticeParts& parts, const Pin& pin, double time) {
+  const Vec3 alone = pin_alone_at(parts.cloth, pin, time);
+  if (pin.follow < 0) return alone;
+  const Collider& c = parts.scene.colliders[std::size_t(pin.follow)];
+  return plus(alone, minus(displacement(c, time), parts.first_moves[std::size_t(pin.follow)]));
+}
+
 std::unique_ptr<RowStage> make_keyed_pins(const LatticeParts& parts) {
   std::vector<std::vector<const Pin*>> by_row(parts.lattice.rows);
   std::int64_t pins = 0;
   for (const Pin& pin : parts.cloth.pins) {
-    if (pin.keys.empty()) continue;
+    if (!pin.moves()) continue;
     by_row[pin.j].push_back(&pin);
     ++pins;
   }

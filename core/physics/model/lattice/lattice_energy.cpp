@@ -79,8 +79,8 @@ Pull LatticeModel::pull() const {
   return pull;
 }
 
-void LatticeModel::accelerations(std::vector<Vec3>& a) const {
-  physics::accelerations(parts_.scene, parts_.cloth, stencils_, lattice_, bend_links(),
+void LatticeModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) const {
+  physics::accelerations(gravity, parts_.cloth, stencils_, lattice_, bend_links(),
                          method_ == Method::spring_friction, a);
 }
 
@@ -92,6 +92,20 @@ double LatticeModel::elastic_energy() const {
 
 Strain LatticeModel::strain() const {
   return structural_strain(parts_.cloth, stencils_, lattice_.gather(lattice_.x));
+}
+
+double LatticeModel::limited_strain() const {
+  double most = 0;  // of squared lengths, of those at rest
+  for (const Stencil& f : stencils_)
+    for (int j = 0; f.kind != Kind::bend && j + f.dj < lattice_.rows; ++j) {
+      const FarRows ends = far_rows(f, lattice_.x, lattice_.columns, j);
+      most = std::max(most, double(parts_.kernels.greatest_square(ends)) / (f.rest * f.rest));
+    }
+  return std::sqrt(most) - 1;
+}
+
+Vec3 LatticeModel::pin_position(const Pin& pin, double time) const {
+  return pin_at(parts_, pin, time);
 }
 
 double LatticeModel::greatest_coordinate(const Rows& x) const {

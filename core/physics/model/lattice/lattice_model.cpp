@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "physics/model/lattice/plain_rows.h"
+#include "weft/shape.h"
 
 namespace weft::physics {
 namespace {
@@ -27,7 +28,9 @@ LatticeModel::LatticeModel(const Scene& scene, int index, Method method, std::ui
                             keeps_previous(scene.solver, method))),
       parts_{{scene, scene.cloths[std::size_t(index)], method_, lattice_, kernels, *this},
              lattice_,
-             stencils_} {
+             stencils_,
+             first_moves_} {
+  for (const Collider& c : scene.colliders) first_moves_.push_back(displacement(c, 0));
   const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                [](const Collider& c) { return c.cuts; });
   if (cut || parts_.cloth.tear_strain > 0) allow_tearing();

@@ -23,9 +23,11 @@ class LatticeModel final : public ClothModel {
   const SurfaceMesh& surface() const override;
   ConstraintCounts constraints() const override;
   Pull pull() const override;
-  void accelerations(std::vector<Vec3>& a) const override;
+  void accelerations(const Vec3& gravity, std::vector<Vec3>& a) const override;
   double elastic_energy() const override;
   Strain strain() const override;
+  double limited_strain() const override;
+  Vec3 pin_position(const Pin& pin, double time) const override;
   double held_energy(const Rows& x, double dt) const override;
   float greatest_stretch(const Rows& x) const override;
   double attachment_energy(const Rows& x, double dt) const override;
@@ -53,6 +55,7 @@ class LatticeModel final : public ClothModel {
   Method method_;
   std::vector<Stencil> stencils_;
   Lattice lattice_;
+  std::vector<Vec3> first_moves_;  // of colliders
   LatticeParts parts_;
   std::unique_ptr<Multipliers> multipliers_;
   std::unique_ptr<Rows> corrections_;

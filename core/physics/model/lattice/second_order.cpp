@@ -2,6 +2,7 @@
 #include "physics/kernels/second_order.h"
 
 #include "physics/model/lattice/stages.h"
+#include "physics/model/path.h"
 
 namespace weft::physics {
 namespace {
@@ -59,7 +60,7 @@ class Predict final : public RowStage {
  private:
   void run_alike(int begin, int end, const Substep& s) {
     SecondOrderRow r = rows_of(parts_, history_, begin, end, s.dt);
-    const Vec3& g = parts_.scene.gravity;
+    const Vec3 g = gravity_at(parts_.scene, s.time);
     r.fresh = dt_[begin] != s.dt;
     std::fill(dt_.begin() + begin, dt_.begin() + end, s.dt);
     r.v_waits = !s.velocities_known;

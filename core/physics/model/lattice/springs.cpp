@@ -2,6 +2,7 @@
 // Every spring is evaluated once, in the row of its near end; what it exerts on later rows is
 // carried along, so that a row is finished, and moved in place, as soon as its own springs are done.
 #include "physics/model/lattice/plain_rows.h"
+#include "physics/model/path.h"
 
 namespace weft::physics {
 namespace {
@@ -132,7 +133,9 @@ int greatest_reach(const LatticeParts& parts) {
 }
 
 Advance advance_of(const LatticeParts& parts, const Substep& s) {
-  const Vec3& g = parts.scene.gravity;
+  // Explicit forces are those at the start of the substep, where they are symmetric about the velocity.
+  const double back = is_explicit(parts.method) ? s.dt : s.dt / 2;
+  const Vec3 g = gravity_at(parts.scene, s.time - back);
   return {float(s.dt),
           float(s.kick),
           float(std::max(0.0, 1 - s.kick * parts.cloth.drag)),

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "physics/model/lattice/bending.h"
+#include "physics/model/path.h"
 #include "physics/model/random.h"
 
 namespace weft::physics {
@@ -172,8 +173,7 @@ Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Stencil>& stenc
 double projection_substep(const Scene& scene) {
   constexpr double kSag = 0.02;
   constexpr double kJacobi = 0.3;  // of what a Gauss-Seidel sweep does: it takes means
-  const Vec3& a = scene.gravity;
-  const double g = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+  const double g = greatest_gravity(scene);
   const Solver& solver = scene.solver;
   if (solver.sweep == Sweep::line || solver.tethers || !(g > 0)) return kLongestProjection;
   const double sweeps = solver.iterations * (solver.sweep == Sweep::jacobi ? kJacobi : 1);

@@ -19,11 +19,16 @@ class LatticeTearing;
 struct LatticeParts : ClothParts {
   Lattice& lattice;
   const std::vector<Stencil>& stencils;
+  // How far every collider was from where its shape stands as the run began [m].
+  const std::vector<Vec3>& first_moves;
   LatticeTearing* tearing = nullptr;  // null: the cloth cannot tear
   // By row, written by the springs: whether a constraint was too long; null: they do not tell.
   std::uint8_t* overlong = nullptr;
   std::int64_t constraints() const;
 };
+
+// Where a pin is at a time [s].
+Vec3 pin_at(const LatticeParts& parts, const Pin& pin, double time);
 
 // The most rows that a constraint spans.
 int greatest_reach(const LatticeParts& parts);

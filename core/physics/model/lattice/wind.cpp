@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "physics/model/lattice/stages.h"
+#include "physics/model/path.h"
 #include "physics/model/random.h"
 
 namespace weft::physics {
@@ -37,8 +38,7 @@ class WindStage final : public RowStage {
       const double size = std::max(std::hypot(d[0], d[1], d[2]), 1e-3);
       const double length = kShortest * std::pow(kLongest / kShortest, random.unit());
       for (int k = 0; k < 3; ++k) w.k[k] = d[k] / size / length;
-      const double carried =
-          wind.velocity[0] * w.k[0] + wind.velocity[1] * w.k[1] + wind.velocity[2] * w.k[2];
+      const double carried = wind.velocity_keys.empty() ? dot(wind.velocity, w.k) : 0;
       w.rate = kSlowest + (kFastest - kSlowest) * random.unit() - carried;
       w.phase = random.unit();
     }
@@ -100,16 +100,19 @@ class WindStage final : public RowStage {
     r.v_next = l.v.row(j + 1);
     r.air = air(j, s);
     r.air_next = air(j + 1, s);
-    r.wx = float(wind.velocity[0]);
-    r.wy = float(wind.velocity[1]);
-    r.wz = float(wind.velocity[2]);
+    const Vec3 u = wind_at(wind, s.time);
+    r.wx = float(u[0]);
+    r.wy = float(u[1]);
+    r.wz = float(u[2]);
     r.drag = float(wind.drag);
     r.lift = float(wind.lift);
-    const Vec3& u = wind.velocity;
+    // Gusts go with the air; where its velocity does not change that is in their rate.
+    const bool changes = !wind.velocity_keys.empty() && wind.turbulence > 0;
+    const Vec3 way = changes ? integral_of(wind.velocity_keys, s.time) : Vec3{};
     r.gust_speed = float(wind.turbulence * std::hypot(u[0], u[1], u[2]));
     for (int n = 0; n < kGusts; ++n) {
       const Wave& w = waves_[n];
-      const double phase = w.phase + w.rate * s.time;
+      const double phase = w.phase + w.rate * s.time - dot(way, w.k);
       r.gusts[n] = {float(w.k[0]), float(w.k[1]), float(w.k[2]), float(phase - std::floor(phase))};
     }
     return r;
