@@ -33,6 +33,14 @@ inline double distance_from(const Capsule& s, const Vec3& p) {
   const double t = std::clamp(product(d, e) / product(e, e), 0.0, 1.0);
   return length({d[0] - t * e[0], d[1] - t * e[1], d[2] - t * e[2]}) - s.radius;
 }
+inline double distance_from(const Cylinder& s, const Vec3& p) {
+  const Vec3 e = difference(s.b, s.a), d = difference(p, s.a);
+  const double size = length(e), z = product(d, e) / size;
+  const double across = std::sqrt(std::max(0.0, product(d, d) - z * z)) - (s.radius - s.rounding);
+  const double along = std::abs(z - size / 2) - (size / 2 - s.rounding);
+  return std::hypot(std::max(across, 0.0), std::max(along, 0.0)) +
+         std::min(std::max(across, along), 0.0) - s.rounding;
+}
 inline double distance_from(const Box& s, const Vec3& p) {
   Vec3 q = difference(p, s.center);
   // Turned back: about z, then y, then x.

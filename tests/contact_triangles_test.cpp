@@ -32,7 +32,8 @@ TEST(ContactTriangles, FindsTheDeepestPointOfAnyTriangle) {
   const double offset = 0.01;
   const std::vector<Shape> shapes{Box{{}, {0.1, 0.05, 0.2}, {}, 0.01},
                                   Box{{}, {0.3, 0.001, 0.2}, {}, 0},
-                                  Capsule{{}, {0.3, 0.1, 0.2}, 0.03}, Sphere{{}, 0.1}};
+                                  Capsule{{}, {0.3, 0.1, 0.2}, 0.03}, Sphere{{}, 0.1},
+                                  Cylinder{{}, {0.1, 0.2, 0.1}, 0.15, 0.02}};
   for (const Shape& shape : shapes)
     for (const double size : {0.05, 0.3, 1.0, 5.0, 20.0})
       for (int n = 0; n < 300; ++n) {
@@ -199,8 +200,7 @@ TEST(ContactTriangles, NothingHoldsWhatIsTorn) {
     simulation.cut({0, 0, -1}, {0, 0, 1}, 0.01);
     advance(simulation, 0.15);
     // From now on the halves are free.
-    for (int j = 0; j < 12; ++j)
-      for (int i = 0; i < 12; ++i) simulation.unpin(0, i, j);
+    for (int particle = 0; particle < 144; ++particle) simulation.unpin(0, particle);
     const std::vector<double> before = simulation.positions();
     simulation.set_state(before, std::vector<double>(before.size()));
     advance(simulation, 0.8);

@@ -236,8 +236,7 @@ Shape Parts::shape(const Vec3& at, double size) {
       return Capsule{at, plus(at, draw_.vector(size)), radius};
     case 3: {
       Cylinder cylinder{at, plus(at, draw_.vector(size)), radius, 0};
-      const Vec3 e = minus(cylinder.b, cylinder.a);
-      const double half = std::min(radius, 0.5 * std::sqrt(dot(e, e)));
+      const double half = std::min(radius, 0.5 * length(plus(cylinder.b, cylinder.a, -1)));
       if (draw_.chance(0.5)) cylinder.rounding = half * draw_.uniform(0, 1);
       return cylinder;
     }

@@ -30,7 +30,9 @@ Grid resized(const Grid& from, int dim, double offset) {
 
 // A pin of the old grid on the new one, moved along by as much.
 Pin moved_to(const Pin& pin, int i, int j, const Grid& from, const Grid& to) {
-  Pin moved{i, j, pin.keys};
+  Pin moved = pin;
+  moved.i = i;
+  moved.j = j;
   const Vec3 before = place_of(from, pin.i, pin.j), now = place_of(to, i, j);
   for (Key& key : moved.keys)
     for (std::size_t c = 0; c < 3; ++c) key.position[c] += now[c] - before[c];
