@@ -140,8 +140,8 @@ TEST(Recording, FaultsAreNamedByLineAndPlace) {
     EXPECT_EQ(outcome.err.find("json.exception"), std::string::npos) << outcome.err;
   }
   // A particle that the cloth does not have is found where it is asked for.
-  folder.write("b.rec", lines[0] + "\n" + R"({"frame": 0, "pin": {"particle": [0, 9999]}})" +
-                            "\n" + lines[1] + "\n");
+  folder.write("b.rec", lines[0] + "\n" + R"({"frame": 0, "pin": {"particle": [0, 9999]}})" + "\n" +
+                            lines[1] + "\n");
   const Outcome outcome = run_weft(folder, "run --replay b.rec");
   EXPECT_EQ(outcome.exit_code, 4);
   EXPECT_NE(outcome.err.find("before frame 1: cloth 0 has no particle"), std::string::npos)

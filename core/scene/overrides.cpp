@@ -57,7 +57,8 @@ Json* step(const Json& rule, const Override& change, const std::string& token, b
            Json& here, Check& result) {
   if (here.is_null()) here = starting_value(rule);
   if (here.is_array()) {
-    const std::size_t count = reach(rule, here, last);
+    const Json* const meant = alternative(rule, here);  // where a list is one of several forms
+    const std::size_t count = reach(meant ? *meant : rule, here, last);
     if (Json* found = element(here, token, count)) return found;
     result.fault(change.pointer, "the list has no element " + brief(Json(token)),
                  count ? "0 to " + std::to_string(count - 1) : "none: it is empty");

@@ -80,7 +80,8 @@ struct Report {
     double max = 0, mean = 0;
   } strain;  // structural, length/rest - 1
   struct {
-    double collider_max = 0;  // m; deepest point of a triangle or particle below a collider's surface
+    double collider_max =
+        0;  // m; deepest particle, or point of a triangle that went through, below a collider's surface
     std::int64_t self_pairs = 0;
     double self_max = 0;  // m
     std::int64_t crossings = 0;

@@ -59,7 +59,7 @@ struct Snapshot {
     std::vector<float> positions, velocities;
     std::vector<int> held;                 // particles that cannot move
     std::vector<std::array<int, 2>> torn;  // constraints that are gone, each by its two particles
-    std::vector<Inside> inside;  // of every collider
+    std::vector<Inside> inside;            // of every collider
   };
   double time = 0;  // s
   Vec3 origin{};    // m, what positions are counted from

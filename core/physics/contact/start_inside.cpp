@@ -86,10 +86,12 @@ StartInside start_inside(const ClothParts& parts, const Collider& collider, doub
   return found;
 }
 
-double deepest_in(const Collider& collider, double time, std::span<const Vec3> x,
-                  std::span<const std::array<std::int32_t, 3>> triangles) {
+double deepest_in(const Cloth& cloth, const Collider& collider, double time,
+                  std::span<const Vec3> x, std::span<const std::array<std::int32_t, 3>> triangles) {
   const Vec3 place = place_at(collider, time);
   const Upright upright(collider.shape);
+  const AllowedDepth allowed(cloth, collider);
+  constexpr double kFlatness = 0.02;  // of its longest edge: as deep a moving sheet cuts a sharp edge
   return std::visit(
       [&](const auto& shape) {
         std::vector<double> distances(x.size());
@@ -111,6 +113,7 @@ double deepest_in(const Collider& collider, double time, std::span<const Vec3> x
           const double edge = longest_side(c.x);
           if (nearest - edge >= least) continue;  // no point is further from a corner
           const double depth = deepest_on(shape, c, 0, edge).nearest.distance;
+          if (-depth <= allowed.at(edge) - collider.offset + kFlatness * edge) continue;
           const bool cut = depth < -core_of(shape, c.x[0]).radius;
           least = std::min(least, cut ? least_of_cut(shape, c) : depth);
         }

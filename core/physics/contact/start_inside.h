@@ -13,9 +13,10 @@ inline constexpr double kTouchingStart = 1e-4;
 // Particles, and triangles where those catch the collider, at a time [s].
 StartInside start_inside(const ClothParts& parts, const Collider& collider, double time);
 
-// How deep the deepest point of a surface lies below that of a collider at a time [s], its offset left
-// aside, be it a particle's or within a triangle; 0 where all are out of it [m].
-double deepest_in(const Collider& collider, double time, std::span<const Vec3> x,
-                  std::span<const std::array<std::int32_t, 3>> triangles);
+// How deep the deepest point of a cloth lies below the surface of a collider at a time [s], its offset left
+// aside; 0 where all are out of it [m]. Points within triangles count where they lie deeper than the cloth's
+// mesh lets triangles lie (AllowedDepth) by more than a fiftieth of an edge.
+double deepest_in(const Cloth& cloth, const Collider& collider, double time,
+                  std::span<const Vec3> x, std::span<const std::array<std::int32_t, 3>> triangles);
 
 }  // namespace weft::physics

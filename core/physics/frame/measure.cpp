@@ -53,8 +53,9 @@ void add_penetration(const Simulation::State& s, const ClothStep& step, Report& 
   const std::vector<Vec3> x = step.particles().gather(step.particles().x);
   for (const Collider& c : s.scene.colliders)
     if (!c.cuts)
-      r.penetration.collider_max = std::max(
-          r.penetration.collider_max, deepest_in(c, time, x, step.model().surface().triangles));
+      r.penetration.collider_max =
+          std::max(r.penetration.collider_max,
+                   deepest_in(step.cloth(), c, time, x, step.model().surface().triangles));
 }
 
 // Strain over all cloths: the largest, and the mean weighted by constraints.
