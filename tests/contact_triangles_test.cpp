@@ -86,7 +86,7 @@ Scene drawn_over(const Shape& shape, Method method, int points, double offset) {
 
 // A body inside a single square, all corners far from it: the report tells how deep it is.
 TEST(ContactTriangles, TheReportSeesABodyWithinATriangle) {
-  for (const double height : {0.0, 0.1, 0.25, 0.35}) {
+  for (const double height : {0.0, 0.1, 0.2, 0.35}) {
     Scene scene;
     scene.cloths.push_back(flat_sheet(2, 3, {0, height, 0}));
     scene.colliders.push_back(collider_of(Sphere{{0.3, 0, 0.3}, 0.3}));

@@ -91,7 +91,8 @@ double deepest_in(const Cloth& cloth, const Collider& collider, double time,
   const Vec3 place = place_at(collider, time);
   const Upright upright(collider.shape);
   const AllowedDepth allowed(cloth, collider);
-  constexpr double kFlatness = 0.02;  // of its longest edge: as deep a moving sheet cuts a sharp edge
+  const double at_rest = longest_edge(cloth.grid);
+  constexpr double kFlatness = 0.02;  // of an edge: so deep a moving sheet cuts a sharp edge
   return std::visit(
       [&](const auto& shape) {
         std::vector<double> distances(x.size());
@@ -113,7 +114,8 @@ double deepest_in(const Cloth& cloth, const Collider& collider, double time,
           const double edge = longest_side(c.x);
           if (nearest - edge >= least) continue;  // no point is further from a corner
           const double depth = deepest_on(shape, c, 0, edge).nearest.distance;
-          if (-depth <= allowed.at(edge) - collider.offset + kFlatness * edge) continue;
+          if (-depth <= allowed.at(edge) - collider.offset + kFlatness * std::min(edge, at_rest))
+            continue;
           const bool cut = depth < -core_of(shape, c.x[0]).radius;
           least = std::min(least, cut ? least_of_cut(shape, c) : depth);
         }

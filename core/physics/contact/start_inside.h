@@ -15,7 +15,7 @@ StartInside start_inside(const ClothParts& parts, const Collider& collider, doub
 
 // How deep the deepest point of a cloth lies below the surface of a collider at a time [s], its offset left
 // aside; 0 where all are out of it [m]. Points within triangles count where they lie deeper than the cloth's
-// mesh lets triangles lie (AllowedDepth) by more than a fiftieth of an edge.
+// mesh lets triangles lie (AllowedDepth) by more than a fiftieth of an edge at rest.
 double deepest_in(const Cloth& cloth, const Collider& collider, double time,
                   std::span<const Vec3> x, std::span<const std::array<std::int32_t, 3>> triangles);
 
