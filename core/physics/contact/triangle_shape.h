@@ -75,11 +75,13 @@ struct Approach {
 inline constexpr int kProjections = 12;  // between triangle and core
 
 // By alternating projections between the two, which mostly need two or three. They end early at a plane
-// that holds the two further apart than `enough`. `exact`: whether the last plane proves the distance to a hundredth of an edge. (With 1e-4
-// of an edge the two ways take turns on triangles over sharp edges of a body, and sheets do not come to rest.)
+// that holds the two further apart than `enough`. `exact`: whether the last plane proves the distance: to a
+// hundredth of an edge, or a hundredth of that where the triangle is stretched. (More exact points make
+// triangles at rest over sharp edges of a body swing, so that sheets do not come to rest.)
 template <class Shape>
 Approach project(const Shape& shape, const Corners& c, double enough, double edge, bool& exact) {
   Approach a;
+  const bool stretched = longest_side(c.x) > 1.5 * edge;
   Core core = core_of(shape, c.at(a.weights));
   for (int n = 0; n < kProjections; ++n) {
     const Weights before = a.weights;
@@ -93,7 +95,7 @@ Approach project(const Shape& shape, const Corners& c, double enough, double edg
     const double apart = std::sqrt(std::max(square, 1e-300)), gap = (square + least) / apart;
     a.apart |= gap > 1e-6 * edge;  // more than rounding
     a.far = a.apart && gap >= enough;
-    exact = a.far || apart - gap < 1e-2 * edge;
+    exact = a.far || apart - gap < (stretched ? 1e-4 : 1e-2) * edge;
     const Vec3 change = minus(a.weights, before);
     if (a.far || dot(change, change) < 1e-12) break;
   }
