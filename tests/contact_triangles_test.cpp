@@ -46,12 +46,15 @@ TEST(ContactTriangles, FindsTheDeepestPointOfAnyTriangle) {
         });
         std::visit(
             [&](const auto& s) {
+              // A round core is known to what deepest_on() promises, others end exactly.
+              const bool round = std::holds_alternative<Cylinder>(shape);
               const double found = physics::deepest_on(s, c, offset, size).nearest.distance;
               const double core = -physics::core_of(s, c.x[0]).radius;
               if (truth > offset)
                 EXPECT_GE(found, offset - 1e-9);
               else if (truth > core + 1e-6)
-                EXPECT_NEAR(found, truth, 1e-2 * size) << shape.index() << ", " << size << " m";
+                EXPECT_NEAR(found, truth, (round ? 1e-4 : 2e-5) * size)
+                    << shape.index() << ", " << size << " m";
               else  // cut: what it takes to get out is no less than that
                 EXPECT_LE(found, truth + 1e-9);
             },

@@ -1,7 +1,8 @@
-// Stages "collider_faces" and "stretched_faces": a collider with features smaller than the mesh as it is now is caught by the
-// triangles that it would slip through between the particles (seed 000 names this failure). How deep a
-// triangle may lie is said by AllowedDepth. Where the mesh at rest resolves the collider, rows are looked
-// at closely only while a triangle of theirs is stretched (the second of the two). What a tear has ended is no triangle.
+// Stages "collider_faces" and "stretched_faces": a collider with features smaller than the mesh as it is now
+// is caught by the triangles that it would slip through between the particles (seed 000 names this failure).
+// How deep a triangle may lie is said by AllowedDepth. Where the mesh at rest resolves the collider, rows are
+// looked at closely only while a triangle of theirs is stretched (the second of the two). What a tear has
+// ended is no triangle.
 //
 // The point p = Σ b_k x_k of a triangle deepest in the collider is lifted out by `depth` along the
 // normal there, each corner by its share:  x_k += w_k b_k / (Σ w b²) n depth.  It rubs like a
@@ -19,9 +20,13 @@
 namespace weft::physics {
 namespace {
 
-constexpr int kMostPlaces = 16;   // on the way of a fast collider
-constexpr double kDeep = 3e-2;    // of an edge: one that was as deep is looked at again at once
-constexpr int kTurns = 8;         // of one triangle in a substep
+constexpr int kMostPlaces = 16;  // on the way of a fast collider
+constexpr double kDeep = 3e-2;   // of an edge: one that was as deep is looked at again at once
+constexpr int kTurns = 8;        // of one triangle in a substep
+// Of an edge: how near a triangle at rest is known. An edge of it that lies along an edge of the body is
+// nearest anywhere along that; the exact point jumps from end to end as it turns, and sheets draped over
+// boxes swing for ever. Projections come to a point that moves as the triangle does.
+constexpr double kSteady = 1e-2;
 constexpr double kMostLever = 2;  // the greatest share of a corner; 1.37 where masses are equal
 // Edges up to so many times the flat ones lie within the kernel's reach for those (kFaceReach).
 constexpr double kReached = 2;
@@ -34,12 +39,13 @@ struct Touch {
 
 // The first contact on the way of the triangle, seen from the collider.
 template <class Shape>
-Touch first_touch(const Shape& shape, double offset, const Corners& end, int places, double edge) {
+Touch first_touch(const Shape& shape, double offset, const Corners& end, int places, double edge,
+                  double tolerance) {
   for (int n = 1; n <= places; ++n) {
     const double left = 1 - double(n) / places;
     Corners c = end;
     for (int k = 0; k < 3; ++k) c.x[k] = minus(end.x[k], times(end.path[k], left));
-    const Deepest d = deepest_on(shape, c, offset, edge);
+    const Deepest d = deepest_on(shape, c, offset, edge, tolerance);
     if (d.nearest.distance >= offset) continue;
     const double beyond = dot(minus(c.at(d.weights), end.at(d.weights)), d.nearest.normal);
     return {d.weights, d.nearest.normal, offset - d.nearest.distance + std::max(0.0, beyond)};
@@ -183,12 +189,14 @@ class ColliderTriangles final : public RowStage {
       path = std::max(path, std::sqrt(dot(c.path[k], c.path[k])));
     }
     // It rests as deep as may be: lifted all the way it would fall back and ring.
-    const double offset = r.offset - allowed_.at(longest_side(c.x));
+    const double longest = longest_side(c.x);
+    const double offset = r.offset - allowed_.at(longest);
+    const bool stretched = longest > AllowedDepth::kStretched * edge_;
     Touch touch = std::visit(
         [&](const auto& shape) {
           const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
           const int places = clamp_to_int(std::ceil(2 * path / size), 1, kMostPlaces);
-          return first_touch(shape, offset, c, places, edge_);
+          return first_touch(shape, offset, c, places, edge_, stretched ? kExact : kSteady);
         },
         upright_.shape);
     if (touch.depth <= 0) return false;

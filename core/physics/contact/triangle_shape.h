@@ -75,13 +75,12 @@ struct Approach {
 inline constexpr int kProjections = 12;  // between triangle and core
 
 // By alternating projections between the two, which mostly need two or three. They end early at a plane
-// that holds the two further apart than `enough`. `exact`: whether the last plane proves the distance: to a
-// hundredth of an edge, or a hundredth of that where the triangle is stretched. (More exact points make
-// triangles at rest over sharp edges of a body swing, so that sheets do not come to rest.)
+// that holds the two further apart than `enough`. `exact`: whether the last plane proves the distance to
+// `tolerance` [m].
 template <class Shape>
-Approach project(const Shape& shape, const Corners& c, double enough, double edge, bool& exact) {
+Approach project(const Shape& shape, const Corners& c, double enough, double edge, double tolerance,
+                 bool& exact) {
   Approach a;
-  const bool stretched = longest_side(c.x) > 1.5 * edge;
   Core core = core_of(shape, c.at(a.weights));
   for (int n = 0; n < kProjections; ++n) {
     const Weights before = a.weights;
@@ -95,7 +94,7 @@ Approach project(const Shape& shape, const Corners& c, double enough, double edg
     const double apart = std::sqrt(std::max(square, 1e-300)), gap = (square + least) / apart;
     a.apart |= gap > 1e-6 * edge;  // more than rounding
     a.far = a.apart && gap >= enough;
-    exact = a.far || apart - gap < (stretched ? 1e-4 : 1e-2) * edge;
+    exact = a.far || apart - gap < tolerance;
     const Vec3 change = minus(a.weights, before);
     if (a.far || dot(change, change) < 1e-12) break;
   }
@@ -204,23 +203,28 @@ Approach search(const Shape& shape, const Corners& c, double enough, double edge
 }
 
 template <class Shape>
-Approach approach(const Shape& shape, const Corners& c, double enough, double edge) {
+Approach approach(const Shape& shape, const Corners& c, double enough, double edge,
+                  double tolerance) {
   bool exact = false;
-  const Approach a = project(shape, c, enough, edge, exact);
+  const Approach a = project(shape, c, enough, edge, tolerance * edge, exact);
   return exact ? a : search(shape, c, enough, edge);
 }
 
-// The deepest point of a triangle in a shape. One that cuts the core is first moved out of it, along the
-// way of least overlap.
+inline constexpr double kExact = 1e-4;  // of an edge
+
+// The deepest point of a triangle in a shape, to a tolerance in edges: where several points are as deep but
+// for that, one that alternating projections come to. One that cuts the core is first moved out of it, along
+// the way of least overlap.
 template <class Shape>
-Deepest deepest_on(const Shape& shape, Corners c, double offset, double edge) {
+Deepest deepest_on(const Shape& shape, Corners c, double offset, double edge,
+                   double tolerance = kExact) {
   const double radius = core_of(shape, c.x[0]).radius;
-  Approach a = approach(shape, c, radius + offset, edge);
+  Approach a = approach(shape, c, radius + offset, edge, tolerance);
   if (a.far) return {a.weights, {offset, {}}};
   if (!a.apart) {
     if (const Overlap overlap = overlap_of(shape, c.x); overlap.depth > 0) {
       for (Vec3& x : c.x) x = plus(x, times(overlap.normal, overlap.depth + 1e-3 * edge));
-      a = approach(shape, c, std::numeric_limits<double>::infinity(), edge);
+      a = approach(shape, c, std::numeric_limits<double>::infinity(), edge, tolerance);
       return {a.weights, {-overlap.depth - radius, overlap.normal}};
     }
   }
