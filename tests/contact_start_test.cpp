@@ -168,5 +168,30 @@ TEST(ContactStart, SheetsInEachOtherArePushedApart) {
   EXPECT_LT(fastest, 4);
 }
 
+// A sheet that was far from a body, and of which nothing was looked at for long, is set right above it.
+TEST(ContactStart, AStateThatIsSetIsLookedAtAtOnce) {
+  for (const double radius : {0.3, 0.02})  // kept out by particles, and by triangles
+    for (const bool cuts : {false, true}) {
+      Scene scene;
+      scene.gravity = {0, 0, 0};
+      scene.cloths.push_back(flat_sheet(20, 1, {0, 40, 0}));
+      scene.colliders.push_back(collider_of(Sphere{{0, 0, 0}, radius}));
+      scene.colliders[0].cuts = cuts;
+      Simulation simulation(scene);
+      for (int frame = 0; frame < 3; ++frame) simulation.advance_frame();
+      std::vector<double> x = simulation.positions(), v(x.size(), 0.0);
+      for (std::size_t p = 1; p < x.size(); p += 3) {
+        x[p] = radius + 0.01;
+        v[p] = -1;
+      }
+      simulation.set_state(x, v);
+      for (int frame = 0; frame < 12; ++frame) {
+        simulation.advance_frame();
+        EXPECT_TRUE(cuts || simulation.report().penetration.collider_max < 1e-3) << radius;
+      }
+      EXPECT_EQ(simulation.report().torn > 0, cuts) << radius;
+    }
+}
+
 }  // namespace
 }  // namespace weft

@@ -26,6 +26,7 @@ class ColliderStage final : public ParticlesStage {
   }
   const SpeculativeCulling& far() const override { return far_; }
   double idle() const override { return far_.share(); }
+  void restart() override { far_.restart(collider_.fastest()); }
   void follow(const Collider& collider) override {
     if (&collider != &collider_.collider()) return;
     collider_.follow_keys();

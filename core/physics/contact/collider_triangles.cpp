@@ -30,6 +30,8 @@ constexpr double kSteady = 1e-2;
 constexpr double kMostLever = 2;  // the greatest share of a corner; 1.37 where masses are equal
 // Edges up to so many times the flat ones lie within the kernel's reach for those (kFaceReach).
 constexpr double kReached = 2;
+constexpr double kSudden = 5;   // m/s; of a blow by something else than the collider
+constexpr double kShort = 1.5;  // times the flat ones: edges that need no reach of their own
 
 struct Touch {
   Weights weights{};
@@ -61,8 +63,9 @@ class Edges {
       for (std::size_t n = 0; n < kOffsets.size(); ++n)
         if (f.di == kOffsets[n][0] && f.dj == kOffsets[n][1]) links_[n] = f.links;
   }
-  // The longest of the triangles between rows j and j+1 [m].
-  double longest(int j) const {
+  // The greatest difference of positions or velocities between two ends, of the triangles between rows j and
+  // j+1 [m, m/s].
+  double greatest(const Rows& values, int j) const {
     const Lattice& l = parts_.lattice;
     float square = 0;
     const auto look = [&](std::size_t edge, int row) {
@@ -70,7 +73,8 @@ class Edges {
       f.di = kOffsets[edge][0];
       f.dj = kOffsets[edge][1];
       f.links = links_[edge];
-      square = std::max(square, parts_.kernels.greatest_square(far_rows(f, l.x, l.columns, row)));
+      square =
+          std::max(square, parts_.kernels.greatest_square(far_rows(f, values, l.columns, row)));
     };
     look(kAlong, j);
     look(kAlong, j + 1);
@@ -111,7 +115,8 @@ class ColliderTriangles final : public RowStage {
         upright_(collider.shape),
         edge_(longest_edge(parts.cloth.grid)),
         allowed_(parts.cloth, collider),
-        edges_(parts_) {}
+        edges_(parts_),
+        lengths_(std::size_t(parts.lattice.rows)) {}
 
   void reserve_slots(int slots) override {
     bound_ = Rows(slots, parts_.lattice.stride);
@@ -127,18 +132,48 @@ class ColliderTriangles final : public RowStage {
     far_.restart(collider_.fastest());
   }
 
-  void run(int j, const Substep& s) override {
-    if (j + 1 >= parts_.lattice.rows || far_.skip(j, s)) return;
-    const double longest = edges_.longest(j);
-    // A triangle's points are no nearer than its corners by more than an edge.
-    const double reach = std::max(1.5 * edge_, longest);
-    RowReach row = particles_ && longest <= allowed_.harmless() ? reach_of_particles(j, s)
-                                                                : look(j, s, longest);
-    row.clearance -= float(reach);
-    far_.found(j, s, row, longest / edge_);
+  void restart() override {
+    far_.restart(collider_.fastest());
+    std::fill(lengths_.begin(), lengths_.end(), Length{});
+  }
+
+  using RowStage::run;
+  void run(int begin, int end, const Substep& s) override {
+    for (int j = begin; j < std::min(end, parts_.lattice.rows - 1); ++j)
+      if (!is_harmless(j, s) && !far_.skip(j, s)) keep_out(j, s);
   }
 
  private:
+  // The longest edge of the triangles between two rows. Until a time it is no longer than matters.
+  struct Length {
+    double longest = 0;                // m
+    double measured = -1, until = -1;  // s
+    bool harmless = false;
+    bool known(double time) const { return time > measured && time < until; }
+  };
+  bool is_harmless(int j, const Substep& s) const {
+    const Length& length = lengths_[std::size_t(j)];
+    return length.harmless && length.known(s.time);
+  }
+  void keep_out(int j, const Substep& s) {
+    Length& length = lengths_[std::size_t(j)];
+    const bool known = length.known(s.time);
+    const double longest = known ? length.longest : edges_.greatest(parts_.lattice.x, j);
+    const double small = particles_ ? allowed_.harmless() : kShort * edge_;
+    const bool harmless = particles_ && longest <= small;
+    RowReach row = harmless ? reach_of_particles(j, s) : look(j, s, longest);
+    if (!known) length = {longest, s.time, s.time + time_to_grow(j, small - longest), harmless};
+    // A triangle's points are no nearer than its corners by more than an edge.
+    row.clearance -= float(std::max(kShort * edge_, longest));
+    far_.found(j, s, row, longest / edge_);
+  }
+  // Until an edge may be so much longer [s]: its ends part as fast as now, which may double, and what comes
+  // suddenly adds to that.
+  double time_to_grow(int j, double by) const {
+    return std::max(0.0, by) /
+           (2 * edges_.greatest(parts_.lattice.v, j) + kSudden + collider_.fastest());
+  }
+
   // Of the rows beside the triangles, as the stage before this one has found them.
   RowReach reach_of_particles(int j, const Substep& s) const {
     const RowReach a = particles_->reach_at(j, s.time), b = particles_->reach_at(j + 1, s.time);
@@ -247,6 +282,7 @@ class ColliderTriangles final : public RowStage {
   double edge_;  // m, longest of a flat triangle
   AllowedDepth allowed_;
   Edges edges_;
+  std::vector<Length> lengths_;  // of every row
   Rows bound_;
   AlignedArray<std::int32_t> room_;
 };

@@ -23,6 +23,7 @@ class CutStage final : public RowStage {
     for (const Stencil& f : parts.stencils) longest_ = std::max(longest_, f.rest);
   }
   double idle() const override { return far_.share(); }
+  void restart() override { far_.restart(collider_.fastest()); }
   void follow(const Collider& collider) override {
     if (&collider != &collider_.collider()) return;
     collider_.follow_keys();

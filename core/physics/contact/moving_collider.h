@@ -95,7 +95,7 @@ class SpeculativeCulling {
   SpeculativeCulling(const ClothParts& parts, double collider_speed);
   // Whether row j has nothing to do in this substep.
   bool skip(int j, const Substep& s);
-  // All rows are looked at again: the collider's path has changed.
+  // All rows are looked at again: the collider's path has changed, or the state was set.
   void restart(double collider_speed);
   // Row j has just been worked on and lies so. `stretch`: how many times as long as at rest its edges are.
   void found(int j, const Substep& s, const RowReach& reach, double stretch = 1);

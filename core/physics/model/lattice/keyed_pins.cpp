@@ -4,7 +4,14 @@
 #include "weft/shape.h"
 
 namespace weft::physics {
+
 namespace {
+
+// Most pins that move have keys alone, and are many.
+inline Vec3 place_of(const LatticeParts& parts, const Pin& pin, double time) {
+  const bool keys_alone = pin.follow < 0 && pin.rotate.keys.empty();
+  return keys_alone ? position_at(pin.keys, time) : pin_at(parts, pin, time);
+}
 
 class KeyedPins final : public RowStage {
  public:
@@ -17,11 +24,11 @@ class KeyedPins final : public RowStage {
     Lattice& l = parts_.lattice;
     for (const Pin* pin : by_row_[j]) {
       if (l.w(j, pin->i) > 0) continue;  // let go since
-      const Vec3 x = pin_at(parts_, *pin, s.time);
-      const Vec3 v = times(minus(x, pin_at(parts_, *pin, s.time - s.dt)), 1 / s.dt);
+      const Vec3 x = place_of(parts_, *pin, s.time);
+      const Vec3 before = place_of(parts_, *pin, s.time - s.dt);
       for (int k = 0; k < 3; ++k) {
         l.x.at(k, j, pin->i) = coordinate(x[k]);
-        l.v.at(k, j, pin->i) = float(v[k]);
+        l.v.at(k, j, pin->i) = float((x[k] - before[k]) / s.dt);
       }
     }
   }
