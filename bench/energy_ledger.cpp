@@ -79,7 +79,8 @@ double Ledger::share(const std::vector<Vec3>& x, const std::vector<Vec3>& v) {
   highest_ = std::max(highest_, height);
   released_ = std::max(released_, highest_ - height);
   const double kept = cloth_.tear_strain > 0 ? 0 : bent(x) + elastic(x);
-  return (kinetic(v) + kept) / (put_in_ + released_ + noise(x));
+  const double held = kinetic(v) + kept;
+  return held == 0 ? 0 : held / (put_in_ + released_ + noise(x));  // all of it may be pinned
 }
 
 double Ledger::mass(std::size_t p) const {

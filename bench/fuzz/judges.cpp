@@ -110,7 +110,7 @@ Judges::Judges(const Simulation& simulation) {
     const ClothView& c = view.cloths[n];
     for (const Pin& pin : simulation.scene().cloths[n].pins) {
       const std::size_t p = std::size_t(pin.j) * std::size_t(c.stride) + std::size_t(pin.i);
-      if (pin.keys.empty()) held_.push_back({n, p, {c.x[p], c.y[p], c.z[p]}});
+      if (!pin.moves()) held_.push_back({n, p, {c.x[p], c.y[p], c.z[p]}});
     }
   }
   check_view(simulation);

@@ -60,10 +60,12 @@ bool collides_with_itself(const Scene& scene) {
 
 // Whether anything moves along keys.
 bool driven(const Scene& scene) {
-  const auto moves = [](const auto& thing) { return !thing.keys.empty(); };
-  return std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
-         std::any_of(scene.cloths.begin(), scene.cloths.end(), [&](const Cloth& c) {
-           return std::any_of(c.pins.begin(), c.pins.end(), moves);
+  return !scene.gravity_keys.empty() ||
+         std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                     [](const Collider& c) { return !c.keys.empty(); }) ||
+         std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const Cloth& c) {
+           return std::any_of(c.pins.begin(), c.pins.end(),
+                              [](const Pin& pin) { return pin.moves(); });
          });
 }
 
@@ -83,7 +85,8 @@ bool outside_of_all(const Simulation& simulation) {
 
 // Nothing but the sheet's own forces acts.
 bool left_alone(const Scene& scene) {
-  return scene.gravity == Vec3{} && scene.colliders.empty() && !has_wind(scene) &&
+  return scene.gravity == Vec3{} && scene.gravity_keys.empty() && scene.colliders.empty() &&
+         !has_wind(scene) &&
          std::all_of(scene.cloths.begin(), scene.cloths.end(),
                      [](const Cloth& c) { return c.drag == 0 && c.pins.empty(); });
 }
@@ -189,7 +192,7 @@ void Laws::check_paths(const Simulation& simulation) const {
   const Vec3 origin = simulation.view().origin;
   for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto&) {
     for (const Pin& pin : c.pins) {
-      if (pin.keys.empty()) continue;
+      if (pin.keys.empty() || pin.follow >= 0 || !pin.rotate.keys.empty()) continue;
       const Vec3 here = x[std::size_t(pin.j) * std::size_t(c.grid.nx) + std::size_t(pin.i)];
       const Vec3 there = physics::position_at(pin.keys, simulation.time());
       const double off = length({here[0] - there[0], here[1] - there[1], here[2] - there[2]});

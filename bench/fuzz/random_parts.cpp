@@ -192,6 +192,44 @@ std::vector<Pin> Parts::pins(const Grid& g, const Time& time) {
   return pins;
 }
 
+Rotation Parts::rotation(const Grid& g, double frame) {
+  Rotation r;
+  r.axis = draw_.vector(draw_.decades(1e-3, 1e3));
+  r.about = plus(g.origin, draw_.vector(size_of(g)));
+  double time = draw_.chance(0.6) ? 0 : frame * draw_.decades(0.1, 30);
+  double degrees = draw_.chance(0.5) ? 0 : draw_.uniform(-3600, 3600);
+  for (int n = draw_.between(1, 4); n > 0; --n) {
+    r.keys.push_back({time, degrees});
+    time += frame * draw_.decades(0.01, 20);
+    degrees += draw_.uniform(-90, 90);
+  }
+  return r;
+}
+
+void Parts::add_motion(Scene& scene) {
+  // Keys take the place of the one value, which is not written beside them.
+  if (some(0.1)) {
+    scene.gravity_keys = path(scene.gravity, 10, scene.time.frame);
+    scene.gravity = Scene{}.gravity;
+  }
+  if (some(0.1)) {
+    scene.wind.velocity_keys = path(scene.wind.velocity, 5, scene.time.frame);
+    scene.wind.velocity = {};
+  }
+  scene.solver.iterate_springs = some(0.1);
+  scene.solver.full_first_kick = some(0.1);
+  for (Cloth& c : scene.cloths) {
+    if (some(0.15)) c.velocity = draw_.vector(draw_.chance(0.9) ? draw_.decades(0.01, 30) : 1000);
+    if (some(0.15)) c.spin = draw_.vector(draw_.chance(0.9) ? draw_.decades(0.01, 30) : 1000);
+    if (some(0.2)) c.level_diagonals = LevelDiagonals::one;
+    for (Pin& pin : c.pins) {
+      if (some(0.1)) pin.rotate = rotation(c.grid, scene.time.frame);
+      if (!scene.colliders.empty() && some(0.1))
+        pin.follow = draw_.between(0, int(scene.colliders.size()) - 1);
+    }
+  }
+}
+
 Cloth Parts::cloth(const Solver& solver, const Time& time) {
   Cloth c;
   c.grid = grid();

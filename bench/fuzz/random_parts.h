@@ -20,6 +20,8 @@ class Parts {
   weft::Collider collider(const weft::Cloth& cloth, const weft::Time& time);
   weft::Wind wind();
   weft::Vec3 gravity();
+  // Values over time, motion at the start, and what the seeds do another way.
+  void add_motion(weft::Scene& scene);
 
   // Some optional feature, more often in rich scenes.
   bool some(double share) { return draw_.chance(share * richness_); }
@@ -36,6 +38,7 @@ class Parts {
   weft::Shape shape(const weft::Vec3& at, double size);
   weft::Friction friction();
   std::vector<weft::Key> path(const weft::Vec3& start, double size, double frame);
+  weft::Rotation rotation(const weft::Grid& grid, double frame);
 
   Draw& draw_;
   double richness_;

@@ -21,9 +21,11 @@ double estimated_substeps(const Scene& scene) {
   for (const Cloth& c : scene.cloths) {
     double lightest = particle_mass(c, 0, 0);
     for (const double m : c.masses) lightest = std::min(lightest, m);
+    const double repeats = scene.solver.iterate_springs ? scene.solver.iterations : 1;
     const double springs =
-        c.level > 0 ? 8 * c.level * c.stiffness.structural
-                    : 4 * (c.stiffness.structural + c.stiffness.shear + c.stiffness.bend);
+        repeats * (c.level > 0
+                       ? 8 * c.level * c.stiffness.structural
+                       : 4 * (c.stiffness.structural + c.stiffness.shear + c.stiffness.bend));
     most = std::max(most, scene.time.frame * std::sqrt(springs / lightest));
   }
   return std::min(most, scene.time.frame * 1e6);
@@ -53,6 +55,7 @@ Scene draw_scene(Draw draw) {
                                             : parts.cloth(scene.solver, scene.time));
   for (int n = draw.chance(0.5) ? 0 : draw.between(1, 3); n > 0; --n)
     scene.colliders.push_back(parts.collider(scene.cloths[0], scene.time));
+  parts.add_motion(scene);
   shorten_frames(scene);
   return scene;
 }
