@@ -88,6 +88,23 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+TEST(Recording, HoldsValuesOverTime) {
+  const Folder folder;
+  folder.write("s.json", R"({"weft": 1, "gravity": {"keys": [[0, 0,-9,0], [0.1, 3,-2,1]]},
+      "wind": {"drag": 0.5, "turbulence": 0.3, "velocity": {"keys": [[0, 1,0,0], [0.2, 0,0,4]]}},
+      "cloths": [{"grid": {"points": [9, 7]}, "velocity": [0, 1, 0], "spin": [0, 0, 2], "pins": [
+        {"at": [0, 0], "follow": 0},
+        {"at": [8, 0], "rotate": {"axis": [0,1,0], "about": [0.5,0,0], "keys": [[0, 0], [1, 90]]}}]}],
+      "colliders": [{"sphere": {"center": [0.5, -0.4, 0.5], "radius": 0.2},
+        "keys": [[0, 0.5,-0.4,0.5], [0.3, 0.6,0,0.5]]}]})");
+  ASSERT_EQ(run_weft(folder, "run s.json --frames 12 --record a.rec").exit_code, 0);
+  for (const char* simd : {"scalar", "sse2"}) {
+    const Outcome outcome =
+        run_weft(folder, std::string("run --replay a.rec --threads 3 --simd ") + simd);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+}
+
 // What is wrong in a line is told with the line, the place in it, and no word of a parser.
 TEST(Recording, FaultsAreNamedByLineAndPlace) {
   const Folder folder;

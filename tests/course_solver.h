@@ -9,24 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "double_vector.h"
+
 namespace course {
 
-using Vec = std::array<double, 3>;
-inline Vec operator+(const Vec& a, const Vec& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-inline Vec operator-(const Vec& a, const Vec& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-inline Vec operator*(double s, const Vec& a) {
-  return {s * a[0], s * a[1], s * a[2]};
-}
-inline double dot(const Vec& a, const Vec& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline double length(const Vec& a) {
-  return std::sqrt(dot(a, a));
-}
+using Vec = weft::oracle::Vec3;
+using weft::oracle::operator+;
+using weft::oracle::operator-;
+using weft::oracle::operator*;
+using weft::oracle::dot;
+using weft::oracle::length;
 
 // What a scene file of the course says.
 struct File {

@@ -93,6 +93,29 @@ TEST(Memory, IsHeldOnlyForWhatIsInUse) {
   EXPECT_EQ(bytes(pinned), bytes(fixed));
 }
 
+// Pins drawn apart break any limit: the first frame in which it does not hold is told of, once.
+TEST(StrainLimit, TheFrameInWhichItFailsIsToldOf) {
+  for (const Method method : {Method::spring, Method::compliant, Method::positional})
+    for (const double pulled : {0.0, 0.4}) {
+      Scene scene = sheet(method);
+      scene.gravity = {0, 0, 0};
+      scene.cloths[0].strain_limit = 0.1;
+      scene.cloths[0].pins = {{0, 0, {}}, {19, 0, {{0.1, {1, 0, 0}}, {0.3, {1 + pulled, 0, 0}}}}};
+      Simulation simulation(scene);
+      const auto told = [&] {
+        const std::vector<std::string> notes = simulation.plan().notes;
+        return std::count_if(notes.begin(), notes.end(), [](const std::string& note) {
+          return note.find("strain limit of 0.1 did not hold in frame") != std::string::npos;
+        });
+      };
+      advance(simulation, 0.1);
+      EXPECT_EQ(told(), 0) << int(method);
+      advance(simulation, 0.4);
+      EXPECT_EQ(told(), pulled > 0 ? 1 : 0) << int(method);
+      EXPECT_EQ(simulation.report().strain.max > 0.101, pulled > 0) << int(method);
+    }
+}
+
 // Velocities that carry particles out of the world within the frame.
 void drive_out(Simulation& simulation, int i, int j) {
   const std::vector<double> x = simulation.positions();

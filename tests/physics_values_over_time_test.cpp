@@ -179,6 +179,17 @@ TEST(ValuesOverTime, PinsFollowTheirCollider) {
   }
 }
 
+TEST(ValuesOverTime, ThePlanTellsOfThem) {
+  Scene scene = free_sheet(Method::spring, 8);
+  const auto told = [](const Scene& s) { return to_text(Simulation(s).plan()); };
+  EXPECT_EQ(told(scene).find("keys"), std::string::npos);
+  scene.wind.drag = 0.5;
+  scene.gravity_keys = {{0.5, {0, 0, 0}}, {2, {0, -5, 0}}};
+  scene.wind.velocity_keys = {{0, {1, 0, 0}}};
+  EXPECT_NE(told(scene).find("gravity follows its keys from 0.5 to 2 s"), std::string::npos);
+  EXPECT_NE(told(scene).find("drag and lift of triangles, along keys"), std::string::npos);
+}
+
 TEST(ValuesOverTime, AreReadAndWritten) {
   const char* text = R"({"weft": 1, "gravity": {"keys": [[0, 0,0,0], [1, 0,-9.81,0]]},
     "wind": {"velocity": {"keys": [[0, 1,2,3]]}, "drag": 1},

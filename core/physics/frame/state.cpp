@@ -159,6 +159,9 @@ Plan Simulation::State::describe_stages() const {
 
 // What is odd about how the cloths start, and what is done about it.
 void Simulation::State::note_starts(std::vector<std::string>& notes) const {
+  if (!scene.gravity_keys.empty())
+    notes.push_back("gravity follows its keys from " + number(scene.gravity_keys.front().time) +
+                    " to " + number(scene.gravity_keys.back().time) + " s");
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const std::string which = "cloth " + std::to_string(c);
     for (std::size_t k = 0; k < scene.colliders.size(); ++k) {

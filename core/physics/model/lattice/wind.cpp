@@ -26,8 +26,9 @@ class WindStage final : public RowStage {
  public:
   WindStage(const LatticeParts& parts, std::uint64_t seed)
       : RowStage("wind",
-                 parts.scene.wind.turbulence > 0 ? "drag and lift of triangles, gusts"
-                                                 : "drag and lift of triangles",
+                 std::string("drag and lift of triangles") +
+                     (parts.scene.wind.turbulence > 0 ? ", gusts" : "") +
+                     (parts.scene.wind.velocity_keys.empty() ? "" : ", along keys"),
                  1, 2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1),
                  "triangles"),
         parts_(parts) {
