@@ -11,15 +11,15 @@ namespace {
 
 #define WEFT_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 
-// e <- k (1 - l/|b - a|) (b - a), the force on a, for `count` springs.
-WEFT_CLONES void spring_row(int count, double k, double rest, const double* __restrict ax,
-                            const double* __restrict ay, const double* __restrict az,
-                            const double* __restrict bx, const double* __restrict by,
-                            const double* __restrict bz, double* __restrict ex,
-                            double* __restrict ey, double* __restrict ez) {
+// e <- k (1 - l/|b - a|) (b - a), the force on a, for `count` springs of their shares of k.
+WEFT_CLONES void spring_row(int count, double k, const double* __restrict share, double rest,
+                            const double* __restrict ax, const double* __restrict ay,
+                            const double* __restrict az, const double* __restrict bx,
+                            const double* __restrict by, const double* __restrict bz,
+                            double* __restrict ex, double* __restrict ey, double* __restrict ez) {
   for (int i = 0; i < count; ++i) {
     const double dx = bx[i] - ax[i], dy = by[i] - ay[i], dz = bz[i] - az[i];
-    const double s = k * (1 - rest / std::sqrt(dx * dx + dy * dy + dz * dz));
+    const double s = k * share[i] * (1 - rest / std::sqrt(dx * dx + dy * dy + dz * dz));
     ex[i] = s * dx;
     ey[i] = s * dy;
     ez[i] = s * dz;
@@ -61,10 +61,13 @@ std::vector<Springs> springs_of(const weft::Cloth& cloth) {
   const weft::Grid& g = cloth.grid;
   const auto stencil = [&](int di, int dj, double k) {
     if (k <= 0 || std::abs(di) >= g.nx || dj >= g.ny) return;
-    Springs s{std::max(0, -di),    std::max(0, di),        dj,
-              g.nx - std::abs(di), rest_length(g, di, dj), {}};
+    Springs s{
+        std::max(0, -di), std::max(0, di), dj, g.nx - std::abs(di), rest_length(g, di, dj), {}, {}};
     for (int j = 0; j + dj < g.ny; ++j)
-      s.stiffness.push_back(k * (1 - cloth.stiffness_gradient * (j + 0.5 * dj) / (g.ny - 1)));
+      s.stiffness.push_back(k * (1 - cloth.stiffness_gradient * (j + 0.5 * dj) / (g.ny - 1)) *
+                            (dj == 0 ? weft::width_share(cloth, 0, j, di, 0) : 1));
+    for (int a = 0; a < s.count; ++a)
+      s.share.push_back(di == 0 ? weft::width_share(cloth, a, 0, 0, dj) : 1);
     all.push_back(std::move(s));
   };
   if (cloth.level == 0) {
@@ -136,7 +139,7 @@ double Verlet::safe_step() const {
   for (const Springs& s : springs_)
     for (int j = 0; j + s.dj < rows_; ++j)
       for (int a = 0; a < s.count; ++a) {
-        const double stiffness = s.stiffness[std::size_t(j)];
+        const double stiffness = s.stiffness[std::size_t(j)] * s.share[std::size_t(a)];
         k[std::size_t(j * columns_ + a + s.near)] += 2 * stiffness;
         k[std::size_t((j + s.dj) * columns_ + a + s.far)] += 2 * stiffness;
       }
@@ -150,8 +153,8 @@ void Verlet::spring_forces(const Springs& s) {
   for (int j = 0; j + s.dj < rows_; ++j) {
     const std::size_t a = std::size_t(j * columns_ + s.near);
     const std::size_t b = std::size_t((j + s.dj) * columns_ + s.far);
-    spring_row(s.count, s.stiffness[std::size_t(j)], s.rest, &x_[a], &y_[a], &z_[a], &x_[b], &y_[b],
-               &z_[b], ex_.data(), ey_.data(), ez_.data());
+    spring_row(s.count, s.stiffness[std::size_t(j)], s.share.data(), s.rest, &x_[a], &y_[a], &z_[a],
+               &x_[b], &y_[b], &z_[b], ex_.data(), ey_.data(), ez_.data());
     add(s.count, ex_.data(), &fx_[a]);
     add(s.count, ey_.data(), &fy_[a]);
     add(s.count, ez_.data(), &fz_[a]);

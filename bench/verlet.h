@@ -14,6 +14,7 @@ struct Springs {
   int near, far, dj, count;
   double rest;                    // m
   std::vector<double> stiffness;  // N/m, of every row
+  std::vector<double> share;      // of it, of every constraint of a row
 };
 
 class Verlet {

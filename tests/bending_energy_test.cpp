@@ -92,8 +92,8 @@ TEST(Bending, OneSubstepOfTheSpringMethodFeelsTheForce) {
           spring_forces(scene.cloths[0], stencils_of(scene.cloths[0]), p, nullptr);
       add_bending_forces(
           scene.cloths[0], [&](int n, int k) { return p[n][k]; }, f);
-      for (Vec3& a : f)
-        for (double& k : a) k /= particle_mass(scene.cloths[0], 0, 0);
+      for (std::size_t n = 0; n < f.size(); ++n)
+        for (double& k : f[n]) k /= particle_mass(scene.cloths[0], int(n) % 21, int(n) / 21);
       return f;
     };
     const std::vector<Vec3> a = acceleration(x), b = acceleration(simulation.positions());

@@ -22,7 +22,7 @@ struct Patch {
   Rows x, v, f, previous;
   Rows
       carry;  // the two sums that fused kernels carry from row to row, and a row that nothing changes
-  AlignedArray<float> w, row_w, lambda, scratch;
+  AlignedArray<float> w, row_w, width, inverse_width, lambda, scratch;
   AlignedArray<std::int32_t> lanes, alive;
 
   Patch(int columns_, float padding)
@@ -35,11 +35,15 @@ struct Patch {
         carry(kRows, stride),
         w(std::size_t(kRows) * stride),
         row_w(kRows),
+        width(std::size_t(stride)),
+        inverse_width(std::size_t(stride)),
         lambda(std::size_t(kRows) * stride),
         scratch(kGuard + 3 * std::size_t(stride)),
         lanes(2 * std::size_t(stride)),
         alive(std::size_t(kPlainStencils * kRows) * stride) {
     Random random(5, std::uint64_t(columns));
+    for (int i = 0; i < stride; ++i)
+      width[std::size_t(i)] = inverse_width[std::size_t(i)] = i < columns ? 1 : padding;
     for (int j = 0; j < kRows; ++j)
       for (int i = 0; i < stride; ++i) {
         const bool used = i < columns;
@@ -64,6 +68,15 @@ struct Patch {
           alive[std::size_t(f * kRows + j) * stride + i] = random.unit() < 0.25 ? 0 : -1;
     // Two coincident particles: a spring without a direction.
     for (int axis = 0; axis < 3; ++axis) x.at(axis, 0, 1) = x.at(axis, 0, 0);
+  }
+
+  // Has columns at the sides count half, and particles there weigh half.
+  void halve_sides() {
+    for (const int i : {0, columns - 1}) {
+      width[std::size_t(i)] = 0.5f;
+      inverse_width[std::size_t(i)] = 2;
+      for (int j = 0; j < kRows; ++j) w[std::size_t(j) * stride + i] *= 2;
+    }
   }
 
   // Gives all particles one inverse mass, none pinned.
@@ -136,6 +149,8 @@ inline void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
   r.x = p.x.row(0);
   r.v = p.v.row(0);
   r.w = p.weights(0);
+  r.width = p.width.data();
+  r.inverse_width = p.inverse_width.data();
 }
 
 // Rows begin … end-1 of the patch with the six stencils of a plain cloth; given overlong, springs past

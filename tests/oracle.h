@@ -122,7 +122,10 @@ class Cloth {
     const Vec3 edge = (double(di) / (g.nx - 1)) * g.u + (double(dj) / (g.ny - 1)) * g.v;
     for (int j = 0; j + dj < g.ny; ++j)
       for (int i = std::max(0, -di); i < g.nx && i + di < g.nx; ++i) {
-        const double factor = 1 - cloth_.stiffness_gradient * (j + 0.5 * dj) / (g.ny - 1);
+        double factor = 1 - cloth_.stiffness_gradient * (j + 0.5 * dj) / (g.ny - 1);
+        if (cloth_.lumping == Lumping::area &&
+            ((dj == 0 && (j == 0 || j == g.ny - 1)) || (di == 0 && (i == 0 || i == g.nx - 1))))
+          factor /= 2;
         const Link link{j * g.nx + i, (j + dj) * g.nx + i + di, structural_or_shear,
                         length(edge), stiffness * factor,       damping * factor};
         group.colour[(dj > 0 ? j / dj : i / di) % 2].push_back(link);

@@ -65,9 +65,10 @@ constexpr std::array<std::array<int, 2>, 12> kOffsets{{{1, 0},
                                                        {-16, 1}}};
 
 // A Jacobi sweep over rows begin … end-1, rigid or compliant.
-void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, bool torn, int begin,
-                 int end) {
+void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, bool sides,
+                 bool torn, int begin, int end) {
   if (alike) p.weigh_alike();
+  if (sides) p.halve_sides();
   std::vector<JacobiConstants> constraints;
   JacobiRows r{};
   for (int j = 0; j < kRows; ++j)
@@ -76,7 +77,9 @@ void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, b
       const int dj = f == 5 ? 2 : f == 0 || f == 4 ? 0 : 1;
       const float kappa = 1 / (2 * 0.8f * 3 + compliance);
       if (j + dj < kRows)
-        constraints.push_back({compliance, kappa, kappa * r.rest[f]});
+        constraints.push_back({compliance, kappa, kappa * r.rest[f],
+                               sides && f != 1 && f != 5 ? 0.7f : 1,
+                               sides && f != 1 && f != 5 ? 0.5f : 1});
       else
         constraints.push_back({std::numeric_limits<float>::infinity(), 0, 0});
     }
@@ -101,13 +104,14 @@ void add_rows(std::vector<Case>& cases, const std::string& name,
 void add_jacobi(std::vector<Case>& cases) {
   for (const float compliance : {0.0f, 0.7f})
     for (const bool alike : {false, true})
-      for (const bool torn : {false, true})
-        add_rows(cases,
-                 std::string("jacobi_rows, ") + (compliance > 0 ? "compliant" : "rigid") +
-                     (alike ? ", alike" : "") + (torn ? ", torn" : ""),
-                 [=](const KernelTable& k, Patch& p, int begin, int end) {
-                   jacobi_rows(k, p, compliance, alike, torn, begin, end);
-                 });
+      for (const bool sides : {false, true})
+        for (const bool torn : {false, true})
+          add_rows(cases,
+                   std::string("jacobi_rows, ") + (compliance > 0 ? "compliant" : "rigid") +
+                       (alike ? ", alike" : "") + (sides ? ", sides" : "") + (torn ? ", torn" : ""),
+                   [=](const KernelTable& k, Patch& p, int begin, int end) {
+                     jacobi_rows(k, p, compliance, alike, sides, torn, begin, end);
+                   });
 }
 
 void add_springs(std::vector<Case>& cases) {
@@ -155,7 +159,7 @@ void add_moves(std::vector<Case>& cases) {
 struct Features {
   const char* name;
   float compliance, weight;
-  bool limit, multipliers, alike = false;
+  bool limit, multipliers, alike = false, sides = false;
 };
 constexpr Features kFeatures[] = {{"rigid", 0, 1, false, false},
                                   {"heavier", 0, 1.7f, false, false},
@@ -164,7 +168,11 @@ constexpr Features kFeatures[] = {{"rigid", 0, 1, false, false},
                                   {"limit", 0, 1, true, false},
                                   {"rigid, alike", 0, 1, false, false, true},
                                   {"compliant, alike", 0.7f, 1, false, false, true},
-                                  {"multipliers, alike", 0.7f, 1, false, true, true}};
+                                  {"multipliers, alike", 0.7f, 1, false, true, true},
+                                  {"compliant, sides", 0.7f, 1, false, false, false, true},
+                                  {"rigid, alike, sides", 0, 1, false, false, true, true},
+                                  {"compliant, alike, sides", 0.7f, 1, false, false, true, true},
+                                  {"multipliers, alike, sides", 0.7f, 1, false, true, true, true}};
 
 void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Features& has,
                     bool jacobi) {
@@ -191,6 +199,11 @@ void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Featur
   if (has.alike) {
     p.weigh_alike();
     r.row_w = p.row_w.data();
+  }
+  if (has.sides) {
+    p.halve_sides();
+    r.side_by_side = di != 0;
+    if (di == 0) r.inverse_width = p.inverse_width.data();
   }
   for (int a = 0; dj == 0 && a < r.count; ++a) p.lanes[std::size_t(a / di % 2 * p.stride + a)] = -1;
   r.lanes = p.lanes.data();

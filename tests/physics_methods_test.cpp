@@ -47,6 +47,13 @@ void weigh(Scene& s) {
     s.cloths[0].masses.push_back(0.05 + 0.15 * random.unit());
 }
 
+// An inner particle of 100 g.
+void by_area(Scene& s) {
+  s.cloths[0].particle_mass = 0;
+  s.cloths[0].density = 10;
+  s.cloths[0].lumping = Lumping::area;
+}
+
 std::vector<Case> features() {
   std::vector<Case> all{{"plain", [](Scene&) {}},
                         {"pins", pin},
@@ -80,6 +87,29 @@ std::vector<Case> features() {
                          [](Scene& s) {
                            s.cloths[0].grid.nx = 32, s.cloths[0].grid.u = {3.1, 0, 0.2};
                          }},
+                        {"by area", by_area},
+                        {"by area, two columns",
+                         [](Scene& s) {
+                           by_area(s);
+                           s.cloths[0].grid.nx = 2, s.cloths[0].grid.u = {0.1, 0, 0};
+                         }},
+                        {"by area, 32 columns, gradient, pins",
+                         [](Scene& s) {
+                           by_area(s);
+                           move_pin(s);
+                           s.cloths[0].stiffness_gradient = 0.4;
+                           s.cloths[0].grid.nx = 32, s.cloths[0].grid.u = {3.1, 0, 0.2};
+                         }},
+                        {"by area, no shear",
+                         [](Scene& s) {
+                           by_area(s);
+                           s.cloths[0].stiffness.shear = 0;
+                         }},
+                        {"by area, masses",
+                         [](Scene& s) {
+                           by_area(s);
+                           weigh(s);
+                         }},
                         {"all at once", [](Scene& s) {
                            move_pin(s);
                            weigh(s);
@@ -92,7 +122,10 @@ std::vector<Case> features() {
                      s.cloths[0].level = level;
                      s.cloths[0].stiffness = {25, 0, 0};
                      move_pin(s);
-                     weigh(s);
+                     if (level % 2 == 0)
+                       by_area(s);
+                     else
+                       weigh(s);
                    }});
   return all;
 }

@@ -273,7 +273,7 @@ TEST(ProjectionSubstep, IsNoShorterThanNeedBe) {
   EXPECT_NEAR(projection_substep(scene), 2 * fine, 1e-9);
   scene.solver.iterations = 1;
   scene.cloths[0].stiffness = {50, 50, 10};  // that one sweep can follow
-  EXPECT_NEAR(projection_substep(scene), std::sqrt(0.3 / (200 * 200) / 50), 1e-9);
+  EXPECT_NEAR(projection_substep(scene), std::sqrt(0.3 / (199 * 199) / 50), 1e-9);
   scene.cloths[0].stiffness = {1000, 1000, 200};
   scene.solver.sweep = Sweep::line;
   EXPECT_EQ(projection_substep(scene), 1.0 / 960);

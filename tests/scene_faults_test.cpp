@@ -120,7 +120,7 @@ constexpr Broken kBroken[] = {
     {R"({"weft": 1, "cloths": [{"density": 0}]})",
      "/cloths/0/density: density is 0 (1e-6 to 1e6 kg/m²)"},
     {R"({"weft": 1, "cloths": [{"density": 1e-6, "grid": {"points": [4096, 4096]}}]})",
-     "/cloths/0/density: each particle weighs 5.960464477539062e-14 kg (1e-9 to 1e6 kg)"},
+     "/cloths/0/density: a particle in a corner weighs 1.4908439816864726e-14 kg (1e-9 to 1e6 kg)"},
     {R"({"weft": 1, "cloths": [{"particle_mass": 1e-12}]})",
      "/cloths/0/particle_mass: each particle weighs 1e-12 kg (1e-9 to 1e6 kg)"},
     {R"({"weft": 1, "cloths": [{"masses": [1, 2, 3]}]})",

@@ -90,6 +90,7 @@ Cloth cloth_of(const CourseCloth& from) {
   cloth.grid = grid_of(from);
   cloth.particle_mass =
       from.density * from.width * from.height / from.num_width_points / from.num_height_points;
+  cloth.lumping = Lumping::equal;
   cloth.stiffness = {from.enable_structural ? from.ks : 0, from.enable_shearing ? from.ks : 0,
                      from.enable_bending ? kBendingShare * from.ks : 0};
   cloth.drag = from.damping * (kFramesPerSecond * kSteps / 100.0);

@@ -36,6 +36,10 @@ constexpr std::array<const char*, 2> words(SelfCollisionResponse) {
   return {"stiff", "course"};
 }
 
+constexpr std::array<const char*, 3> words(Lumping) {
+  return {"auto", "area", "equal"};
+}
+
 constexpr std::array<const char*, 3> words(Tears) {
   return {"split", "holes", "particles"};
 }
@@ -100,6 +104,7 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("density", cloth.density);
   walk("particle_mass", cloth.particle_mass);
   walk("masses", cloth.masses);
+  walk("lumping", cloth.lumping);
   walk("stiffness", cloth.stiffness);
   walk("spring_damping", cloth.spring_damping);
   walk("level", cloth.level);

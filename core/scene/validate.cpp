@@ -136,10 +136,16 @@ class Together {
     const bool given = cloth.particle_mass > 0;
     const Json& one =
         scene_schema_json()["properties"]["cloths"]["items"]["properties"]["masses"]["items"];
-    const double mass = particle_mass(cloth, 0, 0);
-    if (mass < one["minimum"].get<double>() || mass > one["maximum"].get<double>())
+    const double most = particle_mass(cloth, cloth.grid.nx / 2, cloth.grid.ny / 2);
+    const double least = particle_mass(cloth, 0, 0);  // in a corner
+    const bool light = least < one["minimum"].get<double>();
+    if (light || most > one["maximum"].get<double>())
       fault(place + (given ? "/particle_mass" : "/density"),
-            "each particle weighs " + number_words(mass) + " kg", range_words(one));
+            (least == most ? "each particle"
+             : light       ? "a particle in a corner"
+                           : "a particle") +
+                std::string(" weighs ") + number_words(light ? least : most) + " kg",
+            range_words(one));
   }
 
   void self_collision(const Cloth& cloth, const std::string& place) {
@@ -282,6 +288,11 @@ class Together {
 
 }  // namespace
 
+// What a line of particles on the border stands for, of what an inner one does.
+static double border_share(int line, int lines) {
+  return line == 0 || line == lines - 1 ? 0.5 : 1;
+}
+
 void check_together(const Scene& scene, Check& result) {
   if (!result.full()) Together(scene, result).run();
 }
@@ -311,7 +322,20 @@ double particle_mass(const Cloth& cloth, int i, int j) {
     return cloth.masses[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.nx) +
                         static_cast<std::size_t>(i)];
   if (cloth.particle_mass > 0) return cloth.particle_mass;
-  return cloth.density * text::length(text::cross(grid.u, grid.v)) / grid.nx / grid.ny;
+  const double mass = cloth.density * text::length(text::cross(grid.u, grid.v));
+  if (!lumps_by_area(cloth)) return mass / grid.nx / grid.ny;
+  return mass / ((grid.nx - 1.0) * (grid.ny - 1.0)) * text::border_share(i, grid.nx) *
+         text::border_share(j, grid.ny);
+}
+
+bool lumps_by_area(const Cloth& cloth) {
+  if (cloth.lumping != Lumping::automatic) return cloth.lumping == Lumping::area;
+  return cloth.masses.empty() && cloth.particle_mass == 0;
+}
+
+double width_share(const Cloth& cloth, int i, int j, int di, int dj) {
+  if ((di != 0 && dj != 0) || !lumps_by_area(cloth)) return 1;
+  return dj == 0 ? text::border_share(j, cloth.grid.ny) : text::border_share(i, cloth.grid.nx);
 }
 
 }  // namespace weft

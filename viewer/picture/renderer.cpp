@@ -134,7 +134,8 @@ void Renderer::update_meshes(const Snapshot& snapshot, const Setting& setting, c
   }
   const Cloth& first = snapshot.scene->cloths.front();
   const float weight =
-      static_cast<float>(particle_mass(first, 0, 0)) * length(to_float(snapshot.scene->gravity));
+      static_cast<float>(particle_mass(first, first.grid.nx / 2, first.grid.ny / 2)) *
+      length(to_float(snapshot.scene->gravity));
   // Forces are drawn of one iteration, of which a substep may add several.
   const Solver& solver = snapshot.scene->solver;
   const auto repeats = static_cast<float>(solver.iterate_springs ? solver.iterations : 1);

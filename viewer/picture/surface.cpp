@@ -194,7 +194,9 @@ void add_forces(const ClothCopy& cloth, const Cloth& description, int step, Clot
         const float dy = cloth.y[b] - cloth.y[a];
         const float dz = cloth.z[b] - cloth.z[a];
         const float now = std::sqrt(dx * dx + dy * dy + dz * dz);
-        const float s = now > 0 ? k * (now - rest) / now : 0;
+        const int columns = cloth.columns, i = int(a) % columns, j = int(a) / columns;
+        const auto share = static_cast<float>(width_share(description, i, j, o.di, o.dj));
+        const float s = now > 0 ? share * k * (now - rest) / now : 0;
         fx[a] += s * dx, fy[a] += s * dy, fz[a] += s * dz;
         fx[b] -= s * dx, fy[b] -= s * dy, fz[b] -= s * dz;
       });

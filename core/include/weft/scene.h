@@ -94,15 +94,23 @@ enum class Tears { split, holes, particles };
 // Diagonals of a level: both, or (i+n, j+n) alone (seed 000).
 enum class LevelDiagonals { both, one };
 
+// What particles and constraints at the border of a sheet count for. `area`: a particle weighs the area
+// that it stands for, a quarter of an inner one's in a corner and half of it elsewhere on the border, and
+// what lies along the border acts on half a spacing of cloth, with half the stiffness. The lattice is then
+// within the square of its spacing of the sheet; `equal`, all alike, is so in first order only. `automatic`:
+// `area` where density gives the masses, `equal` where they are given per particle.
+enum class Lumping { automatic, area, equal };
+
 struct Cloth {
   Grid grid;
-  double density = 0.3;      // kg/m²; total mass density*|u x v|, shared equally by all particles
-  double particle_mass = 0;  // kg; > 0 replaces density
-  std::vector<double> masses;        // kg, nx*ny in row-major order; not empty: replaces both
-  Kinds stiffness{1000, 1000, 200};  // N/m; 0 = none of that kind
-  Kinds spring_damping;              // N·s/m along the spring (method spring_friction)
-  int level = 0;                     // n >= 1: constraints to distance 1..n along rows, columns and
-                                     // diagonals, all with stiffness.structural (seed 000)
+  double density = 0.3;        // kg/m²; total mass density*|u x v|, shared as `lumping` says
+  double particle_mass = 0;    // kg; > 0 replaces density
+  std::vector<double> masses;  // kg, nx*ny in row-major order; not empty: replaces both
+  Lumping lumping = Lumping::automatic;  // of masses by density, and of stiffness
+  Kinds stiffness{1000, 1000, 200};      // N/m; 0 = none of that kind
+  Kinds spring_damping;                  // N·s/m along the spring (method spring_friction)
+  int level = 0;                         // n >= 1: constraints to distance 1..n along rows, columns and
+                                         // diagonals, all with stiffness.structural (seed 000)
   LevelDiagonals level_diagonals = LevelDiagonals::both;  // where level is not 0
   // 0 … 1: relative drop of stiffness from first row to last (seed 003).
   double stiffness_gradient = 0;
@@ -273,7 +281,14 @@ inline int particle_number(const Grid& grid, int i, int j) {
   return j * grid.nx + i;
 }
 
-// Mass of particle (i,j) [kg] by the cloth's masses, particle_mass or density.
+// Mass of particle (i,j) [kg] by the cloth's masses, particle_mass, or density and lumping.
 double particle_mass(const Cloth& cloth, int i, int j);
+
+// Whether a cloth's border counts half (Lumping::area, be it by Lumping::automatic).
+bool lumps_by_area(const Cloth& cloth);
+
+// The share of the cloth's stiffness that a constraint from particle (i,j) to (i+di,j+dj) has: the width
+// of cloth it stands for, of the spacing. 1/2 along a border of a cloth that lumps by area, else 1.
+double width_share(const Cloth& cloth, int i, int j, int di, int dj);
 
 }  // namespace weft

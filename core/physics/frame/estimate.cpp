@@ -59,8 +59,11 @@ Cloth cutting(const Cloth& from) {
     cloth.grid.u[k] = grid.u[k] * (cloth.grid.nx - 1) / (grid.nx - 1);
     cloth.grid.v[k] = grid.v[k] * (cloth.grid.ny - 1) / (grid.ny - 1);
   }
-  cloth.particle_mass = particle_mass(from, 0, 0);
-  for (const double mass : from.masses) cloth.particle_mass = std::min(cloth.particle_mass, mass);
+  cloth.lumping = lumps_by_area(from) ? Lumping::area : Lumping::equal;
+  if (from.particle_mass == 0 && from.masses.empty() && lumps_by_area(from))
+    cloth.density = from.density;
+  else
+    cloth.particle_mass = lightest_mass(from);
   cloth.stiffness = from.stiffness;
   cloth.spring_damping = from.spring_damping;
   cloth.level = from.level;

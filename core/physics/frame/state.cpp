@@ -36,11 +36,9 @@ std::string steady_jacobi(Scene& scene) {
                                                          : scene.time.frame / scene.time.substeps;
   bool stiff = false;
   for (const Cloth& c : scene.cloths) {
-    double lightest = particle_mass(c, 0, 0), heaviest = lightest;
-    for (const double mass : c.masses) {
-      lightest = std::min(lightest, mass);
-      heaviest = std::max(heaviest, mass);
-    }
+    const double lightest = lightest_mass(c);
+    double heaviest = lightest;
+    for (const double mass : c.masses) heaviest = std::max(heaviest, mass);
     if (heaviest > kAlikeMasses * lightest) {
       scene.solver.sweep = Sweep::gauss_seidel;
       return "Jacobi sweeps do not converge for masses this unequal; gauss_seidel runs in their "

@@ -1,5 +1,5 @@
-// Gauss–Seidel over rows whose particles all have one inverse mass, no constraint of which is torn: every
-// row without a pin. Half of the equation is then known beforehand, and what is left waits more than it
+// Gauss–Seidel over rows whose inner particles all have one inverse mass, no constraint of which is torn:
+// every row without a pin. Half of the equation is then known beforehand, and what is left waits more than it
 // computes: these kernels see to it that little has to be waited for.
 #pragma once
 
@@ -15,9 +15,15 @@ namespace weft::WEFT_KERNELS {
 //
 //   w Δλ/|e| = κ (1 - l/|e|),  κ = w/(2w + α̃)         or, with multipliers,
 //   Δλ = (|e| - l + α̃ λ)/(2w + α̃)
+//
+// Particles at the sides may weigh half. Along the columns there, compliance is twice as much, too, and all
+// is as elsewhere. Across them, Δλ has the share (2w + α̃)/(3w + α̃), or (2w + α̃)/(4w + α̃) where both ends
+// lie at the sides, and those ends move by twice as much.
 struct Alike {
   float k, kl;  // κ and κ l [m]
   float rest, compliance, inverse_inertia, w;
+  bool sides;  // whether there are such ends
+  float one_side, both_sides;
 };
 
 WEFT_INLINE float compliance_at(const ProjectRows& p, int j) {
@@ -27,8 +33,16 @@ WEFT_INLINE float compliance_at(const ProjectRows& p, int j) {
 WEFT_INLINE Alike alike(const ProjectRows& p, int j, float w) {
   const float compliance = compliance_at(p, j);
   const float inertia = 2 * w * p.weight + compliance;
-  const float k = w / inertia;
-  return {k, k * p.rest, p.rest, compliance, 1 / inertia, w};
+  const float k = w / inertia, more = w * p.weight;
+  return {k,
+          k * p.rest,
+          p.rest,
+          compliance,
+          1 / inertia,
+          w,
+          p.side_by_side,
+          inertia / (inertia + more),
+          inertia / (inertia + 2 * more)};
 }
 
 // The scale of e that moves the near ends of a block of constraints by e times it.
@@ -40,6 +54,21 @@ WEFT_INLINE Wide scale_alike(const Alike& c, Wide3 e, Wide& lambda) {
   const Wide change = fma(wide(c.compliance), lambda, violation) * c.inverse_inertia;
   lambda = lambda - change;
   return (change * c.w) * reciprocal;
+}
+
+// The scales that move the near and the far end, where some lie at the sides; takes back of lambda what is
+// too much.
+struct EndScales {
+  Wide near, far;
+};
+template <bool kMultipliers>
+WEFT_INLINE EndScales at_sides(const Alike& c, WideInt near, WideInt far, Wide scale, Wide before,
+                               Wide& lambda) {
+  const Wide share =
+      select(near & far, wide(c.both_sides), select(near | far, wide(c.one_side), wide(1)));
+  if constexpr (kMultipliers) lambda = fma(lambda - before, share, before);
+  const Wide s = scale * share;
+  return {select(near, s + s, s), select(far, s + s, s)};
 }
 
 // The lanes of a from lane N on, followed by the first N of b: of every group of kGroup lanes.
@@ -111,6 +140,7 @@ class BetweenRowsAlike {
         c_(c),
         near_(projected_row(p, j, near)),
         far_(projected_row(p, j + p.dj, far)),
+        leaning_left_(p.near > 0),
         lambdas_(p.lambda + std::ptrdiff_t(j) * p.stride) {}
 
   WEFT_INLINE void run() {
@@ -141,9 +171,15 @@ class BetweenRowsAlike {
     if constexpr (kMultipliers) lambda = load(lambdas_ + a);
     const Wide before = lambda;
     Wide scale = scale_alike<kMultipliers>(c_, e, lambda);
+    EndScales ends{scale, scale};
+    if (c_.sides && (a == 0 || a + kLanes >= count_)) {
+      const WideInt first = lane_numbers() == -a, last = lane_numbers() == count_ - 1 - a;
+      ends = at_sides<kMultipliers>(c_, leaning_left_ ? last : first, leaning_left_ ? first : last,
+                                    scale, before, lambda);
+    }
     if (a + kLanes > count_) {
       const WideInt active = lanes_below(count_ - a);
-      scale = select(active, scale, Wide{});
+      ends = {select(active, ends.near, Wide{}), select(active, ends.far, Wide{})};
       lambda = select(active, lambda, before);
     }
     if constexpr (kMultipliers) store(lambdas_ + a, lambda);
@@ -151,20 +187,21 @@ class BetweenRowsAlike {
     Wide past_scale;
     if constexpr (kShifted) {
       past_e = edges_.next(e);
-      past_scale = scales_.next(scale);
+      past_scale = scales_.next(kNear ? ends.near : ends.far);
     }
     float* const near = movable<kDisplaced>(near_) + a;
     float* const far = movable<kDisplaced>(far_) + a;
     const std::ptrdiff_t plane = near_.plane;
     store_planes(near, plane,
-                 fma(kNear ? past_e : e, kNear ? past_scale : scale, load_planes(near, plane)));
+                 fma(kNear ? past_e : e, kNear ? past_scale : ends.near, load_planes(near, plane)));
     store_planes(far, plane,
-                 fnma(kFar ? past_e : e, kFar ? past_scale : scale, load_planes(far, plane)));
+                 fnma(kFar ? past_e : e, kFar ? past_scale : ends.far, load_planes(far, plane)));
   }
 
   const int count_;
   const Alike& c_;
   const ProjectedRow near_, far_;
+  const bool leaning_left_;  // the far end lies to the left
   float* const lambdas_;
   Wide3 next_;  // positions of the shifted ends' next block
   Delay3<1> edges_;
@@ -199,10 +236,12 @@ class AlongRowAlike {
   static constexpr int kGroup = kRows ? kLanes / 2 : kLanes;  // ends of one row
   static constexpr bool kMultipliers = R == Rule::multipliers, kDisplaced = displaced(R);
 
-  // Two blocks, parted: where their first colour has put them, and by how much it has moved them.
+  // Two blocks, parted: where their first colour has put them, by how much it has moved near ends, and how
+  // many times as much the far ones, the other way.
   struct Blocks {
     Parting<N> at[3];
     Wide change[3];
+    Wide ratio;
     Parting<N> lambda;
   };
 
@@ -227,10 +266,18 @@ class AlongRowAlike {
     return {load(lambdas_ + a), load(lambdas_ + a + apart_)};
   }
 
-  // What scales the edges e of one colour. In its row, the constraint of lane 0 has number a.
-  WEFT_INLINE Wide scale(Wide3 e, Wide& lambda, int a) const {
+  // What scales the edges e of one colour for the near ends, and how many times as much for the far ones. In
+  // its row, the constraint of lane 0 has number a.
+  WEFT_INLINE Wide scale(Wide3 e, Wide& lambda, int a, Wide& ratio) const {
     const Wide before = lambda;
     Wide s = scale_alike<kMultipliers>(c_, e, lambda);
+    ratio = wide(1);
+    if (c_.sides && (a == 0 || a + kStep >= count_)) {
+      const WideInt place = Parting<N>::place(lane_numbers() % kGroup);
+      const WideInt first = place == -a, last = place == count_ - 1 - a;
+      s = at_sides<kMultipliers>(c_, first, last, s, before, lambda).near;
+      ratio = select(first & ~last, wide(0.5f), select(last & ~first, wide(2), ratio));
+    }
     if (a + kStep > count_) {
       const WideInt active = Parting<N>::place(lane_numbers() % kGroup) < count_ - a;
       s = select(active, s, Wide{});
@@ -248,11 +295,11 @@ class AlongRowAlike {
     if constexpr (kMultipliers) b.lambda = lambdas(a);
     Wide e[3];
     for (int k = 0; k < 3; ++k) e[k] = b.at[k].far - b.at[k].near;
-    const Wide s = scale({e[0], e[1], e[2]}, b.lambda.near, a);
+    const Wide s = scale({e[0], e[1], e[2]}, b.lambda.near, a, b.ratio);
     for (int k = 0; k < 3; ++k) {
       b.change[k] = e[k] * s;
       b.at[k].near = b.at[k].near + b.change[k];
-      b.at[k].far = b.at[k].far - b.change[k];
+      b.at[k].far = fnma(b.change[k], b.ratio, b.at[k].far);
     }
     return b;
   }
@@ -263,13 +310,15 @@ class AlongRowAlike {
     for (int k = 0; k < 3; ++k)
       e[k] = following<N, kGroup>(b.at[k].near, after.at[k].near) - b.at[k].far;
     Parting<N> lambda = b.lambda;
-    const Wide s = scale({e[0], e[1], e[2]}, lambda.far, a + N);
+    Wide ratio;
+    const Wide s = scale({e[0], e[1], e[2]}, lambda.far, a + N, ratio);
     for (int k = 0; k < 3; ++k) {
-      const Wide change = e[k] * s, back = preceding<N, kGroup>(carried_[k], change);
-      carried_[k] = change;
+      const Wide change = e[k] * s, far = change * ratio;
+      const Wide back = preceding<N, kGroup>(carried_[k], far);
+      carried_[k] = far;
       Parting<N> moved;
       moved.near = (kDisplaced ? b.change[k] : b.at[k].near) - back;
-      moved.far = kDisplaced ? change - b.change[k] : b.at[k].far + change;
+      moved.far = kDisplaced ? fnma(b.change[k], b.ratio, change) : b.at[k].far + change;
       float* const at = movable<kDisplaced>(row_) + k * row_.plane + a;
       Wide first = moved.first(), second = moved.second();
       if constexpr (kDisplaced) {
@@ -306,10 +355,14 @@ WEFT_INLINE void along_row_alike(const ProjectRows& p, int j, int colour, const 
     const Wide3 e = position<displaced(R)>(far, a) - position<displaced(R)>(near, a);
     Wide lambda{}, before{};
     if constexpr (kMultipliers) lambda = before = load(lambdas + a);
-    const Wide scale = select(active, scale_alike<kMultipliers>(c, e, lambda), Wide{});
+    const Wide scale = scale_alike<kMultipliers>(c, e, lambda);
+    EndScales ends{scale, scale};
+    if (c.sides)
+      ends = at_sides<kMultipliers>(c, lane_numbers() == -a, lane_numbers() == p.count - 1 - a,
+                                    scale, before, lambda);
     if constexpr (kMultipliers) store(lambdas + a, select(active, lambda, before));
-    const Wide3 change = e * scale;
-    shift<displaced(R)>(near, a, change - delay.next(change));
+    const Wide3 change = e * select(active, ends.near, Wide{});
+    shift<displaced(R)>(near, a, change - delay.next(e * select(active, ends.far, Wide{})));
   }
 }
 

@@ -74,7 +74,7 @@ void bend_row(const BendRow& given) {
     }
     if (r.rows > 2) {
       const Wide3 all = load3(r.x[0], i) - load3(r.x[1], i) * wide(2) + load3(r.x[2], i);
-      const Wide3 d = of_those_left(all * wide(r.k.across), r.across, i);
+      const Wide3 d = of_those_left(all * (load(r.width + i) * r.k.across), r.across, i);
       own = own - d;
       next = next + d * wide(2);
       push(r, 2, i, Wide3{} - d);
@@ -111,6 +111,7 @@ WEFT_INLINE void bend_block(const BendLine& p, int lane) {
     return Row3{s, s + kBendLines, s + 2 * kBendLines};
   };
   const int count = p.particles - 2;
+  const Wide compliance = load(p.compliance + lane);
   Wide r1{}, r2{}, u1{};  // reciprocal pivots of m-1 and m-2, subdiagonal of m-1
   Wide3 g1{}, g2{};
   Wide3 xa = position(0), xb = position(1);
@@ -122,7 +123,7 @@ WEFT_INLINE void bend_block(const BendLine& p, int lane) {
     const Wide two = wa * r2;
     const Wide u = (wa + wb) * -2.0f - two * u1;
     const Wide one = u * r1;
-    const Wide pivot = (wa + wb * 4.0f + wc + p.compliance) - (u * one + wa * two);
+    const Wide pivot = (wa + wb * 4.0f + wc + compliance) - (u * one + wa * two);
     // One that is torn has no multiplier, and couples with none.
     Wide r = select(pivot > 0.0f, 1.0f / pivot, Wide{});
     if (p.left) r = r * load(p.left + lane + m * p.step);

@@ -26,7 +26,8 @@ struct BendRow {
   // Terms that are left of row j, 1 or 0; null: all.
   const float *along, *across, *twist;
   BendStiffness k;
-  float dt;  // s, over what the force takes of the velocity that follows
+  const float* width;  // that each column stands for, of an inner one's
+  float dt;            // s, over what the force takes of the velocity that follows
 };
 
 // kBendLines lines of particles, `step` floats from one to the next.
@@ -35,9 +36,9 @@ struct BendLine {
   const float* w;
   std::ptrdiff_t step;
   int particles;
-  Row3 v;             // velocities, laid out as x; gain corrections times inverse_dt
-  float inverse_dt;   // 1/s; 0 = velocities are not touched
-  float compliance;   // 1/(k dt²) [1/kg]
+  Row3 v;                   // velocities, laid out as x; gain corrections times inverse_dt
+  float inverse_dt;         // 1/s; 0 = velocities are not touched
+  const float* compliance;  // 1/(k dt²) of each line [1/kg]
   const float* left;  // 1 for second differences that are left, else 0, laid out as w; null: all
   float* scratch;     // particles * kBendScratch floats
 };

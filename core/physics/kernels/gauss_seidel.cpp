@@ -11,18 +11,24 @@
 namespace weft::WEFT_KERNELS {
 namespace {
 
-// The correction of constraints of row j by unit inverse mass, zero outside `active`.
+WEFT_INLINE Wide compliance_of(const ProjectRows& p, int j, int a) {
+  if (!p.compliance) return Wide{};
+  return p.inverse_width ? load(p.inverse_width + a) * p.compliance[j] : wide(p.compliance[j]);
+}
+
+// The correction of constraints a … of row j by unit inverse mass, zero outside `active`.
 template <Rule R>
-WEFT_INLINE Wide3 solve(const ProjectRows& p, Wide3 e, Wide wa, Wide wb, int j, Wide& lambda,
+WEFT_INLINE Wide3 solve(const ProjectRows& p, Wide3 e, Wide wa, Wide wb, int j, int a, Wide& lambda,
                         WideInt active) {
   const Wide length = sqrt(squared_length(e));
   Wide violation = length - p.rest, inertia = (wa + wb) * p.weight;
+  const Wide compliance = compliance_of(p, j, a);
   if constexpr (displaced(R))
-    inertia = inertia + p.compliance[j];
+    inertia = inertia + compliance;
   else
     active = active & (inertia > 0.0f);  // two pinned ends have nothing to move
   if constexpr (R == Rule::limit) active = active & (violation > 0.0f);
-  if constexpr (R == Rule::multipliers) violation = fma(wide(p.compliance[j]), lambda, violation);
+  if constexpr (R == Rule::multipliers) violation = fma(compliance, lambda, violation);
   const Wide scale = select(active, violation / (inertia * length), Wide{});
   if constexpr (R == Rule::multipliers) lambda = fnma(scale, length, lambda);
   return e * scale;
@@ -46,7 +52,7 @@ WEFT_INLINE Wide3 solve_block(const ProjectRows& p, const ProjectedRow& near,
     at = p.lambda + std::ptrdiff_t(j) * p.stride + a;
     lambda = load(at);
   }
-  const Wide3 c = solve<R>(p, e, wa, wb, j, lambda, active);
+  const Wide3 c = solve<R>(p, e, wa, wb, j, a, lambda, active);
   if constexpr (R == Rule::multipliers) store(at, lambda);
   return c;
 }

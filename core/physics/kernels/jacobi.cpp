@@ -20,18 +20,38 @@ struct JacobiLaw {
   template <PlainStencil F>
   WEFT_INLINE static Wide scale(const Rows& r, const Block& b, Wide reciprocal, Wide) {
     const Constants& c = b.constants[F];
-    if constexpr (kAlike) return fnma(wide(c.kl), reciprocal, wide(c.k));
+    if constexpr (kAlike) {
+      const Wide inner = fnma(wide(c.kl), reciprocal, wide(c.k));
+      // Along columns at the sides inverse masses and compliance are twice as much.
+      if constexpr (along_column(F)) return inner * Block::of_columns(r.width, r, b);
+      return at_sides<F>(r, b, inner);
+    }
     constexpr bool kNextNear = F == kAntidiagonal, kNextFar = F == kRight || F == kDiagonal;
     const float* const far = F == kRight || F == kRight2 ? b.x : F == kDown2 ? b.below2 : b.below;
     const Wide wa = load(r.w + (b.x - r.x.x) + (kNextNear ? 1 : 0));
     const Wide wb = load(r.w + (far - r.x.x) + (kNextFar ? 1 : F == kRight2 ? 2 : 0));
-    const Wide inertia = (wa + wb) * r.weight + c.compliance;
+    Wide compliance = wide(c.compliance);
+    if constexpr (along_column(F))
+      compliance = compliance * Block::of_columns(r.inverse_width, r, b);
+    const Wide inertia = (wa + wb) * r.weight + compliance;
     // Two pinned ends of a rigid constraint have nothing to move.
     return select(inertia > 0.0f, fnma(wide(r.rest[F]), reciprocal, wide(1)) / inertia, Wide{});
   }
+  // The first and the last constraint of a row have an end at a side.
+  template <PlainStencil F>
+  WEFT_INLINE static Wide at_sides(const Rows& r, const Block& b, Wide inner) {
+    const Constants& c = b.constants[F];
+    const int last = b.left - (F == kRight2 ? 3 : 2);
+    if (c.one_side == 1 || (b.left != r.columns && last >= kLanes)) return inner;
+    const WideInt first_lane = lane_numbers() == b.left - r.columns;
+    const WideInt last_lane = lane_numbers() == last;
+    return inner * select(first_lane & last_lane, wide(c.both_sides),
+                          select(first_lane | last_lane, wide(c.one_side), wide(1)));
+  }
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 sum) {
     const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
-    Wide3 change = sum * (kAlike ? wide(r.alike) : load(r.w + lane));
+    Wide3 change =
+        sum * (kAlike ? Block::of_columns(r.inverse_width, r, b) * r.alike : load(r.w + lane));
     if constexpr (kAlike) change = select(lanes_below(b.left), change, Wide3{});
     store_planes(b.x, plane, load_planes(b.x, plane) + change);
     if constexpr (kGains) {
@@ -51,7 +71,8 @@ void jacobi_rows_of(const physics::JacobiRows& r) {
 template <bool Multipliers>
 WEFT_INLINE Wide3 correction(const ProjectRows& p, const ProjectedRow& near,
                              const ProjectedRow& far, int j, int a) {
-  const Wide compliance = wide(p.compliance ? p.compliance[j] : 0);
+  Wide compliance = wide(p.compliance ? p.compliance[j] : 0);
+  if (p.inverse_width) compliance = compliance * load(p.inverse_width + a);
   const Wide3 e = position<false>(far, a) - position<false>(near, a);
   const Wide length = sqrt(squared_length(e));
   const Wide inertia = (load(near.w + a) + load(far.w + a)) * p.weight + compliance;

@@ -57,6 +57,9 @@ struct PlainRows {
   int columns, stride;
   Row3 x, v;       // row 0
   const float* w;  // inverse mass of row 0 [1/kg]
+  // Width of cloth that each column stands for, of an inner one's, and its reciprocal: constraints along a
+  // column have the one of their stiffness, particles the other of an inner one's inverse mass.
+  const float *width, *inverse_width;
   // Of row 0 of each stencil: -1 in the lanes of constraints, 0 in those of torn ones. Null: cannot
   // tear.
   const std::int32_t* alive[kPlainStencils];
@@ -70,7 +73,9 @@ struct SpringRows : PlainRows {
   // Six for each row: (1,0) (0,1) (1,1) (-1,1) (2,0) (0,2); zero where row j+dj does not exist.
   const SpringConstants* constants;
   bool damped;  // whether springs have damping
-  float alike;  // inverse mass of every particle of rows begin … end-1, 0 where they differ [1/kg]
+  // Inverse mass of the inner particles of rows begin … end-1; 0: there is more than columns to their
+  // masses [1/kg].
+  float alike;
   // Of every row: set to 1 where a spring that is not torn is past its tear length at the start; null:
   // nobody asks.
   std::uint8_t* overlong;
@@ -81,11 +86,12 @@ struct SpringRows : PlainRows {
 struct JacobiConstants {
   float compliance = 0;  // 1/(k dt²) [1/kg], infinite where there is no constraint
   float k = 0, kl = 0;   // κ [kg] and κ times rest length [kg·m] between particles of one mass
+  float one_side = 1, both_sides = 1;  // factors on κ where ends lie in columns of half the width
 };
 
 // A Jacobi sweep: the corrections of all constraints, added up.
 struct JacobiRows : PlainRows {
-  float alike;  // inverse mass of every particle of rows begin … end+1, 0 where they differ [1/kg]
+  float alike;                       // as of springs, of rows begin … end+1
   const JacobiConstants* constants;  // six for each row, as the springs
   float rest[kPlainStencils];        // m
   float weight;                      // of w_a + w_b: 1/relaxation
@@ -106,6 +112,7 @@ struct StencilRow {
   float* scratch;  // 3 rows of `stride` floats, zero in the 16 lanes before each (same_row only)
   int stride;
   SpringConstants spring;
+  const float* factor;  // on each constraint's spring; null: all 1
   std::int32_t*
       alive;  // -1 in the lanes of constraints, 0 in those of torn ones; null: cannot tear
 };
@@ -116,12 +123,17 @@ struct StencilRow {
 struct ProjectRows {
   int rows;
   int stride;
-  Row3 x, v;           // row 0; v is used by the strain limit alone
-  Row3 u;              // corrections of row 0, which compliant constraints change in place of x
-  const float* w;      // inverse mass of row 0 [1/kg]
-  const float* row_w;  // of all particles of each row, 0 where they differ; or null
+  Row3 x, v;       // row 0; v is used by the strain limit alone
+  Row3 u;          // corrections of row 0, which compliant constraints change in place of x
+  const float* w;  // inverse mass of row 0 [1/kg]
+  // Of the inner particles of each row, 0 where there is more than columns to their masses; or null.
+  const float* row_w;
   int count;  // constraints in a row: a joins lane a+near of row j and lane a+far of row j+dj
   int near, far, dj;
+  // Whether ends at the sides weigh half. Where constraints lie along columns, those at the sides have more
+  // compliance instead: factors on it, or null.
+  bool side_by_side;
+  const float* inverse_width;
   const std::int32_t* lanes;  // along rows: -1 in the lanes of a colour, 0 elsewhere; both colours
   float rest;                 // m; the strain limit's greatest length
   float weight;               // of w_a + w_b (1/(2 positional_k), 1/Jacobi's relaxation)
@@ -170,7 +182,8 @@ struct EnergySum {
 struct FarRows {
   int count;
   ConstRow3 near, far;
-  const std::int32_t* alive;  // -1 or 0 each; null: all
+  const std::int32_t* alive;      // -1 or 0 each; null: all
+  const float* factor = nullptr;  // on the stiffness of each; null: all 1
 };
 
 // What such constraints hold: Σ ½ κ (||e| - l| + slack)², κ the lesser of their stiffness and a share

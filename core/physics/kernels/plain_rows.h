@@ -27,6 +27,9 @@ namespace weft::WEFT_KERNELS {
 
 enum PlainStencil { kRight, kDown, kDiagonal, kAntidiagonal, kRight2, kDown2, kStencils };
 static_assert(kStencils == physics::kPlainStencils);
+constexpr bool along_column(PlainStencil f) {
+  return f == kDown || f == kDown2;
+}
 
 // A block of lanes: its first lane in component x of the positions, and of the same column one and two
 // rows below; what earlier rows do to it; the constants of its row's first stencil; and how many columns
@@ -50,6 +53,10 @@ struct Block {
             s.carry,
             s.constants + std::ptrdiff_t(j) * kStencils,
             s.columns};
+  }
+  // Of the columns of rows like these.
+  WEFT_INLINE static Wide of_columns(const float* values, const Rows& s, const Block& b) {
+    return load(values + (s.columns - b.left));
   }
   // The block to the right.
   WEFT_INLINE Block next() const {

@@ -90,7 +90,8 @@ double stretch_energy(const physics::StretchRow& r) {
       const Wide3 e = load3(r.far, a) - load3(r.near, a);
       const Wide off = abs(sqrt(dot(e, e)) - r.rest) + r.slack;
       const Wide rigid = r.inverse_dt2 / w;
-      const Wide k = select(there, min(rigid * r.share, wide(r.stiffness)), Wide{});
+      const Wide stiffness = r.factor ? load(r.factor + a) * r.stiffness : wide(r.stiffness);
+      const Wide k = select(there, min(rigid * r.share, stiffness), Wide{});
       const Wide over = max(off - r.give, Wide{});
       sum[b] = sum[b] + twice(k) * twice(off) * twice(off) +
                twice(select(there, rigid, Wide{})) * twice(over) * twice(over);

@@ -21,11 +21,12 @@ struct SpringLaw {
   static constexpr bool kRates = kDamped, kTorn = kTear != Tear::never,
                         kWatched = kTear == Tear::watched;
   template <PlainStencil F>
-  WEFT_INLINE static Wide scale(const Rows&, const Block& b, Wide reciprocal, Wide rate) {
+  WEFT_INLINE static Wide scale(const Rows& r, const Block& b, Wide reciprocal, Wide rate) {
     const SpringConstants& c = b.constants[F];
-    const Wide spring = fnma(wide(c.kl), reciprocal, wide(c.k));
-    if constexpr (!kDamped) return spring;
-    return fma(c.damping * rate, reciprocal * reciprocal, spring);
+    Wide spring = fnma(wide(c.kl), reciprocal, wide(c.k));
+    if constexpr (kDamped) spring = fma(c.damping * rate, reciprocal * reciprocal, spring);
+    if constexpr (along_column(F)) spring = spring * Block::of_columns(r.width, r, b);
+    return spring;
   }
   template <PlainStencil F>
   WEFT_INLINE static WideInt too_long(const Rows&, const Block& b, Wide reciprocal) {
@@ -37,7 +38,7 @@ struct SpringLaw {
     const Wide3 before = load_planes(r.v.x + lane, plane);
     Wide3 velocity;
     if constexpr (kAlike) {
-      velocity = moved(before, r.alike, force, r.advance);
+      velocity = moved(before, r.alike, Block::of_columns(r.inverse_width, r, b), force, r.advance);
       velocity = select(lanes_below(b.left), velocity, Wide3{});
     } else {
       velocity = moved(before, load(r.w + lane), force, r.advance);
@@ -70,6 +71,7 @@ WEFT_INLINE void add_stencil(const StencilRow& r) {
       const Wide3 dv = load3(r.v_far, a + r.far) - load3(r.v, a + r.near);
       scale = fma(c.damping * dot(e, dv), reciprocal * reciprocal, scale);
     }
+    if (r.factor) scale = scale * load(r.factor + a);
     WideInt active = lanes_below(r.count - a);
     if constexpr (kTorn) active = active & lanes_at(r.alive + a);
     const Wide3 f = select(active, e * scale, Wide3{});

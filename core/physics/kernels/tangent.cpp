@@ -14,9 +14,9 @@ void tangent(const physics::TangentRow& given) {
     const Wide3 u = load3(r.u_near, a) - load3(r.u_far, a);
     const Wide squared = 1e-30f + e.x * e.x + e.y * e.y + e.z * e.z;
     const Wide along = e.x * u.x + e.y * u.y + e.z * u.z;
-    const Wide side =
-        r.sideways ? r.stiffness * max(Wide{}, 1.0f - r.rest / sqrt(squared)) : Wide{};
-    const Wide share = (r.stiffness - side) * along / squared;
+    const Wide stiffness = r.factor ? load(r.factor + a) * r.stiffness : wide(r.stiffness);
+    const Wide side = r.sideways ? stiffness * max(Wide{}, 1.0f - r.rest / sqrt(squared)) : Wide{};
+    const Wide share = (stiffness - side) * along / squared;
     const Wide3 pull = select(there, e * share + u * side, Wide3{});
     store3(r.pull_far, a, load3(r.pull_far, a) - pull);
     store3(r.pull_near, a, load3(r.pull_near, a) + pull);

@@ -12,9 +12,13 @@ Particles::Particles(const std::vector<int>& counts, bool keep_previous)
       x(rows, stride),
       v(rows, stride),
       inverse_mass(static_cast<std::size_t>(rows) * stride),
+      column_width(static_cast<std::size_t>(stride)),
+      inverse_width(static_cast<std::size_t>(stride)),
       row_inverse_mass(static_cast<std::size_t>(rows)) {
   for (std::size_t j = 0; j < counts.size(); ++j) first[j + 1] = first[j] + counts[j];
   if (keep_previous) previous = Rows(rows, stride);
+  std::fill_n(column_width.data(), column_width.size(), 1.0f);
+  std::fill_n(inverse_width.data(), inverse_width.size(), 1.0f);
 }
 
 Particles::Place Particles::place(int particle) const {
@@ -40,9 +44,11 @@ void Particles::set_inverse_mass(int j, int i, float value) {
 
 void Particles::weigh_row(int j) {
   const float* const row = w(j);
-  const bool uniform =
-      std::all_of(row, row + count(j), [&](float value) { return value == row[0]; });
-  row_inverse_mass[static_cast<std::size_t>(j)] = uniform ? row[0] : 0.0f;
+  const float inner = row[0] * column_width[0];
+  bool uniform = true;
+  for (int i = 0; i < count(j); ++i)
+    uniform &= row[i] == inner * inverse_width[static_cast<std::size_t>(i)];
+  row_inverse_mass[static_cast<std::size_t>(j)] = uniform ? inner : 0.0f;
 }
 
 EnergyRow energy_row(const Particles& particles, ConstRow3 x, ConstRow3 v, int j,

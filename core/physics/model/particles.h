@@ -26,8 +26,11 @@ struct Particles {
   // substep.
   Rows previous;
   AlignedArray<float> inverse_mass;  // 1/kg, 0 = held or padding
-  // 1/kg, of every particle of row j, or 0 where they differ: kernels for a row of equal masses are
-  // faster.
+  // Width of cloth that each column of the rows stands for, of an inner one's, and its reciprocal: 1/2
+  // and 2 at both sides of a grid that lumps by area, else 1.
+  AlignedArray<float> column_width, inverse_width;
+  // 1/kg, of the particles of row j but for their inverse_width, or 0 where they differ otherwise:
+  // kernels for a row of equal masses are faster.
   AlignedArray<float> row_inverse_mass;
 
   int count() const { return first.back(); }

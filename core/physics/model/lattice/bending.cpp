@@ -30,6 +30,8 @@ BendingStiffness bending_stiffness(const Cloth& cloth) {
   const Grid& g = cloth.grid;
   const double hu = spacing_u(g), hv = spacing_v(g), d = cloth.bending;
   const double area = hu * hv;
+  if (lumps_by_area(cloth))
+    return {d * area / (hu * hu * hu * hu), d * area / (hv * hv * hv * hv), 2 * d / area};
   return {d * area * (g.ny - 1) / g.ny / (hu * hu * hu * hu),
           d * area * (g.nx - 1) / g.nx / (hv * hv * hv * hv), 2 * d / area};
 }

@@ -8,8 +8,9 @@
 
 namespace weft::physics {
 
-// Stiffnesses of second differences along u (rows) and v (columns) and of cell twists [N/m]. Every
-// row and column of particles stands for an equal share of the sheet, as it does in mass.
+// Stiffnesses of second differences along u (rows) and v (columns) and of cell twists [N/m]. A row or
+// column of particles stands for as much of the sheet as it does in mass: where the cloth lumps by area,
+// differences along the border have width_share() of these.
 struct BendingStiffness {
   double along = 0, across = 0, twist = 0;
 };
@@ -45,8 +46,10 @@ void for_each_bend(const Cloth& cloth, Visit&& visit, const BendLinks* left = nu
       const auto there = [&](const AlignedArray<float> BendLinks::*terms) {
         return !left || (left->*terms)[at] != 0;
       };
-      if (i + 2 < columns && there(&BendLinks::along)) visit(k.along, 3, along, kDifference);
-      if (j + 2 < rows && there(&BendLinks::across)) visit(k.across, 3, across, kDifference);
+      if (i + 2 < columns && there(&BendLinks::along))
+        visit(k.along * width_share(cloth, i, j, 1, 0), 3, along, kDifference);
+      if (j + 2 < rows && there(&BendLinks::across))
+        visit(k.across * width_share(cloth, i, j, 0, 1), 3, across, kDifference);
       if (i + 1 < columns && j + 1 < rows && there(&BendLinks::twist))
         visit(k.twist, 4, cell, kTwist);
     }

@@ -48,6 +48,8 @@ class BendingForce final : public RowStage {
       r.w[n] = l.w(j + n);
     }
     r.k = stiffness_;
+    r.k.along *= float(width_share(parts_.cloth, 0, j, 1, 0));
+    r.width = l.column_width.data();
     const std::size_t at = std::size_t(j) * l.stride;
     r.along = left(parts_, &BendLinks::along, at);
     r.across = left(parts_, &BendLinks::across, at);
@@ -90,15 +92,30 @@ class BendingConstraints final : public WholeStage {
     const BendingStiffness k = bending_stiffness(parts_.cloth);
     const double h = s.dt * implicit_share(parts_.scene.solver);
     const auto compliance = [&](double stiffness) { return float(1 / (stiffness * h * h)); };
+    if (s.dt != dt_) set_compliance(compliance(k.along), compliance(k.across), s.dt);
     inverse_dt_ = velocity_gain(parts_.scene.solver, compliant_, s.dt);
     batches_.begin(threads);
-    along_rows(compliance(k.along));
-    along_columns(compliance(k.across));
+    along_rows();
+    along_columns();
     twist(compliance(k.twist));
   }
 
  private:
-  void along_rows(float compliance) {
+  // Of every row and every column, where those on the border count half.
+  void set_compliance(float along, float across, double dt) {
+    dt_ = dt;
+    const auto whole = [](int lines) { return std::size_t(lines + kBatchLines) & -kBatchLines; };
+    rows_ = AlignedArray<float>(whole(parts_.lattice.rows));
+    columns_ = AlignedArray<float>(whole(parts_.lattice.columns));
+    std::fill_n(rows_.data(), rows_.size(), along);
+    std::fill_n(columns_.data(), columns_.size(), across);
+    for (int j = 0; j < parts_.lattice.rows; ++j)
+      rows_[std::size_t(j)] /= float(width_share(parts_.cloth, 0, j, 1, 0));
+    for (int i = 0; i < parts_.lattice.columns; ++i)
+      columns_[std::size_t(i)] /= float(width_share(parts_.cloth, i, 0, 0, 1));
+  }
+
+  void along_rows() {
     const Lattice& l = parts_.lattice;
     batches_.share_out(batches_.row_groups(), kDifferenceNs * kBatchLines * l.columns,
                        [&](int group, BatchMemory& memory) {
@@ -116,7 +133,7 @@ class BendingConstraints final : public WholeStage {
                              p.w = batches_.masses(group) + first;
                              p.step = kBatchLines;
                              p.particles = l.columns;
-                             p.compliance = compliance;
+                             p.compliance = rows_.data() + group * kBatchLines + first;
                              if (turned) p.left = turned + first;
                              p.scratch = memory.scratch.data();
                              parts_.kernels.bend_line(p);
@@ -125,7 +142,7 @@ class BendingConstraints final : public WholeStage {
                        });
   }
 
-  void along_columns(float compliance) {
+  void along_columns() {
     Lattice& l = parts_.lattice;
     batches_.share_out((l.columns + kBendLines - 1) / kBendLines,
                        kDifferenceNs * kBendLines * l.rows, [&](int batch, BatchMemory& memory) {
@@ -138,7 +155,7 @@ class BendingConstraints final : public WholeStage {
                          p.w = l.w(0) + first;
                          p.step = l.stride;
                          p.particles = l.rows;
-                         p.compliance = compliance;
+                         p.compliance = columns_.data() + first;
                          p.left = left(parts_, &BendLinks::across, std::size_t(first));
                          p.scratch = memory.scratch.data();
                          parts_.kernels.bend_line(p);
@@ -170,9 +187,11 @@ class BendingConstraints final : public WholeStage {
 
   LatticeParts parts_;
   LineBatches batches_;
-  TurnedLinks<float> torn_;  // of the rows
-  bool compliant_;           // velocities gain the corrections as computed
-  float inverse_dt_ = 0;     // 1/s, or 0
+  TurnedLinks<float> torn_;             // of the rows
+  bool compliant_;                      // velocities gain the corrections as computed
+  float inverse_dt_ = 0;                // 1/s, or 0
+  double dt_ = 0;                       // s, of the compliances
+  AlignedArray<float> rows_, columns_;  // 1/kg, of the second differences along each
 };
 
 }  // namespace

@@ -52,10 +52,12 @@ void accelerations(const Vec3& gravity, const Cloth& cloth, const std::vector<St
   a.assign(std::size_t(l.columns) * l.rows, Vec3{});
   for (const Stencil& f : stencils)
     for (int j = 0; j + f.dj < l.rows; ++j) {
-      const double k = f.stiffness * gradient_factor(cloth, j, f.dj);
+      const double row = f.stiffness * row_factor(cloth, f, j);
+      const float* const factors = column_factors(l, f);
       for (int n = 0; n < f.per_row(l.columns); ++n) {
         if (!f.alive(j, n)) continue;
         const int near = n + f.near(), far = n + f.far();
+        const double k = factors ? row * factors[n] : row;
         const auto difference = [&](const Rows& rows) {
           Vec3 d;
           for (int c = 0; c < 3; ++c)

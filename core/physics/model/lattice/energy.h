@@ -17,9 +17,11 @@ template <class Visit>
 void for_each_constraint(const Cloth& cloth, const Stencil& f, Visit&& visit) {
   const int columns = cloth.grid.nx, rows = cloth.grid.ny;
   for (int j = 0; j + f.dj < rows; ++j) {
-    const double k = f.stiffness * gradient_factor(cloth, j, f.dj);
+    const double k = f.stiffness * row_factor(cloth, f, j);
     for (int n = 0; n < f.per_row(columns); ++n)
-      if (f.alive(j, n)) visit(j * columns + n + f.near(), (j + f.dj) * columns + n + f.far(), k);
+      if (f.alive(j, n))
+        visit(j * columns + n + f.near(), (j + f.dj) * columns + n + f.far(),
+              f.di == 0 ? k * width_share(cloth, n, j, 0, f.dj) : k);
   }
 }
 

@@ -38,6 +38,11 @@ void set_in_motion(const Cloth& cloth, Lattice& l) {
 Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bool keep_previous) {
   const Grid& g = cloth.grid;
   Lattice l(g.nx, g.ny, keep_previous);
+  for (int i = 0; i < g.nx; ++i) {
+    const double width = width_share(cloth, i, 0, 0, 1);
+    l.column_width[static_cast<std::size_t>(i)] = float(width);
+    l.inverse_width[static_cast<std::size_t>(i)] = float(1 / width);
+  }
 
   Vec3 normal{g.u[1] * g.v[2] - g.u[2] * g.v[1], g.u[2] * g.v[0] - g.u[0] * g.v[2],
               g.u[0] * g.v[1] - g.u[1] * g.v[0]};

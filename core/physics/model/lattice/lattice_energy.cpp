@@ -130,9 +130,9 @@ double LatticeModel::stretch_energy(const Rows& x, double dt) const {
       static_cast<FarRows&>(r) = far_rows(f, x, lattice_.columns, j);
       r.w_near = lattice_.w(j) + f.near();
       r.w_far = lattice_.w(j + f.dj) + f.far();
-      r.stiffness = method_ == Method::positional
-                        ? kInfinite
-                        : float(f.stiffness * gradient_factor(cloth, j, f.dj));
+      r.stiffness =
+          method_ == Method::positional ? kInfinite : float(f.stiffness * row_factor(cloth, f, j));
+      r.factor = column_factors(lattice_, f);
       sum += parts_.kernels.stretch_energy(r);
     }
   }

@@ -29,8 +29,12 @@ constexpr double kLeastCompliance = 1e-5;
 // What a stencil's lines need from one substep to the next.
 struct LineStencil {
   const Stencil* stencil = nullptr;
-  AlignedArray<float> compliance;  // [row][kBatchLines], or one row where all are alike
+  // [row][width], or one row where all are alike. Columns have each their own where those at the sides
+  // count half; else a batch is as wide as another.
+  AlignedArray<float> compliance;
   bool alike = true;
+  bool by_column = false;
+  int width = kBatchLines;
   AlignedArray<float> lambda;       // shaped like the lattice; stencils along rows: like the tiles
   TurnedLinks<std::int32_t> links;  // of stencils along rows that can tear
 
@@ -58,7 +62,10 @@ class Line final : public WholeStage {
       l.alike = f.dj > 0 && parts.cloth.stiffness_gradient == 0;
       const int groups = batches_.row_groups();
       const int rows = l.alike ? 1 : f.dj == 0 ? groups : parts.lattice.rows;
-      l.compliance = AlignedArray<float>(std::size_t(rows) * kBatchLines);
+      l.by_column = f.di == 0 && parts.lattice.column_width[0] < 1;
+      if (l.by_column)
+        l.width = (parts.lattice.columns + kBatchLines - 1) / kBatchLines * kBatchLines;
+      l.compliance = AlignedArray<float>(std::size_t(rows) * l.width);
       if (f.links && f.dj == 0) l.links = TurnedLinks<std::int32_t>(parts.lattice, groups);
       if (options.compliant && options.iterations > 1)
         l.lambda = AlignedArray<float>(
@@ -125,6 +132,7 @@ class Line final : public WholeStage {
   void solve_batch(LineStencil& l, int start, int first, bool fresh, BatchMemory& memory) {
     LineBatch p = between_rows(l, start);
     p.first = first;
+    if (l.by_column) p.compliance += first;
     p.fresh = fresh;
     p.scratch = memory.scratch.data();
     parts_.kernels.line_batch(p);
@@ -144,8 +152,8 @@ class Line final : public WholeStage {
     p.columns = lattice.columns;
     p.rest = float(f.rest);
     p.share = options_.share;
-    p.compliance = l.compliance.data() + (l.alike ? 0 : start * kBatchLines);
-    p.compliance_step = l.alike ? 0 : f.dj * kBatchLines;
+    p.compliance = l.compliance.data() + (l.alike ? 0 : std::ptrdiff_t(start) * l.width);
+    p.compliance_step = l.alike ? 0 : std::ptrdiff_t(f.dj) * l.width;
     if (l.lambda.size() > 0) p.lambda = l.lambda.data() + std::ptrdiff_t(start) * lattice.stride;
     if (f.links) p.alive = f.links->row(start) - f.near();
     return p;
@@ -196,11 +204,17 @@ class Line final : public WholeStage {
     dt_ = dt;
     for (auto* stencils : all())
       for (LineStencil& l : *stencils)
-        for (int j = 0; j < int(l.compliance.size()); ++j)
-          l.compliance[j] = compliance(*l.stencil, l.stencil->dj == 0 ? j : j / kBatchLines);
+        for (int n = 0; n < int(l.compliance.size()); ++n)
+          l.compliance[n] = l.stencil->dj == 0
+                                ? compliance(*l.stencil, n, 1)
+                                : compliance(*l.stencil, n / l.width, column_width(l, n % l.width));
   }
-  float compliance(const Stencil& f, int j) const {
-    const double real = options_.compliant ? compliance_of(parts_, f, j, dt_) : 0;
+  float column_width(const LineStencil& l, int column) const {
+    const bool there = l.by_column && column < parts_.lattice.columns;
+    return there ? parts_.lattice.column_width[std::size_t(column)] : 1;
+  }
+  float compliance(const Stencil& f, int j, float width) const {
+    const double real = options_.compliant ? compliance_of(parts_, f, j, dt_) / width : 0;
     return float(std::max(real, least_));
   }
 

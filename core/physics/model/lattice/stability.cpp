@@ -79,7 +79,8 @@ struct Operator {
     r.pull_near = y.row(j).from(f.near());
     r.pull_far = y.row(j + f.dj).from(f.far());
     r.rest = float(f.rest);
-    r.stiffness = float(damping ? f.damping : f.stiffness) * float(gradient_factor(cloth, j, f.dj));
+    r.stiffness = float(damping ? f.damping : f.stiffness) * float(row_factor(cloth, f, j));
+    r.factor = column_factors(l, f);
     r.sideways = !damping;
     kernels.tangent(r);
   }
@@ -170,6 +171,11 @@ Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Stencil>& stenc
   return spectrum;
 }
 
+double lightest_mass(const Cloth& cloth) {
+  if (cloth.masses.empty()) return particle_mass(cloth, cloth.grid.nx / 2, cloth.grid.ny / 2);
+  return *std::min_element(cloth.masses.begin(), cloth.masses.end());
+}
+
 double projection_substep(const Scene& scene) {
   constexpr double kSag = 0.02;
   constexpr double kJacobi = 0.3;  // of what a Gauss-Seidel sweep does: it takes means
@@ -183,8 +189,7 @@ double projection_substep(const Scene& scene) {
         std::max(c.grid.nx / spacing_u(c.grid), c.grid.ny / spacing_v(c.grid));
     double needed = std::sqrt(kSag * sweeps / (2 * g * points_over_spacing));
     if (solver.method != Method::positional) {
-      double lightest = particle_mass(c, 0, 0);
-      for (const double mass : c.masses) lightest = std::min(lightest, mass);
+      const double lightest = lightest_mass(c);
       const double k = spring_repeats(solver) *
                        std::max({c.stiffness.structural, c.stiffness.shear, c.stiffness.bend});
       needed = std::max(needed, std::sqrt(lightest / std::max(k, 1e-12)));

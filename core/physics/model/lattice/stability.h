@@ -19,6 +19,10 @@ namespace weft::physics {
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Stencil>& stencils,
                            const Lattice& lattice, bool damped, const KernelTable& kernels);
 
+// kg; of the lightest particle where masses are given one by one, else of an inner one: what lies on the
+// border may weigh less, and is held by as much less.
+double lightest_mass(const Cloth& cloth);
+
 // s, of methods that project; about what a sheet of 1 m with 32 x 32 points needs.
 inline constexpr double kLongestProjection = 1.0 / 960;
 

@@ -58,8 +58,13 @@ Links::Links(int rows, int stride, int per_row)
   for (int j = 0; j < rows; ++j) std::fill_n(row(j), per_row, -1);
 }
 
-double gradient_factor(const Cloth& cloth, int j, int dj) {
-  return 1 - cloth.stiffness_gradient * (j + 0.5 * dj) / (cloth.grid.ny - 1);
+double row_factor(const Cloth& cloth, const Stencil& f, int j) {
+  const double gradient = 1 - cloth.stiffness_gradient * (j + 0.5 * f.dj) / (cloth.grid.ny - 1);
+  return f.dj == 0 ? gradient * width_share(cloth, 0, j, f.di, 0) : gradient;
+}
+
+const float* column_factors(const Lattice& l, const Stencil& f) {
+  return f.di == 0 ? l.column_width.data() : nullptr;
 }
 
 FarRows far_rows(const Stencil& f, const Rows& x, int columns, int j) {
@@ -79,13 +84,14 @@ StencilRow stencil_row(Lattice& l, const Stencil& f, int j) {
   r.v_far = l.v.row(j + f.dj);
   r.w = l.w(j);
   r.w_far = l.w(j + f.dj);
+  r.factor = column_factors(l, f);
   if (f.links) r.alive = f.links->row(j);
   return r;
 }
 
 SpringConstants spring_constants(const Cloth& cloth, const Stencil& f, int j) {
   if (j + f.dj >= cloth.grid.ny) return {};
-  const double factor = gradient_factor(cloth, j, f.dj), k = f.stiffness * factor;
+  const double factor = row_factor(cloth, f, j), k = f.stiffness * factor;
   return {float(k), float(k * f.rest), float(f.damping * factor)};
 }
 

@@ -58,8 +58,12 @@ double spring_repeats(const Solver& solver);
 // or those of its level (seed 000), as stiff as the solver's repeats make them.
 std::vector<Stencil> stencils_of(const Cloth& cloth, const Solver& solver = {});
 
-// Factor on the stiffness of constraints between rows j and j+dj (seed 003's stiffness gradient).
-double gradient_factor(const Cloth& cloth, int j, int dj);
+// Factor on the stiffness of a stencil's constraints of row j, columns at the sides aside: seed 003's
+// stiffness gradient, and a half along a border (weft::width_share).
+double row_factor(const Cloth& cloth, const Stencil& stencil, int j);
+
+// Of constraint 0 of a row and those after it: the further factor by their columns; null: all 1.
+const float* column_factors(const Lattice& lattice, const Stencil& stencil);
 
 // The ends of a stencil's constraints of row j in positions of `columns` columns; row j+dj must exist.
 FarRows far_rows(const Stencil& stencil, const Rows& x, int columns, int j);

@@ -91,6 +91,8 @@ class ProjectedStencils {
     r.near = stencil.near();
     r.far = stencil.far();
     r.dj = stencil.dj;
+    r.side_by_side = stencil.di != 0 && l.column_width[0] < 1;
+    if (stencil.di == 0) r.inverse_width = l.inverse_width.data();
     r.rest = float(stencil.rest * (1 + options_.limit));
     r.weight = options_.compliant || options_.limit > 0
                    ? 1.0f
@@ -179,8 +181,10 @@ class PlainJacobi final : public PlainRowsStage {
         options_(options),
         relaxation_(relaxation(parts.stencils, parts.scene.solver.iterations)),
         constraints_(std::size_t(parts.lattice.rows) * kPlainStencils) {
+    // As weigh_row() has them.
     for (int j = 0; j < parts.lattice.rows; ++j)
-      free_inverse_mass_.push_back(float(1 / particle_mass(parts.cloth, 0, j)));
+      free_inverse_mass_.push_back(float(1 / particle_mass(parts.cloth, 0, j)) *
+                                   parts.lattice.column_width[0]);
   }
   std::size_t bytes() const override {
     return PlainRowsStage::bytes() + constraints_.size() * sizeof(JacobiConstants) +
@@ -217,10 +221,15 @@ class PlainJacobi final : public PlainRowsStage {
  private:
   JacobiConstants constants_of(const Stencil& stencil, int j, double dt) const {
     if (j + stencil.dj >= parts_.lattice.rows)
-      return {std::numeric_limits<float>::infinity(), 0, 0};
+      return {std::numeric_limits<float>::infinity(), 0, 0, 1, 1};
     const float compliance = options_.compliant ? compliance_of(parts_, stencil, j, dt) : 0;
-    const float k = 1 / (2 * free_inverse_mass_[std::size_t(j)] * weight_ + compliance);
-    return {compliance, k, k * float(stencil.rest)};
+    const float w = free_inverse_mass_[std::size_t(j)] * weight_;
+    const float k = 1 / (2 * w + compliance);
+    // Where one end, or both, lie at the sides.
+    const float one = (2 * w + compliance) / (3 * w + compliance);
+    const float both = (2 * w + compliance) / (4 * w + compliance);
+    const bool sides = stencil.di != 0 && parts_.lattice.column_width[0] < 1;
+    return {compliance, k, k * float(stencil.rest), sides ? one : 1, sides ? both : 1};
   }
 
   // The inverse mass of everything that row j's constraints join; 0: not all have that of row j, or
@@ -294,7 +303,7 @@ class Jacobi final : public RowStage {
 }  // namespace
 
 float compliance_of(const LatticeParts& parts, const Stencil& f, int j, double dt) {
-  const double k = f.stiffness * gradient_factor(parts.cloth, j, f.dj);
+  const double k = f.stiffness * row_factor(parts.cloth, f, j);
   const double h = dt * implicit_share(parts.scene.solver);
   return float(1 / (std::max(k, 1e-12) * h * h));
 }
