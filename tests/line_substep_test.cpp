@@ -47,7 +47,7 @@ TEST(SecondOrder, ErrorFallsWithTheSquareOfTheSubstep) {
       s.cloths[0].drag = drag;
       return run(s, 12);
     };
-    Scene exact = hanging(6, 50, 200);
+    Scene exact = hanging(6, 50, 800);
     exact.solver = {};
     exact.cloths[0].drag = drag;
     const std::vector<double> truth = run(exact, 12);
@@ -56,7 +56,8 @@ TEST(SecondOrder, ErrorFallsWithTheSquareOfTheSubstep) {
     const double slope = std::log2(error.front() / error.back()) / 2;
     std::printf("drag %g: errors %.2e %.2e %.2e m, slope %.2f\n", drag, error[0], error[1],
                 error[2], slope);
-    EXPECT_GT(slope, 1.8);
+    EXPECT_GT(slope, 1.7);
+    EXPECT_LT(error.back(), 3e-5);
   }
 }
 
@@ -65,9 +66,8 @@ TEST(SecondOrder, FallsFreelyWithoutError) {
   s.cloths[0].pins.clear();
   s.solver.order = 2;
   const std::vector<double> x = run(s, 30);
-  // The first substep is implicit Euler: ½ g h² too far, and h g too fast, on the way after it.
-  const double h = s.time.frame / 5, t = 30 * s.time.frame;
-  EXPECT_NEAR(x[1], -0.5 * 9.81 * t * t, 9.81 * h * h);
+  const double t = 30 * s.time.frame;
+  EXPECT_NEAR(x[1], -0.5 * 9.81 * t * t, 1e-5);
 }
 
 TEST(SecondOrder, LandsWithoutBouncing) {
@@ -99,7 +99,7 @@ TEST(Tethers, NoParticleIsFartherFromItsPinThanTheSheetIsLong) {
       for (int i = 0; i < 30; ++i) {
         const double* p = x.data() + 3 * (j * 30 + i);
         // The sweeps after the tethers may move a particle a little.
-        EXPECT_LE(std::hypot(p[0], p[1], p[2]), std::hypot(i / 29.0, j / 29.0) * 1.02 + 1e-4);
+        EXPECT_LE(std::hypot(p[0], p[1], p[2]), std::hypot(i / 29.0, j / 29.0) * 1.03 + 1e-4);
       }
   }
 }

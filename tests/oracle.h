@@ -158,7 +158,9 @@ class Cloth {
   }
   void move(Particle& p, const Vec3& acceleration) {
     if (p.w == 0) return;
-    p.v = std::max(0.0, 1 - dt() * cloth_.drag) * p.v + dt() * (acceleration + scene_.gravity);
+    // From velocities at the start, unless shifted, to half a substep on.
+    const double kick = !has_forces() && time_ < 1.5 * dt() ? 0.5 * dt() : dt();
+    p.v = std::max(0.0, 1 - kick * cloth_.drag) * p.v + kick * (acceleration + scene_.gravity);
     p.x = p.x + dt() * p.v;
   }
   // Pins whose two keys lie at the run's start and end.

@@ -79,7 +79,7 @@ SpringCloth spring_cloth_of(const Scene& scene) {
   SpringCloth s;
   s.cloth_dim = cloth.grid.nx;
   s.particle_offset = spacing_u(cloth.grid);
-  s.particle_mass = particle_mass(cloth, 0, 0);
+  s.particle_mass = particle_mass(cloth, cloth.grid.nx / 2, cloth.grid.ny / 2);
   s.gravity = scene.gravity[1];
   s.type = scene.solver.method;
   s.k = springs(s.type) ? cloth.stiffness.structural : cloth.positional_k;

@@ -44,8 +44,10 @@ void Simulation::State::advance_frame() {
     restore();
     return;
   }
-  if (!(sleeping && sleeping->all_asleep())) guard_.energy().accept(substeps);
-  if (is_explicit(method) && !(sleeping && sleeping->all_asleep())) lag = dt / 2;
+  if (!(sleeping && sleeping->all_asleep())) {
+    guard_.energy().accept(substeps);
+    lag = lag_between_substeps();
+  }
   for (auto& step : cloths)
     if (Tearing* tearing = step->model().tearing()) tearing->update();
   ++frame;
@@ -143,8 +145,8 @@ void Simulation::State::begin_surfaces() {
 }
 
 Substeps Simulation::State::substeps_from(int first, int count) const {
-  const bool kicked = first == 0 && is_explicit(method);
-  return {double(frame) * scene.time.frame + first * dt, dt, count, kicked ? lag + dt / 2 : dt};
+  const double kick = first == 0 ? lag + dt / 2 : dt;
+  return {double(frame) * scene.time.frame + first * dt, dt, count, kick};
 }
 
 // A thread each where that keeps all of them busy; else cloths that are worth all threads take them one

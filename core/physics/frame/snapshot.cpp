@@ -138,7 +138,7 @@ void Simulation::State::restore(const Snapshot& m) {
   was_driven_ = false;
   take_substeps(began_.substeps);
   go_on_as(began_.method, began_.solver);
-  lag = is_explicit(method) ? dt / 2 : 0;
+  lag = is_explicit(method) || frame > 0 ? lag_between_substeps() : 0;
   for (std::size_t n = 0; is_explicit(method) && n < cloths.size(); ++n)
     spectra[n] = cloths[n]->model().spectrum(masses(n).span());
   status = Status{};

@@ -80,7 +80,12 @@ struct Simulation::State {
   std::uint64_t changes = 0;  // state set from outside
   int substeps = 1;
   double dt = 0;
-  double lag = 0;  // s; by which velocities lie behind the positions (explicit springs)
+  // s; by which velocities lie behind the positions: half a substep with explicit springs and the first
+  // order of methods that project, whose first substep takes them half of it ahead (step/stage.h).
+  double lag = 0;
+  double lag_between_substeps() const {
+    return physics::is_explicit(method) || scene.solver.order == 1 ? dt / 2 : 0;
+  }
   std::vector<physics::Spectrum> spectra;  // of every cloth (explicit springs)
 
   // Wall time of every frame [ms]; reserved ahead for the scene's own length.

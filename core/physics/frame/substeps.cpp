@@ -163,7 +163,8 @@ int Simulation::State::projection_substeps() const {
 // Goes on from the state as it is by another method or solver.
 void Simulation::State::go_on_as(Method as, const Solver& solver) {
   if (method == as && scene.solver == solver) return;
-  if (is_explicit(method) && !is_explicit(as))
+  const bool were_forces = is_explicit(method);
+  if (were_forces && !is_explicit(as))
     for (std::size_t c = 0; c < cloths.size(); ++c) {
       Particles& p = cloths[c]->particles();
       const std::vector<Vec3> v = velocities_now(*this, c);
@@ -172,7 +173,10 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
       });
     }
   method = as;
-  lag = is_explicit(as) ? dt / 2 : 0;
+  if (is_explicit(as))
+    lag = dt / 2;
+  else if (were_forces)
+    lag = 0;
   scene.solver = solver;
   if (placed) placed->solver = solver;
   for (auto& step : cloths) step->choose_anew(method);

@@ -8,8 +8,8 @@
 // (Hairer, Wanner, "Solving Ordinary Differential Equations II", V.1.) A particle whose
 // velocity is no longer what the substep before left, because contact or a limit has changed it,
 // has no smooth past to extrapolate: it takes this substep by implicit Euler, x* = x_n, with h² for
-// its share of every correction. That is also the first substep of all, and the first
-// after a change of h. Both kinds go through the same sweeps: the constraints are solved with ⅔h
+// its share of every correction. Before the first substep of all, and the first after a change of h, lies
+// free flight, x_{n-1} = x_n - h v_n + ½h² a, v_{n-1} = v_n - h a, a = g - c v_n. Both kinds go through the same sweeps: the constraints are solved with ⅔h
 // and inverse masses scaled by 1/(1 + ⅔h c), or by 9/4/(1 + h c).
 #include "physics/kernels/second_order.h"
 
@@ -53,7 +53,6 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
   const float h = r.dt, h2 = h * kTwoThirds;
   const Slowed slowed(r);
   const Wide3 g{wide(r.gx), wide(r.gy), wide(r.gz)};
-  const WideInt known = r.fresh ? WideInt{} : ~WideInt{};
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide3 x = load3(r.x, i);
     const Wide mass = load(r.mass + i);
@@ -63,15 +62,24 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
     WideInt smooth = ~WideInt{};
     if constexpr (kKnown) {
       v = load3(r.v, i);
-      smooth = known & free & equal(v, load3(r.v_end, i));
+      smooth = free;
+      if (!r.fresh) smooth = smooth & equal(v, load3(r.v_end, i));
     } else {
       v = gained(r, x, free, was_euler(r, slowed, mass, i), i);
     }
     const auto either = [&](auto if_smooth, auto if_euler) {
       return kKnown ? select(smooth, if_smooth, if_euler) : if_smooth;
     };
-    const Wide3 x_star = fma(x - load3(r.previous, i), wide(kThird), x);
-    const Wide3 v_star = fma(v - load3(r.v_before, i), wide(kThird), v);
+    Wide3 by_x, by_v;  // in the substep before
+    if (r.fresh) {
+      by_v = (g - v * wide(r.drag)) * wide(h);
+      by_x = v * wide(h) - by_v * wide(0.5f * h);
+    } else {
+      by_x = x - load3(r.previous, i);
+      by_v = v - load3(r.v_before, i);
+    }
+    const Wide3 x_star = fma(by_x, wide(kThird), x);
+    const Wide3 v_star = fma(by_v, wide(kThird), v);
     const Wide step = either(wide(h2), wide(h));
     const Wide slow = either(wide(slowed.smooth), wide(slowed.euler));
     const Wide3 velocity = fma(g, step, either(v_star, v)) * slow;

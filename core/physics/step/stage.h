@@ -16,16 +16,17 @@ class Threads;
 struct Substep {
   double dt = 0;    // s
   double time = 0;  // s, at the end of the substep
-  double kick = 0;  // s; for how long forces act on velocities (explicit springs)
-  int slot = 0;     // which of a stage's carried buffers this substep uses
+  // s; for how long forces, with methods that project gravity and drag, act on velocities.
+  double kick = 0;
+  int slot = 0;  // which of a stage's carried buffers this substep uses
   // Whether velocities are right at the start, or only positions and those of the substep before;
   // and whether they are to be right at the end.
   bool velocities_known = true, velocities_wanted = true;
 };
 
-// Substeps of one length, one after the other. Velocities of explicit springs lie behind the
-// positions by half of the substep before; the first kick takes them to half of the first of these
-// ahead.
+// Substeps of one length, one after the other. Velocities lie behind the positions by half of the substep
+// before, or by nothing at a start; the first kick takes them to half of the first of these ahead. So the
+// position before the first is x(-dt) = x - v dt + a dt²/2, and free fall is exact.
 struct Substeps {
   double time = 0;  // s, at the start
   double dt = 0;    // s
