@@ -143,22 +143,6 @@ TEST_P(FreeFall, IsExactToRounding) {
 INSTANTIATE_TEST_SUITE_P(, FreeFall, testing::Values(1, 3, 17, 100),
                          [](const auto& test) { return std::to_string(test.param); });
 
-// Symplectic Euler ahead of the sweeps: what projecting methods fall too far is g dt t/2.
-TEST(FreeFallOfProjection, IsLateByHalfASubstep) {
-  for (const Method method : {Method::positional, Method::compliant})
-    for (const int substeps : {1, 3, 17, 100}) {
-      Scene scene;
-      scene.cloths.emplace_back();
-      scene.cloths[0].grid.nx = scene.cloths[0].grid.ny = 3;
-      scene.solver.method = method;
-      scene.time = {0.5, substeps, 5};
-      Simulation simulation(scene);
-      simulation.advance_frame();
-      const double truth = -9.81 * 0.125 * (1 + 1.0 / substeps);
-      EXPECT_NEAR(position(simulation, 1, 1)[1], truth, 5e-7 * (3 + substeps));
-    }
-}
-
 // Far down, where positions round by more than gravity adds in a substep, velocities still gain it.
 TEST(LongFall, GoesOnGainingSpeed) {
   struct Variant {
