@@ -56,6 +56,7 @@ TEST(SecondOrder, ErrorFallsWithTheSquareOfTheSubstep) {
     const double slope = std::log2(error.front() / error.back()) / 2;
     std::printf("drag %g: errors %.2e %.2e %.2e m, slope %.2f\n", drag, error[0], error[1],
                 error[2], slope);
+    // Rounding of positions is a third of the last one.
     EXPECT_GT(slope, 1.7);
     EXPECT_LT(error.back(), 3e-5);
   }
@@ -99,7 +100,7 @@ TEST(Tethers, NoParticleIsFartherFromItsPinThanTheSheetIsLong) {
       for (int i = 0; i < 30; ++i) {
         const double* p = x.data() + 3 * (j * 30 + i);
         // The sweeps after the tethers may move a particle a little.
-        EXPECT_LE(std::hypot(p[0], p[1], p[2]), std::hypot(i / 29.0, j / 29.0) * 1.03 + 1e-4);
+        EXPECT_LE(std::hypot(p[0], p[1], p[2]), std::hypot(i / 29.0, j / 29.0) * 1.02 + 4e-4);
       }
   }
 }

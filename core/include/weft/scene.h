@@ -109,8 +109,8 @@ struct Cloth {
   Lumping lumping = Lumping::automatic;  // of masses by density, and of stiffness
   Kinds stiffness{1000, 1000, 200};      // N/m; 0 = none of that kind
   Kinds spring_damping;                  // N·s/m along the spring (method spring_friction)
-  int level = 0;                         // n >= 1: constraints to distance 1..n along rows, columns and
-                                         // diagonals, all with stiffness.structural (seed 000)
+  int level = 0;  // n >= 1: constraints to distance 1..n along rows, columns and
+                  // diagonals, all with stiffness.structural (seed 000)
   LevelDiagonals level_diagonals = LevelDiagonals::both;  // where level is not 0
   // 0 … 1: relative drop of stiffness from first row to last (seed 003).
   double stiffness_gradient = 0;

@@ -111,10 +111,7 @@ CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s)
 
 SpeculativeCulling::SpeculativeCulling(const ClothParts& parts, double collider_speed)
     : rows_(parts.particles.rows), acceleration_(1), collider_speed_(collider_speed) {
-  double heaviest = 0;
-  parts.particles.for_each(
-      [&](int j, int i) { heaviest = std::max(heaviest, double(parts.particles.w(j, i))); });
-  acceleration_ += parts.model.pull().all * kStrain * heaviest;
+  acceleration_ += parts.model.pull().acceleration * kStrain;
   acceleration_ += 2 * greatest_gravity(parts.scene);
 }
 

@@ -36,7 +36,8 @@ struct ClothParts {
 struct Pull {
   double stiffness = 0;  // N/m, of the stiffest
   double force = 0;      // N, of the strongest at twice its length
-  double all = 0;        // N, of one constraint of each kind at twice its length
+  double acceleration =
+      0;  // m/s², of a particle at most, one constraint of each kind at twice its length
 };
 
 struct ConstraintCounts {

@@ -74,7 +74,7 @@ Pull LatticeModel::pull() const {
     const double force = 2 * f.stiffness * f.rest;
     pull.stiffness = std::max(pull.stiffness, f.stiffness);
     pull.force = std::max(pull.force, force);
-    pull.all += force;
+    pull.acceleration += force / lightest_mass(parts_.cloth);
   }
   return pull;
 }
