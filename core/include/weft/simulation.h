@@ -94,6 +94,9 @@ class Simulation {
   const Status& status() const;
 
   View view() const;
+  // What the arrays of view() lie in. While somebody holds it they stay where they are, whatever becomes
+  // of the simulation; set_scene() may go on in other arrays.
+  std::shared_ptr<const void> memory() const;
 
   // Positions of all particles as x,y,z in scene order (row-major j*nx+i, cloth after cloth).
   std::vector<double> positions() const;
@@ -147,7 +150,7 @@ class Simulation {
   struct State;  // the library's own
 
  private:
-  std::unique_ptr<State> state_;
+  std::shared_ptr<State> state_;  // shared with those that hold memory()
 };
 
 }  // namespace weft

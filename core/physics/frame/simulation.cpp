@@ -37,7 +37,7 @@ Simulation::Simulation(Scene scene, Options options) {
   if (options.threads < 0 || options.threads > 256)
     throw std::invalid_argument("threads is " + std::to_string(options.threads) + " (0 to 256)");
   const Vec3 origin = origin_of(scene);
-  state_ = std::make_unique<State>(std::move(scene), options, origin);
+  state_ = std::make_shared<State>(std::move(scene), options, origin);
 }
 
 Simulation::~Simulation() = default;
@@ -110,6 +110,10 @@ View Simulation::view() const {
     view.cloths.push_back(c);
   }
   return view;
+}
+
+std::shared_ptr<const void> Simulation::memory() const {
+  return state_;
 }
 
 std::vector<double> Simulation::positions() const {
