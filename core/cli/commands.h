@@ -11,6 +11,7 @@ void add_run(CLI::App& program, int& exit_code);
 void add_check(CLI::App& program, int& exit_code);
 void add_explain(CLI::App& program, int& exit_code);
 void add_scenes(CLI::App& program, int& exit_code);
+void add_study(CLI::App& program, int& exit_code);  // where HDF5 is found
 void add_view(CLI::App& program, int& exit_code);
 
 }  // namespace weft::cli

@@ -34,6 +34,9 @@ void add_commands(CLI::App& program, int& exit_code) {
   add_check(program, exit_code);
   add_explain(program, exit_code);
   add_scenes(program, exit_code);
+#ifdef WEFT_STUDY
+  add_study(program, exit_code);
+#endif
   add_view(program, exit_code);
 }
 
