@@ -58,6 +58,10 @@ std::string shard_words(Shard shard) {
 
 }  // namespace
 
+Descriptor::~Descriptor() {
+  if (number >= 0) ::close(number);
+}
+
 Results::Results(const Study& study, std::string path, Shard shard, bool resume)
     : study_(study),
       path_(std::move(path)),
@@ -78,32 +82,28 @@ Results::Results(const Study& study, std::string path, Shard shard, bool resume)
   open(resume);
 }
 
-Results::~Results() {
-  if (file_ >= 0) ::close(file_);
-}
-
 void Results::open(bool resume) {
-  file_ = ::open(journal_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (file_ < 0) fail(journal_, "cannot write");
-  if (::flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+  file_.number = ::open(journal_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (file_.number < 0) fail(journal_, "cannot write");
+  if (::flock(file_.number, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
     throw StudyError({{journal_, "another process is at this study", "another --out"}});
-  const bool empty = ::lseek(file_, 0, SEEK_END) == 0;
+  const bool empty = ::lseek(file_.number, 0, SEEK_END) == 0;
   if (!empty && !resume)
     throw StudyError({{journal_, "it holds finished runs of a study that was cut off",
                        "--resume to go on with them; or remove it"}});
   if (!empty) read_journal();
   if (end_ > 0) return;
-  if (::ftruncate(file_, 0) != 0) fail(journal_, "cannot write");
+  if (::ftruncate(file_.number, 0) != 0) fail(journal_, "cannot write");
   write_frame(shard_words(shard_) + " " + study_.text());
 }
 
 // Takes in all whole records; what was cut off in the middle is dropped.
 void Results::read_journal() {
-  for (Frame frame; read_all(file_, reinterpret_cast<char*>(&frame), sizeof frame, end_);) {
-    const auto bytes = std::uint64_t(::lseek(file_, 0, SEEK_END));
+  for (Frame frame; read_all(file_.number, reinterpret_cast<char*>(&frame), sizeof frame, end_);) {
+    const auto bytes = std::uint64_t(::lseek(file_.number, 0, SEEK_END));
     if (frame.magic != Frame().magic || frame.size > bytes) break;
     std::string payload(frame.size, '\0');
-    if (!read_all(file_, payload.data(), frame.size, end_ + sizeof frame)) break;
+    if (!read_all(file_.number, payload.data(), frame.size, end_ + sizeof frame)) break;
     if (sum_of(payload) != frame.sum) break;
     if (end_ == 0 && payload != shard_words(shard_) + " " + study_.text())
       throw StudyError({{journal_, "it is of another study or shard", "another --out"}});
@@ -116,7 +116,7 @@ void Results::read_journal() {
     }
     end_ += sizeof frame + frame.size;
   }
-  if (end_ > 0 && ::ftruncate(file_, off_t(end_)) != 0) fail(journal_, "cannot write");
+  if (end_ > 0 && ::ftruncate(file_.number, off_t(end_)) != 0) fail(journal_, "cannot write");
   if (end_ == 0)
     throw StudyError({{journal_, "it is no journal of a study", "another --out; or remove it"}});
 }
@@ -125,9 +125,10 @@ void Results::write_frame(const std::string& payload) {
   const Frame frame{.sum = sum_of(payload), .size = payload.size()};
   std::string bytes(reinterpret_cast<const char*>(&frame), sizeof frame);
   bytes += payload;
-  if (!write_all(file_, bytes.data(), bytes.size(), end_)) {
+  if (!write_all(file_.number, bytes.data(), bytes.size(), end_)) {
     const int why = errno;
-    if (::ftruncate(file_, off_t(end_)) != 0) errno = why;  // the sum tells it from a whole one
+    if (::ftruncate(file_.number, off_t(end_)) != 0)
+      errno = why;  // the sum tells it from a whole one
     errno = why;
     fail(journal_, "writing failed (what is finished stays; --resume goes on)");
   }
@@ -136,7 +137,7 @@ void Results::write_frame(const std::string& payload) {
 
 Record Results::read_at(std::uint64_t offset, std::uint64_t size) const {
   std::string bytes(size, '\0');
-  if (!read_all(file_, bytes.data(), size, offset)) fail(journal_, "cannot be read");
+  if (!read_all(file_.number, bytes.data(), size, offset)) fail(journal_, "cannot be read");
   return record_of(bytes);
 }
 

@@ -13,12 +13,20 @@
 
 namespace weft {
 
+// A file of the system's, closed at the end.
+struct Descriptor {
+  int number = -1;
+  Descriptor() = default;
+  ~Descriptor();
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+};
+
 class Results {
  public:
   // Opens the journal and locks it. `resume`: takes over what one of the same study and shard holds;
   // else there must be none. Throws StudyError, WriteError.
   Results(const Study& study, std::string path, Shard shard, bool resume);
-  ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
 
@@ -39,7 +47,7 @@ class Results {
   const Study& study_;
   std::string path_, journal_;
   Shard shard_;
-  int file_ = -1;
+  Descriptor file_;
   std::uint64_t end_ = 0;  // of the last whole record
   std::vector<Stored> stored_;
   std::vector<bool> has_;  // of all runs of the study

@@ -48,6 +48,11 @@ from ._weft import (
     shipped_scenes,
 )
 
+try:
+    from . import study
+except AttributeError:  # built without HDF5
+    pass
+
 # An installed package brings the shipped scenes.
 _scenes = _pathlib.Path(__file__).parent / "scenes"
 if _scenes.is_dir():

@@ -1,0 +1,124 @@
+"""Studies: one scene, run with many values, here or on a cluster, into one HDF5 file.
+
+    spec = {
+        "weft_study": 1,
+        "scene": "pinned4",
+        "seconds": 3,
+        "parameters": [{"pointer": "/cloth/ks", "values": [500, 5000, 50000]}],
+        "measures": ["/strain/max", "/energy/total"],
+        "positions": {"every": 30},
+    }
+    weft.study.run(spec, path="ks.h5")                  # all cores of this machine
+    weft.study.run(spec, client, path="ks.h5")          # a dask.distributed.Client
+    table = weft.study.table("ks.h5")                   # a NumPy array with a row for each run
+
+The file is the same for both, and for `weft study STUDY.json --out ks.h5`, but for the column `seconds`.
+docs/studies.md has every key.
+"""
+
+import functools
+import itertools
+import json
+import os
+
+from . import _weft
+
+StudyError = _weft.StudyError
+
+
+def read(spec):
+    """The study of a dict or of a STUDY file. Raises StudyError with every fault."""
+    if isinstance(spec, dict):
+        return _weft.Study(json.dumps(spec, allow_nan=False))
+    path = os.fspath(spec)
+    with open(path, encoding="utf-8") as file:
+        return _weft.Study(file.read(), os.path.dirname(path))
+
+
+def run(spec, client=None, *, path, resume=False, shard=(1, 1), jobs=0, retries=10, progress=None):
+    """Runs a study into an HDF5 file.
+
+    spec:     a dict or a STUDY file
+    client:   a dask.distributed.Client, or None: this machine
+    path:     the file; it appears when all runs are there. Until then finished runs are in path.runs
+    resume:   goes on with those; else there must be none
+    shard:    (K, N): only every Nth run, from the Kth on
+    jobs:     runs at a time on this machine, 0 = all cores; never changes the result
+    retries:  how often a run is given to another worker when its own is lost
+    progress: called as progress(done, all) after every run
+
+    A run that fails is a row with its reason in the column `outcome`. Raises StudyError for what is wrong
+    with the study, OSError where a file cannot be written.
+    """
+    study = read(spec)
+    path = os.fspath(path)
+    if client is None:
+        study.run_all(path, jobs, resume, shard, progress)
+        return
+    results = _weft.Results(study, path, shard, resume)
+    _gather(results, study, client, retries, progress or (lambda done, all: None))
+    results.finish()
+
+
+def _gather(results, study, client, retries, progress):
+    """Sends out what is missing, a window of runs at a time, and keeps what comes back."""
+    from distributed import CancelledError, KilledWorker, as_completed
+
+    missing = results.missing
+    runs = iter(missing)
+    flying = as_completed()
+    sent = {}  # the run of each future, and how often it was lost
+    done = 0
+
+    def send(run, lost=0):
+        # The text goes with every run: data scattered to workers is gone when they are.
+        future = client.submit(_work, study.text, run, pure=False, retries=retries)
+        sent[future.key] = run, lost
+        flying.add(future)
+
+    for run in itertools.islice(runs, 4 * max(1, sum(client.nthreads().values()))):
+        send(run)
+    for future in flying:
+        run, lost = sent.pop(future.key)
+        try:
+            record = future.result()
+        except (CancelledError, KilledWorker):
+            if lost == retries:
+                raise
+            send(run, lost + 1)
+            continue
+        results.append(record)
+        done += 1
+        progress(done, len(missing))
+        for run in itertools.islice(runs, 1):
+            send(run)
+
+
+@functools.lru_cache(maxsize=4)
+def _study(text):
+    return _weft.Study(text)
+
+
+def _work(text, run):
+    """One run on a worker: its record as bytes."""
+    return _study(text).run(run)
+
+
+def merge(shards, path):
+    """Makes one file of those of all shards: that of one run, but for the column `seconds`."""
+    _weft.merge([os.fspath(shard) for shard in shards], os.fspath(path))
+
+
+def table(path):
+    """The table of a study, (runs,) with a field for each column; pandas.DataFrame takes it."""
+    import h5py
+    import numpy
+
+    with h5py.File(path, "r") as file:
+        rows = file["runs"][:]
+    names = {k: "U%d" % t.itemsize if t.kind == "S" else t for k, (t, *_) in rows.dtype.fields.items()}
+    words = numpy.empty(len(rows), list(names.items()))
+    for name in names:
+        column = rows[name]
+        words[name] = numpy.char.decode(column, "utf-8") if column.dtype.kind == "S" else column
+    return words
