@@ -57,7 +57,7 @@ class Results {
 
 struct StudyOptions {
   std::string path;
-  Shard shard;
+  Shard shard{};
   bool resume = false;
   int jobs = 0;  // threads; 0 = all cores
   // Asked before every frame, from any thread: false gives up the runs in flight.

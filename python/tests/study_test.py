@@ -18,7 +18,7 @@ import weft
 
 study = pytest.importorskip("weft.study")
 PROGRAM = os.environ["WEFT_PROGRAM"]
-KILLS = int(os.environ.get("WEFT_STUDY_KILLS", "5"))
+KILLS = int(os.environ.get("WEFT_STUDY_KILLS", "2"))
 
 
 @pytest.fixture
