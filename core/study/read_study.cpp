@@ -15,6 +15,7 @@
 #include "scene/schema.h"
 #include "study/draws.h"
 #include "study/study.h"
+#include "study/triangles.h"
 #include "weft/read_scene.h"
 
 namespace weft {
@@ -294,12 +295,7 @@ struct Study::Reader {
     std::uint32_t first = 0;
     for (const Cloth& c : scene.cloths) {
       const auto nx = std::uint32_t(c.grid.nx), ny = std::uint32_t(c.grid.ny);
-      for (std::uint32_t j = 0; j + 1 < ny; ++j)
-        for (std::uint32_t i = 0; i + 1 < nx; ++i) {
-          const std::uint32_t a = first + j * nx + i, d = a + nx;
-          for (const std::uint32_t corner : {a, a + 1, d, a + 1, d + 1, d})
-            study.triangles_.push_back(corner);
-        }
+      append_triangles(nx, ny, first, study.triangles_);
       first += nx * ny;
     }
   }

@@ -6,19 +6,11 @@
 #include <limits>
 #include <set>
 
+#include "study/triangles.h"
+
 namespace weft::python {
 
 namespace {
-
-// The two triangles of every square, as weft/view.h has them, from particle `first` on.
-void append_whole(const ClothView& c, std::uint32_t first, std::vector<std::uint32_t>& all) {
-  const auto columns = std::uint32_t(c.columns);
-  for (std::uint32_t j = 0; j + 1 < std::uint32_t(c.rows); ++j)
-    for (std::uint32_t i = 0; i + 1 < columns; ++i) {
-      const std::uint32_t a = first + j * columns + i, b = a + 1, d = a + columns, e = d + 1;
-      for (const std::uint32_t corner : {a, b, d, b, e, d}) all.push_back(corner);
-    }
-}
 
 void append_left(const ClothView& c, std::uint32_t first, std::vector<std::uint32_t>& all) {
   const auto columns = std::uint32_t(c.columns), stride = std::uint32_t(c.stride);
@@ -57,8 +49,10 @@ std::vector<std::uint32_t> triangles_of(const Simulation& simulation) {
   std::vector<std::uint32_t> all;
   std::uint32_t first = 0;
   for (const ClothView& c : simulation.view().cloths) {
-    c.topology_version > 0 ? append_left(c, first, all) : append_whole(c, first, all);
-    first += std::uint32_t(c.columns) * std::uint32_t(c.rows);
+    const auto columns = std::uint32_t(c.columns), rows = std::uint32_t(c.rows);
+    c.topology_version > 0 ? append_left(c, first, all)
+                           : append_triangles(columns, rows, first, all);
+    first += columns * rows;
   }
   return all;
 }

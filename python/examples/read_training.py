@@ -14,7 +14,7 @@ def pairs(path, batch=32, seed=0):
     with h5py.File(path) as file:
         rows, positions = file["runs"][:], file["positions"]
         good = np.flatnonzero(rows["outcome"] == b"ok")
-        names = [name for name in ("radius", "x", "z", "friction", "density", "bend")]
+        names = ("radius", "x", "z", "friction", "density", "bend")
         parameters = np.stack([rows[name] for name in names], axis=1).astype("f4")
         while True:
             runs = random.choice(good, batch)
