@@ -21,8 +21,8 @@ void expect_usage_error(const std::string& arguments, const std::string& place,
 }
 
 TEST(CliErrors, CommandLineFaultsNameTheOptionAndWhatIsAllowed) {
-  expect_usage_error("", "command line", "run, check, explain, scenes, view");
-  expect_usage_error("jump", "jump", "run, check, explain, scenes, view");
+  expect_usage_error("", "command line", "run, check, explain, scenes, ");
+  expect_usage_error("jump", "jump", "run, check, explain, scenes, ");
   expect_usage_error("run", "command line", "SCENE is required");
   expect_usage_error("run small.json --frames x", "--frames", "a whole number");
   expect_usage_error("run small.json --frames -1", "--frames", "a whole number");
