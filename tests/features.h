@@ -83,7 +83,12 @@ inline std::vector<Feature> features() {
          s.colliders.push_back(collider_of(Plane{{0, -0.125, 0}, {0.3, 1, 0}}, 0.2));
        }},
       {"strain limit", [](Scene& s) { s.cloths[0].strain_limit = 0.0625; }},
-      {"tearing", [](Scene& s) { s.cloths[0].tear_strain = 0.1; }},
+      {"tearing",
+       [](Scene& s) {
+         s.cloths[0].lumping = Lumping::equal;
+         s.cloths[0].tear_strain = 0.1;
+       }},
+      {"tearing, by area", [](Scene& s) { s.cloths[0].tear_strain = 0.1; }},
       {"two sheets, particles",
        [](Scene& s) { drop_a_sheet(s, SelfCollisionMode::particles, 0.046875); }},
       {"two sheets, surface",

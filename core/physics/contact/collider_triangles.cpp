@@ -22,6 +22,7 @@ namespace {
 
 constexpr int kMostPlaces = 16;  // on the way of a fast collider
 constexpr double kDeep = 3e-2;   // of an edge: one that was as deep is looked at again at once
+constexpr int kPasses = 2;
 constexpr int kTurns = 8;        // of one triangle in a substep
 // Of an edge: how near a triangle at rest is known. An edge of it that lies along an edge of the body is
 // nearest anywhere along that; the exact point jumps from end to end as it turns, and sheets draped over
@@ -196,11 +197,14 @@ class ColliderTriangles final : public RowStage {
     // The way of a substep matters only where it is long against the collider.
     const float way = reach.speed * f.row.dt;
     const float near = way > 0.5f * f.row.shape.thin ? way : -f.slack;
-    for (int i = 0; i + 1 < l.columns; ++i) {
-      if (f.bound[0][i] < near && edges_.whole(i, j, 0)) lift(f.row, {j, j, j + 1}, {i, i + 1, i});
-      if (f.bound[1][i] < near && edges_.whole(i, j, 1))
-        lift(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
-    }
+    const int passes = longest > AllowedDepth::kStretched * edge_ ? kPasses : 1;
+    for (int pass = 0; pass < passes; ++pass)
+      for (int i = 0; i + 1 < l.columns; ++i) {
+        if (f.bound[0][i] < near && edges_.whole(i, j, 0))
+          lift(f.row, {j, j, j + 1}, {i, i + 1, i});
+        if (f.bound[1][i] < near && edges_.whole(i, j, 1))
+          lift(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
+      }
     return reach;
   }
 
