@@ -266,6 +266,9 @@ TEST(Snapshot, RefusesWhatIsOutOfRange) {
       [](Snapshot& m) {
         m.origin = {0, 0, 0.5};
       },
+      [](Snapshot& m) { m.lag = -1e-9; },
+      [](Snapshot& m) { m.lag = 1.1; },
+      [&](Snapshot& m) { m.lag = nan; },
       [](Snapshot& m) { m.time = -1; },
       [](Snapshot& m) { m.time = 1e300; },
       [&](Snapshot& m) { m.time = nan; },

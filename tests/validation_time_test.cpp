@@ -35,8 +35,7 @@ TEST(FreeFall, IsThatOfGalilei) {
   }
 }
 
-// By every method, whatever the substep, from rest and thrown, alone or as a state that was set.
-TEST(FreeFall, IsExactByEveryMethod) {
+std::vector<Solver> solvers() {
   const auto solver = [](Method method, Sweep sweep, int order, int iterations) {
     Solver s;
     s.method = method;
@@ -47,13 +46,17 @@ TEST(FreeFall, IsExactByEveryMethod) {
   };
   using enum Method;
   using enum Sweep;
-  for (const Solver& s :
-       {solver(spring, gauss_seidel, 1, 1), solver(spring_friction, gauss_seidel, 1, 1),
-        solver(positional, gauss_seidel, 1, 1), solver(positional, jacobi, 1, 2),
-        solver(positional, line, 1, 1), solver(compliant, gauss_seidel, 1, 1),
-        solver(compliant, gauss_seidel, 1, 3), solver(compliant, jacobi, 1, 2),
-        solver(compliant, line, 1, 1), solver(compliant, gauss_seidel, 2, 1),
-        solver(compliant, line, 2, 1)})
+  return {solver(spring, gauss_seidel, 1, 1),     solver(spring_friction, gauss_seidel, 1, 1),
+          solver(positional, gauss_seidel, 1, 1), solver(positional, jacobi, 1, 2),
+          solver(positional, line, 1, 1),         solver(compliant, gauss_seidel, 1, 1),
+          solver(compliant, gauss_seidel, 1, 3),  solver(compliant, jacobi, 1, 2),
+          solver(compliant, line, 1, 1),          solver(compliant, gauss_seidel, 2, 1),
+          solver(compliant, line, 2, 1)};
+}
+
+// By every method, whatever the substep, from rest and thrown, alone or as a state that was set.
+TEST(FreeFall, IsExactByEveryMethod) {
+  for (const Solver& s : solvers())
     for (const double stiffness : {0.001, 1e5})
       for (const int substeps : {1, 7, 100})
         for (const double thrown : {0.0, 1.3}) {
@@ -74,6 +77,51 @@ TEST(FreeFall, IsExactByEveryMethod) {
                 << int(s.method) << " " << int(s.sweep) << " order " << s.order << ", " << stiffness
                 << " N/m, " << substeps << " substeps, " << thrown << " m/s";
         }
+}
+
+// So is a fall from a state that is set while the run goes on, one that goes on from a snapshot of it, and
+// one that another method goes on with.
+TEST(FreeFall, IsExactFromWhereItIsTakenUp) {
+  const auto fall = [](Simulation& simulation, double y, double v) {
+    const double start = simulation.time();
+    for (int frame = 0; frame < 20; ++frame) simulation.advance_frame();
+    const double t = simulation.time() - start;
+    return position(simulation, 7, 2)[1] - (y + v * t - 0.5 * 9.81 * t * t);
+  };
+  for (const Solver& s : solvers())
+    for (const int substeps : {1, 7, 100}) {
+      Scene scene;
+      scene.solver = s;
+      scene.cloths.emplace_back();
+      scene.cloths[0].grid = {20, 5, {0, 0, 0}, {1, 0, 0}, {0, 0, 0.25}, 0};
+      scene.cloths[0].stiffness = {10, 10, 0};
+      scene.time = {1.0 / 60, substeps, 5};
+      Simulation simulation(scene);
+      const std::vector<double> start = simulation.positions();
+      for (int frame = 0; frame < 10; ++frame) simulation.advance_frame();
+      std::vector<double> thrown(start.size(), 0);
+      for (std::size_t n = 1; n < thrown.size(); n += 3) thrown[n] = 1.3;
+      simulation.set_state(start, thrown);
+      const Snapshot set = simulation.snapshot();
+      const std::string what = std::to_string(int(s.method)) + " " + std::to_string(int(s.sweep)) +
+                               " order " + std::to_string(s.order) + ", " +
+                               std::to_string(substeps) + " substeps";
+      EXPECT_NEAR(fall(simulation, 0, 1.3), 0, 1e-4) << what;
+      Simulation other(scene);
+      other.restore(set);
+      EXPECT_NEAR(fall(other, 0, 1.3), 0, 1e-4) << what << ", from a snapshot";
+      EXPECT_EQ(other.hash(), simulation.hash()) << what;
+      for (const Solver& next : {solvers()[0], solvers()[5]}) {
+        Simulation changed(scene);
+        for (int frame = 0; frame < 10; ++frame) changed.advance_frame();
+        Scene by = scene;
+        by.solver = next;
+        changed.set_scene(by);
+        const double t = changed.time();
+        EXPECT_NEAR(fall(changed, -0.5 * 9.81 * t * t, -9.81 * t), 0, 1e-4)
+            << what << ", then " << int(next.method) << " order " << next.order;
+      }
+    }
 }
 
 TEST(OneSpring, PeriodConvergesWithTheSquareOfTheSubstep) {

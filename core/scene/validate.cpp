@@ -286,12 +286,12 @@ class Together {
   Check& result_;
 };
 
-}  // namespace
-
 // What a line of particles on the border stands for, of what an inner one does.
-static double border_share(int line, int lines) {
+double border_share(int line, int lines) {
   return line == 0 || line == lines - 1 ? 0.5 : 1;
 }
+
+}  // namespace
 
 void check_together(const Scene& scene, Check& result) {
   if (!result.full()) Together(scene, result).run();

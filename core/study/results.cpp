@@ -6,7 +6,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -127,8 +126,8 @@ void Results::write_frame(const std::string& payload) {
   bytes += payload;
   if (!write_all(file_.number, bytes.data(), bytes.size(), end_)) {
     const int why = errno;
-    if (::ftruncate(file_.number, off_t(end_)) != 0)
-      errno = why;  // the sum tells it from a whole one
+    // A part that stays all the same is told from a whole one by its sum.
+    [[maybe_unused]] const int cut = ::ftruncate(file_.number, off_t(end_));
     errno = why;
     fail(journal_, "writing failed (what is finished stays; --resume goes on)");
   }

@@ -141,7 +141,7 @@ void register_arrays(Class& type) {
                              R"(Windows onto each cloth's arrays, without a copy.
 
 A list with, for each cloth of r rows and c columns, positions (r, c, 3) float32 [m, from `origin`],
-velocities (r, c, 3) float32 [m/s; half a substep behind for the spring methods], inverse_mass (r, c)
+velocities (r, c, 3) float32 [m/s; half a substep behind but for solvers of order 2], inverse_mass (r, c)
 float32 [1/kg; 0 = held] and origin, 3 floats [m]. Read-only. They always show the present state; they
 stay valid when the simulation is gone, and hold its memory until they are. After set(), set_scene()
 and restore() ask for them anew: older ones keep the state of before.)");
@@ -152,7 +152,9 @@ and restore() ask for them anew: older ones keep the state of before.)");
   type.def_property_readonly(
       "velocities",
       [](Shared& s) { return triples(s.call([](const Simulation& x) { return x.velocities(); })); },
-      "A copy of all velocities at `time`, (particles, 3) float64 [m/s].");
+      "A copy of all velocities at `time`, (particles, 3) float64 [m/s]; those of methods that "
+      "project, where\n"
+      "the solver is of order 1, are of half a substep before.");
   type.def_property_readonly(
       "triangles",
       [](Shared& shared) {
@@ -287,7 +289,7 @@ void register_simulation(py::module_& module) {
       .def_readonly("positions", &ClothArrays::positions,
                     "(rows, columns, 3) float32 [m], from `origin`")
       .def_readonly("velocities", &ClothArrays::velocities,
-                    "(rows, columns, 3) float32 [m/s]; half a substep behind for spring methods")
+                    "(rows, columns, 3) float32 [m/s]; half a substep behind but for order 2")
       .def_readonly("inverse_mass", &ClothArrays::inverse_mass,
                     "(rows, columns) float32 [1/kg]; 0 = held")
       .def_readonly("origin", &ClothArrays::origin,

@@ -69,8 +69,9 @@ struct Report {
   std::vector<StageTime> stages;  // sums to wall_ms.total; one entry "step" unless profiled
   std::vector<SkippedStage> skipped;
   std::uint64_t hash = 0;  // of the final positions' bits
-  // Kinetic energy and momenta of springs with a strain limit are of half a substep before
-  // `sim_seconds`: what the springs alone would add since, the limit takes back.
+  // Kinetic energy and momenta are of half a substep before `sim_seconds` with springs that have a strain
+  // limit (what the springs alone would add since, the limit takes back) and with methods that project,
+  // where the solver is of the first order.
   struct {
     double kinetic = 0, elastic = 0, gravity = 0, total = 0;  // J
   } energy;

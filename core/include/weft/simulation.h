@@ -63,6 +63,7 @@ struct Snapshot {
   };
   double time = 0;  // s
   Vec3 origin{};    // m, what positions are counted from
+  double lag = 0;   // s, by which velocities lie behind the positions; 0 to 1
   std::vector<ClothState> cloths;
   std::vector<std::vector<Key>> paths;  // of the colliders
   std::size_t bytes() const;
@@ -100,10 +101,12 @@ class Simulation {
 
   // Positions of all particles as x,y,z in scene order (row-major j*nx+i, cloth after cloth).
   std::vector<double> positions() const;
-  // Velocities at time() in the same order [m/s].
+  // Velocities at time() in the same order [m/s]; those of methods that project, where the solver is of the
+  // first order, are of half a substep before.
   std::vector<double> velocities() const;
-  // Replaces all positions and velocities (same order, 3 values per particle); throws
-  // std::invalid_argument when the sizes differ or a value is not finite.
+  // Replaces all positions and velocities (same order, 3 values per particle), these at time() unless they
+  // are what velocities() tells: then nothing has changed. Throws std::invalid_argument when the sizes differ
+  // or a value is not finite.
   void set_state(std::span<const double> positions, std::span<const double> velocities);
 
   // Draws a particle of a cloth to a target by a spring of so many N/m, critically damped, until release();

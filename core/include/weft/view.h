@@ -13,11 +13,11 @@ namespace weft {
 // One cloth as a lattice of rows: component arrays of `rows * stride` floats, particle (i,j) at
 // j*stride + i with 0 <= i < columns. Lanes between columns and stride are padding.
 struct ClothView {
-  int columns = 0;                    // nx
-  int rows = 0;                       // ny
-  int stride = 0;                     // floats from one row to the next, a multiple of 16
-  std::span<const float> x, y, z;     // position from the view's origin [m]
-  std::span<const float> vx, vy, vz;  // velocity [m/s]; half a substep behind for `spring` methods
+  int columns = 0;                      // nx
+  int rows = 0;                         // ny
+  int stride = 0;                       // floats from one row to the next, a multiple of 16
+  std::span<const float> x, y, z;       // position from the view's origin [m]
+  std::span<const float> vx, vy, vz;    // velocity [m/s]; half a substep behind but for order 2
   std::span<const float> inverse_mass;  // 1/kg; 0 = pinned
   std::uint64_t topology_version = 0;   // rises when triangles change (tearing)
   bool torn = false;                    // whether any constraint is gone

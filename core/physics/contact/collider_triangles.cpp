@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kMostPlaces = 16;  // on the way of a fast collider
 constexpr double kDeep = 3e-2;   // of an edge: one that was as deep is looked at again at once
-constexpr int kPasses = 2;
+constexpr int kPasses = 2;       // over a row of stretched triangles: a lift moves those beside it
 constexpr int kTurns = 8;        // of one triangle in a substep
 // Of an edge: how near a triangle at rest is known. An edge of it that lies along an edge of the body is
 // nearest anywhere along that; the exact point jumps from end to end as it turns, and sheets draped over

@@ -25,6 +25,7 @@ Snapshot Simulation::State::snapshot() const {
   Snapshot m;
   m.time = double(frame) * scene.time.frame;
   m.origin = origin;
+  m.lag = is_explicit(method) ? 0 : lag;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     const Particles& p = cloths[n]->particles();
     Snapshot::ClothState c;
@@ -92,6 +93,8 @@ void Simulation::State::check(const Snapshot& m) const {
   require(m.cloths.size() == cloths.size() && m.paths.size() == scene.colliders.size(),
           "is of another scene");
   require(m.time >= 0 && m.time / scene.time.frame < kMostFrames, "has a time out of range");
+  require(m.lag >= 0 && m.lag <= 1,
+          "has velocities " + number(m.lag) + " s behind its positions (allowed: 0 to 1)");
   for (const double c : m.origin)
     require(std::abs(c) <= kFarthest && c == std::round(c),
             "has an origin that is not in whole meters (allowed: -1e9 to 1e9)");
@@ -138,13 +141,13 @@ void Simulation::State::restore(const Snapshot& m) {
   was_driven_ = false;
   take_substeps(began_.substeps);
   go_on_as(began_.method, began_.solver);
-  lag = is_explicit(method) || frame > 0 ? lag_between_substeps() : 0;
+  lag = is_explicit(method) ? dt / 2 : 0;
   for (std::size_t n = 0; is_explicit(method) && n < cloths.size(); ++n)
     spectra[n] = cloths[n]->model().spectrum(masses(n).span());
   status = Status{};
   make_self_contact();
   plan_changed();
-  set(positions, m.origin, velocities);
+  set(positions, m.origin, velocities, m.lag);
 }
 
 namespace {

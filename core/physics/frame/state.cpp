@@ -219,10 +219,9 @@ void Simulation::State::accelerations_now(std::size_t cloth, double behind,
   support(scene, step.cloth(), time, {dt, behind}, step.particles(), a);
 }
 
-// v <- v - a lag: velocities of explicit springs are taken to where they lie behind the positions.
-// `now` gives all velocities in double in place of v, so that what velocities() told comes back
-// exactly.
-void Simulation::State::stagger(const double* now) {
+// v <- v - a by: velocities of explicit springs are taken to where they lie behind the positions. `from`
+// gives all velocities in double in place of v, so that what velocities() told comes back exactly.
+void Simulation::State::stagger(double by, const double* from) {
   std::vector<Vec3> a;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     Particles& p = cloths[n]->particles();
@@ -230,16 +229,16 @@ void Simulation::State::stagger(const double* now) {
     p.for_each([&](int j, int i) {
       for (int c = 0; c < 3; ++c) {
         float& v = p.v.at(c, j, i);
-        const double start = now && p.w(j, i) > 0 ? *now : v;
-        v = float(start - a[std::size_t(p.number(j, i))][c] * lag);
-        if (now) ++now;
+        const double start = from && p.w(j, i) > 0 ? *from : v;
+        v = float(start - a[std::size_t(p.number(j, i))][c] * by);
+        if (from) ++from;
       }
     });
   }
 }
 
 void Simulation::State::set(std::span<const double> positions, const Vec3& from,
-                            std::span<const double> velocities) {
+                            std::span<const double> velocities, std::optional<double> behind) {
   std::size_t particles = 0;
   for (const auto& step : cloths) particles += std::size_t(step->particles().count());
   if (positions.size() != 3 * particles || velocities.size() != 3 * particles)
@@ -254,22 +253,27 @@ void Simulation::State::set(std::span<const double> positions, const Vec3& from,
     if (!(std::abs(positions[n] - off[n % 3]) < kFarAway))
       throw std::invalid_argument("a state holds a position more than 1e7 m away");
   std::size_t p = 0;
+  bool as_told = !behind;
   wake();
   for (auto& step : cloths) {
     Particles& l = step->particles();
     l.for_each([&](int j, int i) {
       for (int c = 0; c < 3; ++c, ++p) {
         l.x.at(c, j, i) = coordinate(positions[p] - off[c]);
-        l.v.at(c, j, i) = l.w(j, i) > 0 ? float(velocities[p]) : 0;
+        const float v = l.w(j, i) > 0 ? float(velocities[p]) : 0;
+        as_told &= v == l.v.at(c, j, i);
+        l.v.at(c, j, i) = v;
       }
     });
   }
   restart_stages();
   if (untangle) untangle->look();
   if (is_explicit(method)) {
-    stagger(velocities.data());
+    stagger(lag - behind.value_or(0), velocities.data());
     limit_ = stretched_limit();
     follow_stretch(limit_);
+  } else if (scene.solver.order == 1 && !as_told) {
+    lag = behind.value_or(0);
   }
   open_guard();
   ++changes;

@@ -38,8 +38,10 @@ struct Simulation::State {
   void carry(int cloth, const Vec3& velocity);
   void hold(int cloth, int particle, bool held);
   int cut(const Vec3& a, const Vec3& b, double width);
-  // Positions are counted from `from`.
-  void set(std::span<const double> positions, const Vec3& from, std::span<const double> velocities);
+  // Positions are counted from `from`; velocities lie `behind` them by so much [s]. Not given: as those that
+  // velocities() tells where they are these, else not at all.
+  void set(std::span<const double> positions, const Vec3& from, std::span<const double> velocities,
+           std::optional<double> behind = {});
   void move_collider(int collider, const Vec3& target);
   void set_path(std::size_t collider, std::vector<Key> keys);
   Snapshot snapshot() const;
@@ -132,7 +134,7 @@ struct Simulation::State {
   void make_self_contact();
   void take_substeps(int count);
   void set_substeps(int count);
-  void stagger(const double* now = nullptr);
+  void stagger(double by, const double* from = nullptr);
   double stretched_limit() const;
   int substeps_within(double limit) const;
   void follow_stretch(double limit);

@@ -77,7 +77,7 @@ void Simulation::State::choose_method_and_substeps() {
   take_substeps(count);
   if (is_explicit(method)) {
     lag = dt / 2;
-    if (!scene.solver.full_first_kick) stagger();
+    if (!scene.solver.full_first_kick) stagger(lag);
   }
   open_guard();
 }

@@ -9,8 +9,9 @@
 // velocity is no longer what the substep before left, because contact or a limit has changed it,
 // has no smooth past to extrapolate: it takes this substep by implicit Euler, x* = x_n, with h² for
 // its share of every correction. Before the first substep of all, and the first after a change of h, lies
-// free flight, x_{n-1} = x_n - h v_n + ½h² a, v_{n-1} = v_n - h a, a = g - c v_n. Both kinds go through the same sweeps: the constraints are solved with ⅔h
-// and inverse masses scaled by 1/(1 + ⅔h c), or by 9/4/(1 + h c).
+// free flight, x_{n-1} = x_n - h v_n + ½h² a, v_{n-1} = v_n - h a, a = g - c v_n. Both kinds go through the
+// same sweeps: the constraints are solved with ⅔h and inverse masses scaled by 1/(1 + ⅔h c), or by
+// 9/4/(1 + h c).
 #include "physics/kernels/second_order.h"
 
 #include "physics/kernels/row_kernels.h"
