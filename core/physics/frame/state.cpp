@@ -260,9 +260,9 @@ void Simulation::State::set(std::span<const double> positions, const Vec3& from,
     l.for_each([&](int j, int i) {
       for (int c = 0; c < 3; ++c, ++p) {
         l.x.at(c, j, i) = coordinate(positions[p] - off[c]);
-        const float v = l.w(j, i) > 0 ? float(velocities[p]) : 0;
-        as_told &= v == l.v.at(c, j, i);
-        l.v.at(c, j, i) = v;
+        float& v = l.v.at(c, j, i);
+        as_told &= v == float(velocities[p]);
+        v = l.w(j, i) > 0 ? float(velocities[p]) : 0;
       }
     });
   }
