@@ -149,6 +149,7 @@ inline void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
   r.x = p.x.row(0);
   r.v = p.v.row(0);
   r.w = p.weights(0);
+  r.sides = p.width[0] < 1;
   r.width = p.width.data();
   r.inverse_width = p.inverse_width.data();
 }

@@ -117,11 +117,14 @@ void add_jacobi(std::vector<Case>& cases) {
 void add_springs(std::vector<Case>& cases) {
   for (const bool damped : {false, true})
     for (const bool torn : {false, true})
-      add_rows(cases,
-               std::string("spring_rows") + (damped ? ", damped" : "") + (torn ? ", torn" : ""),
-               [=](const KernelTable& k, Patch& p, int begin, int end) {
-                 spring_rows(k, p, damped, torn, begin, end);
-               });
+      for (const bool sides : {false, true})
+        add_rows(cases,
+                 std::string("spring_rows") + (damped ? ", damped" : "") + (torn ? ", torn" : "") +
+                     (sides ? ", sides" : ""),
+                 [=](const KernelTable& k, Patch& p, int begin, int end) {
+                   if (sides) p.halve_sides();
+                   spring_rows(k, p, damped, torn, begin, end);
+                 });
   for (const bool damped : {false, true})
     add_rows(cases, std::string("spring_rows, watched") + (damped ? ", damped" : ""),
              [=](const KernelTable& k, Patch& p, int begin, int end) {

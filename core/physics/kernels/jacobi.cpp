@@ -9,8 +9,9 @@
 namespace weft::WEFT_KERNELS {
 namespace {
 
-// kAlike: all particles have one mass; kGains: velocities gain what positions do.
-template <bool kMayTear, bool kAlike, bool kGains>
+// kAlike: all particles have one mass, but for columns at the sides where kSides is set, which stand for half;
+// kGains: velocities gain what positions do.
+template <bool kMayTear, bool kAlike, bool kGains, bool kSides>
 struct JacobiLaw {
   using Rows = physics::JacobiRows;
   using Constants = physics::JacobiConstants;
@@ -22,6 +23,7 @@ struct JacobiLaw {
     const Constants& c = b.constants[F];
     if constexpr (kAlike) {
       const Wide inner = fnma(wide(c.kl), reciprocal, wide(c.k));
+      if constexpr (!kSides) return inner;
       // Along columns at the sides inverse masses and compliance are twice as much.
       if constexpr (along_column(F)) return inner * Block::of_columns(r.width, r, b);
       return at_sides<F>(r, b, inner);
@@ -31,7 +33,7 @@ struct JacobiLaw {
     const Wide wa = load(r.w + (b.x - r.x.x) + (kNextNear ? 1 : 0));
     const Wide wb = load(r.w + (far - r.x.x) + (kNextFar ? 1 : F == kRight2 ? 2 : 0));
     Wide compliance = wide(c.compliance);
-    if constexpr (along_column(F))
+    if constexpr (kSides && along_column(F))
       compliance = compliance * Block::of_columns(r.inverse_width, r, b);
     const Wide inertia = (wa + wb) * r.weight + compliance;
     // Two pinned ends of a rigid constraint have nothing to move.
@@ -42,16 +44,19 @@ struct JacobiLaw {
   WEFT_INLINE static Wide at_sides(const Rows& r, const Block& b, Wide inner) {
     const Constants& c = b.constants[F];
     const int last = b.left - (F == kRight2 ? 3 : 2);
-    if (c.one_side == 1 || (b.left != r.columns && last >= kLanes)) return inner;
+    if (b.left != r.columns && last >= kLanes) return inner;
     const WideInt first_lane = lane_numbers() == b.left - r.columns;
     const WideInt last_lane = lane_numbers() == last;
     return inner * select(first_lane & last_lane, wide(c.both_sides),
                           select(first_lane | last_lane, wide(c.one_side), wide(1)));
   }
+  WEFT_INLINE static Wide inverse_mass(const Rows& r, const Block& b) {
+    if constexpr (!kAlike) return load(r.w + (b.x - r.x.x));
+    return kSides ? Block::of_columns(r.inverse_width, r, b) * r.alike : wide(r.alike);
+  }
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 sum) {
     const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
-    Wide3 change =
-        sum * (kAlike ? Block::of_columns(r.inverse_width, r, b) * r.alike : load(r.w + lane));
+    Wide3 change = sum * inverse_mass(r, b);
     if constexpr (kAlike) change = select(lanes_below(b.left), change, Wide3{});
     store_planes(b.x, plane, load_planes(b.x, plane) + change);
     if constexpr (kGains) {
@@ -61,10 +66,14 @@ struct JacobiLaw {
   }
 };
 
+template <bool kMayTear, bool kAlike, bool kSides>
+void jacobi_rows_of(const physics::JacobiRows& r) {
+  r.inverse_dt > 0 ? plain_rows<JacobiLaw<kMayTear, kAlike, true, kSides>>(r)
+                   : plain_rows<JacobiLaw<kMayTear, kAlike, false, kSides>>(r);
+}
 template <bool kMayTear, bool kAlike>
 void jacobi_rows_of(const physics::JacobiRows& r) {
-  r.inverse_dt > 0 ? plain_rows<JacobiLaw<kMayTear, kAlike, true>>(r)
-                   : plain_rows<JacobiLaw<kMayTear, kAlike, false>>(r);
+  r.sides ? jacobi_rows_of<kMayTear, kAlike, true>(r) : jacobi_rows_of<kMayTear, kAlike, false>(r);
 }
 
 // The corrections of a block of constraints by unit inverse mass.

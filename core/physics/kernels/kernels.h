@@ -57,6 +57,7 @@ struct PlainRows {
   int columns, stride;
   Row3 x, v;       // row 0
   const float* w;  // inverse mass of row 0 [1/kg]
+  bool sides;      // whether the columns at both sides stand for half of an inner one
   // Width of cloth that each column stands for, of an inner one's, and its reciprocal: constraints along a
   // column have the one of their stiffness, particles the other of an inner one's inverse mass.
   const float *width, *inverse_width;

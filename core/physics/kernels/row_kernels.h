@@ -72,9 +72,9 @@ WEFT_INLINE Wide3 moved(Wide3 v, Wide w, Wide3 f, const Advance& a) {
   const Wide3 g = select(free, wide3(a.gx, a.gy, a.gz), Wide3{});
   return fma(f, w * a.kick, fma(v, wide(a.drag), g));
 }
-// The same where all particles are free, with one inverse mass but for the width that they stand for.
-WEFT_INLINE Wide3 moved(Wide3 v, float w, Wide inverse_width, Wide3 f, const Advance& a) {
-  return fma(f, inverse_width * (w * a.kick), fma(v, wide(a.drag), wide3(a.gx, a.gy, a.gz)));
+// The same where all particles are free; `gain`: w kick.
+WEFT_INLINE Wide3 moved_free(Wide3 v, Wide gain, Wide3 f, const Advance& a) {
+  return fma(f, gain, fma(v, wide(a.drag), wide3(a.gx, a.gy, a.gz)));
 }
 
 // v <- c v + kick (f/m + g), x <- x + dt v.

@@ -13,7 +13,8 @@ namespace {
 
 enum class Tear { never, torn, watched };
 
-template <bool kDamped, Tear kTear, bool kAlike = false>
+// kSides: columns at the sides stand for half.
+template <bool kDamped, Tear kTear, bool kSides, bool kAlike = false>
 struct SpringLaw {
   using Rows = SpringRows;
   using Constants = SpringConstants;
@@ -25,7 +26,7 @@ struct SpringLaw {
     const SpringConstants& c = b.constants[F];
     Wide spring = fnma(wide(c.kl), reciprocal, wide(c.k));
     if constexpr (kDamped) spring = fma(c.damping * rate, reciprocal * reciprocal, spring);
-    if constexpr (along_column(F)) spring = spring * Block::of_columns(r.width, r, b);
+    if constexpr (kSides && along_column(F)) spring = spring * Block::of_columns(r.width, r, b);
     return spring;
   }
   template <PlainStencil F>
@@ -38,7 +39,9 @@ struct SpringLaw {
     const Wide3 before = load_planes(r.v.x + lane, plane);
     Wide3 velocity;
     if constexpr (kAlike) {
-      velocity = moved(before, r.alike, Block::of_columns(r.inverse_width, r, b), force, r.advance);
+      Wide gain = wide(r.alike * r.advance.kick);
+      if constexpr (kSides) gain = gain * Block::of_columns(r.inverse_width, r, b);
+      velocity = moved_free(before, gain, force, r.advance);
       velocity = select(lanes_below(b.left), velocity, Wide3{});
     } else {
       velocity = moved(before, load(r.w + lane), force, r.advance);
@@ -48,13 +51,17 @@ struct SpringLaw {
   }
 };
 
-template <bool kDamped>
+template <bool kDamped, bool kSides>
 void spring_rows_of(const SpringRows& r) {
   if (!r.alive[0])
-    return r.alike > 0 ? plain_rows<SpringLaw<kDamped, Tear::never, true>>(r)
-                       : plain_rows<SpringLaw<kDamped, Tear::never>>(r);
-  if (!r.overlong) return plain_rows<SpringLaw<kDamped, Tear::torn>>(r);
-  plain_rows<SpringLaw<kDamped, Tear::watched>>(r);
+    return r.alike > 0 ? plain_rows<SpringLaw<kDamped, Tear::never, kSides, true>>(r)
+                       : plain_rows<SpringLaw<kDamped, Tear::never, kSides>>(r);
+  if (!r.overlong) return plain_rows<SpringLaw<kDamped, Tear::torn, kSides>>(r);
+  plain_rows<SpringLaw<kDamped, Tear::watched, kSides>>(r);
+}
+template <bool kDamped>
+void spring_rows_of(const SpringRows& r) {
+  r.sides ? spring_rows_of<kDamped, true>(r) : spring_rows_of<kDamped, false>(r);
 }
 
 // f_near += F, f_far -= F for every spring of the stencil. Within one row the difference of

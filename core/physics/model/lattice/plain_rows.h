@@ -33,6 +33,7 @@ class PlainRowsStage : public RowStage {
     r.x = l.x.row(0);
     r.v = l.v.row(0);
     r.w = l.w(0);
+    r.sides = l.column_width[0] < 1;
     r.width = l.column_width.data();
     r.inverse_width = l.inverse_width.data();
     for (int f = 0; f < kPlainStencils; ++f) {
