@@ -137,7 +137,7 @@ double Ledger::sum_of(Visit&& visit) const {
 // stiff as m/6dt². Whole lines feel more of it, up to all.
 double Ledger::bent(const std::vector<Vec3>& x) const {
   const double u = spacing_u(cloth_.grid), v = spacing_v(cloth_.grid);
-  const double k = cloth_.bending * std::max(u / v / (v * v), v / u / (u * u));
+  const double k = cloth_.bending.warp * std::max(u / v / (v * v), v / u / (u * u));
   const double most = mass_of_all() / double(x.size()) / (6 * dt_ * dt_);
   return weft::physics::bending_energy(cloth_, x) * (springs_ || k <= most ? 1 : most / k);
 }

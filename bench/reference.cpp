@@ -111,7 +111,7 @@ std::string unsupported(const weft::Scene& scene) {
   if (scene.cloths.size() != 1) return "not exactly one cloth";
   const weft::Cloth& c = scene.cloths[0];
   if (c.grid.jitter > 0) return "jitter";
-  if (c.bending > 0) return "bending";
+  if (c.bending.given()) return "bending";
   if (c.strain_limit > 0) return "strain limit";
   if (c.tear_strain > 0) return "tearing";
   if (c.self_collision.mode != weft::SelfCollisionMode::off) return "self-collision";

@@ -40,7 +40,7 @@ Scene scaled(Scene scene, double scale) {
   scene.wind.lift /= scale * scale * scale;
   for (Cloth& cloth : scene.cloths) {
     cloth.density /= scale * scale;
-    cloth.bending *= scale * scale;
+    cloth.bending = cloth.bending.warp * scale * scale;
     cloth.self_collision.thickness *= scale;
   }
   for (Collider& c : scene.colliders) {

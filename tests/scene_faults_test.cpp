@@ -341,6 +341,27 @@ TEST(Validate, NamesWhatIsNotFinite) {
             "/cloths/0/masses/2: masses[2] is not a number (NaN) (1e-9 to 1e6 kg)");
 }
 
+TEST(Validate, NamesWhatAMembraneDoesNotFit) {
+  weft::Scene scene;
+  weft::Cloth& cloth = scene.cloths.emplace_back();
+  cloth.membrane = {4, 9, 7, 1, 0};
+  cloth.stiffness.bend = 0;
+  cloth.level = 1;
+  cloth.bending = {};
+  cloth.bending.twist = 1e-5;
+  scene.solver.method = weft::Method::positional;
+  EXPECT_EQ(
+      told(weft::validate(scene)),
+      "/cloths/0/membrane: both membrane and stiffness or spring_damping are given (one of the "
+      "two)\n"
+      "/cloths/0/membrane: a membrane is given (not with method positional)\n"
+      "/cloths/0/membrane: a membrane is given beside a level (level 0)\n"
+      "/cloths/0/membrane/coupling: coupling is 7 (-6 to 6 N/m, the root of warp times weft)\n"
+      "/cloths/0/membrane: a grid has a membrane (stiffness, on a grid)\n"
+      "/cloths/0/bending: bending differs with the direction or is damped (one number, on a "
+      "grid)");
+}
+
 TEST(Validate, NamesWhatIsOutsideOfAnEnum) {
   weft::Scene scene;
   scene.cloths.emplace_back();

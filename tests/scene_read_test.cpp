@@ -61,6 +61,21 @@ TEST(ShippedScenes, AreLookedForInTheChosenFolderFirst) {
   EXPECT_EQ(read_scene(path).scene, read_scene("swing").scene);
 }
 
+TEST(Weft, BendingIsOneNumberOrOneForEachDirection) {
+  const auto read = [](const std::string& bending) {
+    return weft::read_scene_text(R"({"weft": 1, "cloths": [{"bending": )" + bending + "}]}");
+  };
+  EXPECT_EQ(read("2e-5").scene.cloths[0].bending, weft::Bending(2e-5));
+  const weft::SceneFile file = read(R"({"warp": 1e-5, "twist": 3e-6, "damping": 0.01})");
+  ASSERT_EQ(file.faults.size(), 1u);  // a grid bends alike in all directions
+  weft::Scene scene = file.scene;
+  weft::Bending expected(1e-5);
+  expected.weft = 0, expected.twist = 3e-6, expected.damping = 0.01;
+  EXPECT_EQ(scene.cloths[0].bending, expected);
+  scene.cloths[0].membrane = {5000, 4000, -300, 50, 1e-4};
+  EXPECT_EQ(weft::read_scene_text(weft::write_scene_text(scene)).scene, scene);
+}
+
 TEST(Course, MeansWhatTheCourseSays) {
   const Scene scene = shipped("pinned2");
   EXPECT_EQ(scene.gravity, (weft::Vec3{0, -9.8, 0}));

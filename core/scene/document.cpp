@@ -70,6 +70,16 @@ class FieldWriter {
     return object;
   }
 
+  static Json write(const Bending& bending) {
+    if (bending.plain()) return write(bending.warp);
+    Json object = Json::object();
+    object["warp"] = write(bending.warp);
+    object["weft"] = write(bending.weft);
+    object["twist"] = write(bending.twist);
+    object["damping"] = write(bending.damping);
+    return object;
+  }
+
   static Json write(const Friction& friction) {
     Json object = Json::object();
     if (friction.model == FrictionModel::course) {

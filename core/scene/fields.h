@@ -91,6 +91,15 @@ void fields(Walk& walk, Kinds& kinds) {
 }
 
 template <class Walk>
+void fields(Walk& walk, Membrane& membrane) {
+  walk("warp", membrane.warp);
+  walk("weft", membrane.weft);
+  walk("coupling", membrane.coupling);
+  walk("shear", membrane.shear);
+  walk("damping", membrane.damping);
+}
+
+template <class Walk>
 void fields(Walk& walk, SelfCollision& self) {
   walk("mode", self.mode);
   walk("thickness", self.thickness);
@@ -107,6 +116,7 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("lumping", cloth.lumping);
   walk("stiffness", cloth.stiffness);
   walk("spring_damping", cloth.spring_damping);
+  walk("membrane", cloth.membrane);
   walk("level", cloth.level);
   walk("level_diagonals", cloth.level_diagonals);
   walk("stiffness_gradient", cloth.stiffness_gradient);

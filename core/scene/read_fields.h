@@ -94,6 +94,18 @@ class FieldReader {
     }
   }
 
+  // One number stands for all three rigidities.
+  static void read(const Json& value, Bending& field) {
+    double all = 0;
+    read(value, all);
+    field = all;
+    FieldReader walk(value);
+    walk("warp", field.warp);
+    walk("weft", field.weft);
+    walk("twist", field.twist);
+    walk("damping", field.damping);
+  }
+
   static void read(const Json& value, Friction& field) {
     if (const Json* course = member(value, "course")) {
       field.model = FrictionModel::course;

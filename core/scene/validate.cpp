@@ -95,6 +95,7 @@ class Together {
       self_collision(cloth, place);
       level(cloth, place + "/level");
     }
+    material(cloth, place);
     if (sound({place + "/grid/points"})) pins(cloth, place + "/pins");
     const bool timed = sound({"/time", place + "/drag"}) && scene_.time.substeps > 0;
     const double loss = cloth.drag * scene_.time.frame / std::max(scene_.time.substeps, 1);
@@ -146,6 +147,33 @@ class Together {
                            : "a particle") +
                 std::string(" weighs ") + number_words(light ? least : most) + " kg",
             range_words(one));
+  }
+
+  void material(const Cloth& cloth, const std::string& place) {
+    const Membrane& membrane = cloth.membrane;
+    if (!sound({place + "/membrane", place + "/stiffness"})) return;
+    if (membrane.given()) membrane_fits(cloth, place);
+    const double most = std::sqrt(membrane.warp * membrane.weft);
+    if (membrane.coupling > most || membrane.coupling < -most)
+      fault(
+          place + "/membrane/coupling", "coupling is " + number_words(membrane.coupling),
+          number_words(-most) + " to " + number_words(most) + " N/m, the root of warp times weft");
+    if (membrane.given())
+      fault(place + "/membrane", "a grid has a membrane", "stiffness, on a grid");
+    if (sound({place + "/bending"}) && !cloth.bending.plain())
+      fault(place + "/bending", "bending differs with the direction or is damped",
+            "one number, on a grid");
+  }
+
+  // What a membrane cannot go with.
+  void membrane_fits(const Cloth& cloth, const std::string& place) {
+    if (cloth.stiffness != Kinds{1000, 1000, 200} || cloth.spring_damping != Kinds{})
+      fault(place + "/membrane", "both membrane and stiffness or spring_damping are given",
+            "one of the two");
+    if (sound({"/solver/method"}) && scene_.solver.method == Method::positional)
+      fault(place + "/membrane", "a membrane is given", "not with method positional");
+    if (sound({place + "/level"}) && cloth.level > 0)
+      fault(place + "/membrane", "a membrane is given beside a level", "level 0");
   }
 
   void self_collision(const Cloth& cloth, const std::string& place) {

@@ -72,6 +72,30 @@ struct Kinds {
   friend bool operator==(const Kinds&, const Kinds&) = default;
 };
 
+// The sheet as a continuum: stress is C (e + damping de/dt), with e Green's strain along warp (u) and weft
+// (v) and the angle between the two. In place of springs where it is given.
+struct Membrane {
+  double warp = 0;  // N/m, C11
+  double weft = 0;  // N/m, C22
+  double coupling =
+      0;  // N/m, C12; |C12| is at most the root of C11 C22, where the energy stays above zero
+  double shear = 0;    // N/m, C66
+  double damping = 0;  // s
+  bool given() const { return warp > 0 || weft > 0 || shear > 0; }
+  friend bool operator==(const Membrane&, const Membrane&) = default;
+};
+
+// Energy of curvature, an area: warp k11²/2 + weft k22²/2 + twist k12² [N·m]. A plate without lateral
+// contraction of flexural rigidity D has D for all three: a plain number.
+struct Bending {
+  double warp = 0, weft = 0, twist = 0;  // N·m
+  double damping = 0;                    // s; moments are D (k + damping dk/dt)
+  Bending(double all = 0) : warp(all), weft(all), twist(all) {}
+  bool given() const { return warp > 0 || weft > 0 || twist > 0; }
+  bool plain() const { return warp == weft && warp == twist && damping == 0; }
+  friend bool operator==(const Bending&, const Bending&) = default;
+};
+
 enum class SelfCollisionMode { off, particles, surface };
 
 // How a pair closer than the thickness is pushed apart: `stiff` separates it at once with
@@ -109,6 +133,7 @@ struct Cloth {
   Lumping lumping = Lumping::automatic;  // of masses by density, and of stiffness
   Kinds stiffness{1000, 1000, 200};      // N/m; 0 = none of that kind
   Kinds spring_damping;                  // N·s/m along the spring (method spring_friction)
+  Membrane membrane;                     // given: in place of springs
   int level = 0;  // n >= 1: constraints to distance 1..n along rows, columns and
                   // diagonals, all with stiffness.structural (seed 000)
   LevelDiagonals level_diagonals = LevelDiagonals::both;  // where level is not 0
@@ -118,7 +143,7 @@ struct Cloth {
   Vec3 velocity{};            // m/s; of all free particles at the start
   Vec3 spin{};                // rad/s; at the start, about the cloth's center of mass
   double drag = 0;            // 1/s; velocity is multiplied by 1 - dt*drag each substep
-  double bending = 0;         // N·m; flexural rigidity of a curvature energy
+  Bending bending;            // energy of curvature
   double strain_limit = 0;    // 0.1 = structural and shear constraints never beyond 110 %; 0 = off
   double tear_strain = 0;     // 0.5 = a constraint beyond 150 % is cut; 0 = cannot tear
   Tears tears = Tears::split;

@@ -123,7 +123,7 @@ double bytes_of(const Cloth& cloth, const Solver& solver) {
 double constraint_cost(const Cloth& cloth, const Solver& solver) {
   const double count = constraints_of(cloth);
   const double particles = double(cloth.grid.nx) * cloth.grid.ny;
-  const double bends = cloth.bending > 0 ? particles : 0;
+  const double bends = cloth.bending.given() ? particles : 0;
   if (solver.method == Method::spring) return count * cost::kSpring + bends * cost::kSpringBend;
   if (solver.method == Method::spring_friction)
     return count * cost::kDampedSpring + bends * cost::kSpringBend;

@@ -28,7 +28,7 @@ void BendLinks::make_whole() {
 
 BendingStiffness bending_stiffness(const Cloth& cloth) {
   const Grid& g = cloth.grid;
-  const double hu = spacing_u(g), hv = spacing_v(g), d = cloth.bending;
+  const double hu = spacing_u(g), hv = spacing_v(g), d = cloth.bending.warp;
   const double area = hu * hv;
   if (lumps_by_area(cloth))
     return {d * area / (hu * hu * hu * hu), d * area / (hv * hv * hv * hv), 2 * d / area};
@@ -42,7 +42,7 @@ double bending_energy(const Cloth& cloth, const std::vector<Vec3>& x, const Bend
     const Vec3 d = difference(x, n, particles, factor);
     energy += 0.5 * k * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
   };
-  if (cloth.bending > 0) for_each_bend(cloth, add, left);
+  if (cloth.bending.given()) for_each_bend(cloth, add, left);
   return energy;
 }
 

@@ -59,7 +59,7 @@ void for_each_bend(const Cloth& cloth, Visit&& visit, const BendLinks* left = nu
 template <class Position>
 void add_bending_forces(const Cloth& cloth, Position&& position, std::vector<Vec3>& force,
                         const BendLinks* left = nullptr) {
-  if (cloth.bending == 0) return;
+  if (!cloth.bending.given()) return;
   const auto add = [&](double k, int n, const int* particles, const double* factor) {
     for (int c = 0; c < 3; ++c) {
       double d = 0;

@@ -197,7 +197,7 @@ class BendingConstraints final : public WholeStage {
 }  // namespace
 
 std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Method method) {
-  if (parts.cloth.bending == 0) return nullptr;
+  if (!parts.cloth.bending.given()) return nullptr;
   if (method == Method::spring || method == Method::spring_friction)
     return std::make_unique<BendingForce>(parts);
   return std::make_unique<BendingConstraints>(parts, method == Method::compliant);

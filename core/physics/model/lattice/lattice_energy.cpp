@@ -141,7 +141,7 @@ double LatticeModel::stretch_energy(const Rows& x, double dt) const {
 
 double LatticeModel::held_energy(const Rows& x, double dt) const {
   double sum = stretch_energy(x, dt);
-  if (parts_.cloth.bending > 0) sum += bending_energy(parts_.cloth, lattice_.gather(x));
+  if (parts_.cloth.bending.given()) sum += bending_energy(parts_.cloth, lattice_.gather(x));
   return sum;
 }
 

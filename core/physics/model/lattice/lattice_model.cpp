@@ -38,7 +38,7 @@ LatticeModel::LatticeModel(const Scene& scene, int index, Method method, std::ui
 
 void LatticeModel::allow_tearing() {
   if (tearing_) return;
-  tearing_ = std::make_unique<LatticeTearing>(lattice_, stencils_, parts_.cloth.bending > 0,
+  tearing_ = std::make_unique<LatticeTearing>(lattice_, stencils_, parts_.cloth.bending.given(),
                                               parts_.cloth.tears);
   parts_.tearing = tearing_.get();
 }

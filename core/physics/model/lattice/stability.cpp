@@ -62,7 +62,7 @@ struct Operator {
     y.clear();
     for (const Stencil& f : stencils)
       for (int j = 0; j + f.dj < l.rows; ++j) apply_row(f, j, y);
-    if (cloth.bending > 0 && !damping) apply_bending(y);
+    if (cloth.bending.given() && !damping) apply_bending(y);
     for_each_component(
         [&](float* to) {
           for (std::size_t p = 0; p < size(); ++p) to[p] *= root_w[p];
