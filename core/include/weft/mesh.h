@@ -1,0 +1,44 @@
+// Triangle meshes as they come from files: what cloth of any shape is made of.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "weft/scene.h"
+
+namespace weft {
+
+// Vertices keep the numbers and the order that they have in the file.
+struct TriangleMesh {
+  // The vertices of one object or group of the file.
+  struct Group {
+    std::string name;
+    std::vector<int> vertices;  // ascending, each once
+  };
+  using Uv = std::array<double, 2>;
+
+  std::vector<Vec3> vertices;                 // m
+  std::vector<std::array<int, 3>> triangles;  // corners, counter-clockwise seen from outside
+  std::vector<std::array<Uv, 3>> uv;      // of every triangle's corners; empty: the file has none
+  std::vector<std::array<int, 2>> edges;  // loose ones, of no face
+  std::vector<Group> groups;
+};
+
+struct MeshFile {
+  TriangleMesh mesh;               // complete only when `faults` is empty
+  std::vector<Fault> faults;       // place: "file:line", or the file alone
+  std::vector<std::string> notes;  // what was repaired, a sentence each that begins with the file
+};
+
+// Reads a Wavefront .obj file: faces of three corners or more are cut into triangles. Repaired, with a
+// note: corners that repeat a vertex, faces given twice, faces turned over. Refused: what is not a finite
+// number, faces without area, edges of more than two faces, more than 2^22 triangles or 2^22 vertices.
+// Never throws on bad input.
+MeshFile read_mesh(const std::string& path);
+
+// The same from text in memory; `name` is what messages call it.
+MeshFile read_obj(std::string_view text, const std::string& name);
+
+}  // namespace weft

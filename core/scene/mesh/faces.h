@@ -1,0 +1,32 @@
+// A mesh while it is read: faces with the lines that they come from.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "weft/mesh.h"
+
+namespace weft::text {
+
+inline constexpr std::size_t kMaxVertices = std::size_t{1} << 22, kMaxTriangles = kMaxVertices;
+inline constexpr std::size_t kMaxMeshFaults = 20;
+
+// A mesh, and the line of the file that each of its triangles comes from.
+struct RawMesh {
+  MeshFile& file;
+  const std::string& name;
+  std::vector<int> lines;
+
+  void fault(int line, std::string what, std::string allowed) const;
+  void note(const std::string& what) const { file.notes.push_back(name + ": " + what); }
+  bool full() const { return file.faults.size() >= kMaxMeshFaults; }
+};
+
+// Cuts a polygon into triangles of its corners' numbers, by ears, seen along its mean normal; the shorter
+// diagonal of a quadrilateral where both lie inside.
+std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec3>& corners);
+
+// Drops what is given twice, turns faces so that neighbours agree, and tells of what cannot be cloth.
+void repair(RawMesh& mesh);
+
+}  // namespace weft::text
