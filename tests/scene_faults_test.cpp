@@ -144,18 +144,18 @@ constexpr Broken kBroken[] = {
     {R"({"weft": 1, "cloths": [{"pins": [[0, 0], [0, 0]]}]})",
      "/cloths/0/pins/1: the particle [0, 0] is pinned twice (once)"},
     {R"({"weft": 1, "cloths": [{"pins": [3]}]})",
-     "/cloths/0/pins/0: pins[0] is 3 (a list of 2 integers or an object with at, keys, rotate, follow)"},
+     "/cloths/0/pins/0: the pin [3, 0] is outside of the grid ([0, 0] to [1, 1])"},
     {R"({"weft": 1, "cloths": [{"pins": [[0, 0, 0]]}]})",
      "/cloths/0/pins/0: pins[0] has 3 items (a list of 2 integers)"},
     {R"({"weft": 1, "cloths": [{"pins": [{"keys": []}]}]})",
-     "/cloths/0/pins/0: at is missing (a list of 2 integers)"},
+     "/cloths/0/pins/0: at is missing (a list of 2 integers or an integer, 0 to 4194303)"},
     {R"({"weft": 1, "cloths": [{"pins": [{"at": [0, 0], "keys": [[1, 0,0,0], [1, 0,0,1]]}]}]})",
      "/cloths/0/pins/0/keys/1: time 1 comes after 1 (times that increase)"},
     {R"({"weft": 1, "cloths": [{"pins": [{"at": [0, 0], "keys": [[0, 0, 0]]}]}]})",
      "/cloths/0/pins/0/keys/0: keys[0] has 3 items (a list of 4 numbers)"},
     {R"({"weft": 1, "cloths": [{"pins": [[-1, 0], [0, 1.5], [7, 7]]}]})",
-     R"(/cloths/0/pins/0/0: pins[0][0] is -1 (0 to 4095)
-/cloths/0/pins/1/1: pins[1][1] is 1.5 (an integer, 0 to 4095)
+     R"(/cloths/0/pins/0/0: pins[0][0] is -1 (0 to 4194303)
+/cloths/0/pins/1/1: pins[1][1] is 1.5 (an integer, 0 to 4194303)
 /cloths/0/pins/2: the pin [7, 7] is outside of the grid ([0, 0] to [1, 1]))"},
     {R"({"weft": 1, "time": {"frame": 1, "substeps": 2}, "cloths": [{"drag": 3}]})",
      "/cloths/0/drag: drag takes 1.5 of the velocity in one substep (0 to 1: less drag or more substeps)"},
@@ -379,7 +379,7 @@ TEST(Validate, NamesAnEmptySceneAndAnEmptyGrid) {
   scene.cloths[0].pins.push_back({5, -1, {}});
   EXPECT_EQ(told(weft::validate(scene)),
             "/cloths/0/grid/points/0: points[0] is 1 (2 to 4096)\n"
-            "/cloths/0/pins/0/1: pins[0][1] is -1 (0 to 4095)");
+            "/cloths/0/pins/0/1: pins[0][1] is -1 (0 to 4194303)");
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ std::string needs_words(const Estimate& needed) {
 
 void require_memory(const Scene& scene, const std::string& place) {
   double particles = 0;
-  for (const Cloth& cloth : scene.cloths) particles += double(cloth.grid.nx) * cloth.grid.ny;
+  for (const Cloth& cloth : scene.cloths) particles += particle_count(cloth);
   const double free = free_memory();
   if (particles * kMostBytes < free) return;  // whatever else the scene asks for
   const double needed = estimate(scene).bytes;

@@ -45,10 +45,14 @@ void Animation::finish() {
   commit();
 }
 
+std::int64_t particle_count(const ClothView& cloth) {
+  if (!cloth.lanes.empty()) return static_cast<std::int64_t>(cloth.lanes.size());
+  return static_cast<std::int64_t>(cloth.columns) * cloth.rows;
+}
+
 std::int64_t particle_count(const View& view) {
   std::int64_t count = 0;
-  for (const ClothView& cloth : view.cloths)
-    count += static_cast<std::int64_t>(cloth.columns) * cloth.rows;
+  for (const ClothView& cloth : view.cloths) count += particle_count(cloth);
   return count;
 }
 

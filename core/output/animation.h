@@ -15,7 +15,8 @@ namespace weft {
 // The extension of a file name in small letters: ".pc2".
 std::string extension_of(const std::string& path);
 
-// Particles of all cloths.
+// Particles of one cloth, and of all.
+std::int64_t particle_count(const ClothView& cloth);
 std::int64_t particle_count(const View& view);
 
 // A position where it stands.
@@ -27,7 +28,8 @@ inline std::array<float, 3> placed(const View& view, float x, float y, float z) 
 // Calls work(x, y, z) for the particles of a cloth in scene order, from the view's origin.
 template <class Work>
 void for_each_particle(const ClothView& cloth, const Work& work) {
-  for (int j = 0; j < cloth.rows; ++j)
+  for (const std::uint32_t n : cloth.lanes) work(cloth.x[n], cloth.y[n], cloth.z[n]);
+  for (int j = 0; cloth.lanes.empty() && j < cloth.rows; ++j)
     for (int i = 0; i < cloth.columns; ++i) {
       const auto n = static_cast<std::size_t>(j) * static_cast<std::size_t>(cloth.stride) +
                      static_cast<std::size_t>(i);

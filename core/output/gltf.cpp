@@ -40,6 +40,8 @@ class Gltf final : public Animation {
       pair_.emplace(path);
     refuse_size(std::max<std::int64_t>(samples, 1), particle_count(first));
     for (const ClothView& cloth : first.cloths) {
+      if (!cloth.lanes.empty())
+        throw WriteError(path_, "a mesh is not written as glTF; .obj, .pc2 and .mdd take it");
       shapes_.push_back({cloth.columns, cloth.rows});
       append_indices(cloth);
     }

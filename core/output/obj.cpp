@@ -58,7 +58,7 @@ void append_quads(std::string& text, const ClothView& cloth, std::int64_t first)
   }
 }
 
-// What a torn cloth shows: its triangles, then its seams, whose points follow the particles.
+// What a mesh or a torn cloth shows: its triangles, then its seams, whose points follow the particles.
 void append_torn(std::string& text, const ClothView& cloth, std::int64_t first) {
   const auto face = [&](const std::array<std::int64_t, 3>& corners) {
     text += 'f';
@@ -68,12 +68,17 @@ void append_torn(std::string& text, const ClothView& cloth, std::int64_t first) 
     }
     text += '\n';
   };
+  std::vector<std::int64_t> numbers;  // of a mesh, by lane
+  if (!cloth.lanes.empty()) numbers.resize(cloth.x.size());
+  for (std::size_t n = 0; n < cloth.lanes.size(); ++n)
+    numbers[cloth.lanes[n]] = static_cast<std::int64_t>(n);
   const auto particle = [&](std::uint32_t p) {
+    if (!numbers.empty()) return first + numbers[p];
     const auto stride = static_cast<std::uint32_t>(cloth.stride);
     return first + static_cast<std::int64_t>(p / stride) * cloth.columns + p % stride;
   };
   for (const auto& t : cloth.triangles) face({particle(t[0]), particle(t[1]), particle(t[2])});
-  const std::int64_t points = first + static_cast<std::int64_t>(cloth.columns) * cloth.rows;
+  const std::int64_t points = first + particle_count(cloth);
   for (const auto& t : cloth.tear_triangles) face({points + t[0], points + t[1], points + t[2]});
 }
 
@@ -103,8 +108,7 @@ class ObjSequence final : public Animation {
       else
         append_quads(text_, cloth, first);
       file.write(text_);
-      first += static_cast<std::int64_t>(cloth.columns) * cloth.rows +
-               static_cast<std::int64_t>(cloth.tear_points.size());
+      first += particle_count(cloth) + static_cast<std::int64_t>(cloth.tear_points.size());
     }
     file.complete(false);
     ++samples_;

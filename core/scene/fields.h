@@ -84,6 +84,14 @@ void fields(Walk& walk, Grid& grid) {
 }
 
 template <class Walk>
+void fields(Walk& walk, MeshSource& mesh) {
+  walk("file", mesh.file);
+  walk("scale", mesh.scale);
+  walk("rotate", mesh.rotate);
+  walk("translate", mesh.translate);
+}
+
+template <class Walk>
 void fields(Walk& walk, Kinds& kinds) {
   walk("structural", kinds.structural);
   walk("shear", kinds.shear);
@@ -110,6 +118,7 @@ void fields(Walk& walk, SelfCollision& self) {
 template <class Walk>
 void fields(Walk& walk, Cloth& cloth) {
   walk("grid", cloth.grid);
+  walk("mesh", cloth.mesh);
   walk("density", cloth.density);
   walk("particle_mass", cloth.particle_mass);
   walk("masses", cloth.masses);

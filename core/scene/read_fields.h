@@ -85,10 +85,13 @@ class FieldReader {
   static void read(const Json& value, Pin& field) {
     if (const Json* at = member(value, "at")) {
       read(*at, Points{field.i, field.j});
+      read(*at, field.i);
       FieldReader walk(value);
       walk("keys", field.keys);
       walk("rotate", field.rotate);
       walk("follow", field.follow);
+    } else if (value.is_number()) {
+      read(value, field.i);
     } else {
       read(value, Points{field.i, field.j});
     }

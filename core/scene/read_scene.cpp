@@ -12,6 +12,7 @@
 #include "scene/overrides.h"
 #include "scene/shipped.h"
 #include "scene/validate.h"
+#include "weft/mesh.h"
 
 namespace weft {
 namespace {
@@ -115,6 +116,11 @@ std::string nearest_scene(const std::string& name) {
   return near.empty() ? "a path" : "a path, or a shipped scene; the nearest is \"" + near + "\"";
 }
 
+bool has_mesh(const Scene& scene) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(),
+                     [](const Cloth& cloth) { return cloth.mesh.given(); });
+}
+
 // The file's bytes, up to one more than any scene may have.
 bool read_bytes(const std::string& path, std::string& bytes) {
   std::ifstream file(path, std::ios::binary);
@@ -170,6 +176,11 @@ SceneFile read_scene(const std::string& path_or_name, const std::vector<Override
     file.faults.push_back({"", "the file cannot be read", "a readable file"});
   } else {
     file = read_scene_text(bytes, overrides);
+    if (file.faults.empty()) {
+      load_meshes(file.scene, std::filesystem::path(path).parent_path().string(), file.faults,
+                  file.notes);
+      if (file.faults.empty() && has_mesh(file.scene)) file.faults = validate(file.scene);
+    }
     if (file.scene.name.empty()) file.scene.name = std::filesystem::path(path).stem().string();
   }
   file.path = path;

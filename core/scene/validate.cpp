@@ -10,6 +10,7 @@
 
 #include "scene/document.h"
 #include "scene/fields.h"
+#include "weft/mesh.h"
 
 namespace weft {
 namespace text {
@@ -49,7 +50,7 @@ class Together {
     for (std::size_t c = 0; c < scene_.cloths.size() && !result_.full(); ++c) {
       const Cloth& one = scene_.cloths[c];
       const std::string place = "/cloths/" + std::to_string(c);
-      if (sound({place + "/grid"})) particles += std::int64_t{one.grid.nx} * one.grid.ny;
+      if (sound({place + "/grid"})) particles += std::int64_t{particle_count(one)};
       cloth(one, place);
     }
     if (particles > kMaxParticles)
@@ -90,18 +91,74 @@ class Together {
   }
 
   void cloth(const Cloth& cloth, const std::string& place) {
-    if (sound({place + "/grid"}) && grid(cloth.grid, place + "/grid")) {
-      masses(cloth, place);
-      self_collision(cloth, place);
-      level(cloth, place + "/level");
-    }
+    if (cloth.mesh.given())
+      mesh(cloth, place);
+    else
+      sheet(cloth, place);
     material(cloth, place);
-    if (sound({place + "/grid/points"})) pins(cloth, place + "/pins");
     const bool timed = sound({"/time", place + "/drag"}) && scene_.time.substeps > 0;
     const double loss = cloth.drag * scene_.time.frame / std::max(scene_.time.substeps, 1);
     if (timed && loss > 1 + 1e-9)
       fault(place + "/drag", "drag takes " + number_words(loss) + " of the velocity in one substep",
             "0 to 1: less drag or more substeps");
+  }
+
+  // What meshes do not have, or not yet.
+  void mesh(const Cloth& cloth, const std::string& place) {
+    if (!sound({place})) return;
+    const auto refuse = [&](bool given, const char* key, const char* what, const char* allowed) {
+      if (given) fault(place + key, what, allowed);
+    };
+    refuse(cloth.grid != Grid{}, "/mesh", "both grid and mesh are given", "one of the two");
+    refuse(cloth.particle_mass > 0 || !cloth.masses.empty(), "/mesh",
+           "masses are given with a mesh", "density");
+    refuse(cloth.stiffness.shear != Kinds{1000, 1000, 200}.shear ||
+               cloth.stiffness.bend != Kinds{1000, 1000, 200}.bend,
+           "/stiffness", "shear or bend is given with a mesh", "structural, for all edges alike");
+    refuse(cloth.level > 0, "/level", "a mesh has a level", "0, with a mesh");
+    refuse(cloth.stiffness_gradient > 0, "/stiffness_gradient", "a mesh has a gradient",
+           "0, with a mesh");
+    refuse(cloth.strain_limit > 0, "/strain_limit", "a mesh has a strain limit", "0, with a mesh");
+    refuse(cloth.tear_strain > 0, "/tear_strain", "a mesh is to tear", "0, with a mesh");
+    refuse(cloth.self_collision.mode != SelfCollisionMode::off, "/self_collision/mode",
+           "a mesh is to meet itself", "off, with a mesh");
+    const Method method = scene_.solver.method;
+    const bool springs = method == Method::spring || method == Method::spring_friction;
+    refuse(!springs && sound({"/solver/method"}), "/mesh",
+           "a mesh is to be projected by the scene's method",
+           "method spring or spring_friction, with a mesh");
+    refuse(scene_.wind.drag > 0 || scene_.wind.lift > 0, "/mesh", "wind blows on a mesh",
+           "wind without drag and lift, with a mesh");
+    for (const Collider& collider : scene_.colliders)
+      if (collider.cuts)
+        return fault(place + "/mesh", "a collider cuts a mesh", "grids alone are cut");
+    mesh_pins(cloth, place + "/pins");
+  }
+
+  void mesh_pins(const Cloth& cloth, const std::string& place) {
+    std::set<int> held;
+    const int count = particle_count(cloth);
+    for (std::size_t k = 0; k < cloth.pins.size() && !result_.full(); ++k) {
+      const Pin& pin = cloth.pins[k];
+      const std::string here = place + "/" + std::to_string(k);
+      if (pin.j != 0 || pin.i < 0 || (count > 0 && pin.i >= count))
+        fault(here,
+              "the pin " + (pin.j == 0 ? std::to_string(pin.i) : at(pin.i, pin.j)) +
+                  " is no vertex of the mesh",
+              count > 0 ? "0 to " + std::to_string(count - 1) : "a number from 0 on");
+      else if (!held.insert(pin.i).second)
+        fault(here, "the vertex " + std::to_string(pin.i) + " is pinned twice", "once");
+      path(pin, here);
+    }
+  }
+
+  void sheet(const Cloth& cloth, const std::string& place) {
+    if (sound({place + "/grid"}) && grid(cloth.grid, place + "/grid")) {
+      masses(cloth, place);
+      self_collision(cloth, place);
+      level(cloth, place + "/level");
+    }
+    if (sound({place + "/grid/points"})) pins(cloth, place + "/pins");
   }
 
   bool grid(const Grid& grid, const std::string& place) {
@@ -158,6 +215,7 @@ class Together {
       fault(
           place + "/membrane/coupling", "coupling is " + number_words(membrane.coupling),
           number_words(-most) + " to " + number_words(most) + " N/m, the root of warp times weft");
+    if (cloth.mesh.given()) return;
     if (membrane.given())
       fault(place + "/membrane", "a grid has a membrane", "stiffness, on a grid");
     if (sound({place + "/bending"}) && !cloth.bending.plain())
@@ -211,15 +269,20 @@ class Together {
               "[0, 0] to " + at(grid.nx - 1, grid.ny - 1));
       else if (!held.insert({pin.i, pin.j}).second)
         fault(here, "the particle " + at(pin.i, pin.j) + " is pinned twice", "once");
-      keys(pin.keys, here + "/keys");
-      keys(pin.rotate.keys, here + "/rotate/keys");
-      if (length(pin.rotate.axis) < kMinSpacing)
-        fault(here + "/rotate/axis", "axis is zero", "a direction at least 1e-6 long");
-      const auto colliders = static_cast<int>(scene_.colliders.size());
-      if (pin.follow >= colliders)
-        fault(here + "/follow", "there is no collider " + std::to_string(pin.follow),
-              colliders == 0 ? "the scene has none" : "0 to " + std::to_string(colliders - 1));
+      path(pin, here);
     }
+  }
+
+  // How a pin moves.
+  void path(const Pin& pin, const std::string& here) {
+    keys(pin.keys, here + "/keys");
+    keys(pin.rotate.keys, here + "/rotate/keys");
+    if (length(pin.rotate.axis) < kMinSpacing)
+      fault(here + "/rotate/axis", "axis is zero", "a direction at least 1e-6 long");
+    const auto colliders = static_cast<int>(scene_.colliders.size());
+    if (pin.follow >= colliders)
+      fault(here + "/follow", "there is no collider " + std::to_string(pin.follow),
+            colliders == 0 ? "the scene has none" : "0 to " + std::to_string(colliders - 1));
   }
 
   template <class AnyKey>
@@ -249,6 +312,7 @@ class Together {
     double spacing = std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < scene_.cloths.size(); ++c) {
       if (!sound({"/cloths/" + std::to_string(c) + "/grid"})) return;
+      if (scene_.cloths[c].mesh.given()) continue;
       const Grid& grid = scene_.cloths[c].grid;
       spacing = std::min({spacing, spacing_u(grid), spacing_v(grid)});
     }
@@ -333,7 +397,16 @@ std::vector<Fault> validate(const Scene& scene) {
   text::check(text::scene_schema_json(), document, result);
   text::release(document);
   text::check_together(scene, result);
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    if (scene.cloths[c].mesh.given() && !scene.cloths[c].mesh.shape)
+      result.fault("/cloths/" + std::to_string(c) + "/mesh/file", "the mesh is not read",
+                   "load_meshes() reads it");
   return std::move(result.faults);
+}
+
+int particle_count(const Cloth& cloth) {
+  if (!cloth.mesh.given()) return cloth.grid.nx * cloth.grid.ny;
+  return cloth.mesh.shape ? int(cloth.mesh.shape->vertices.size()) : 0;
 }
 
 double spacing_u(const Grid& grid) {

@@ -39,7 +39,7 @@ struct ShippedScene {
 // wrong is in `faults`.
 SceneFile read_scene(const std::string& path_or_name, const std::vector<Override>& overrides = {});
 
-// The same from text in memory.
+// The same from text in memory. No other file is read: meshes are left to load_meshes() (weft/mesh.h).
 SceneFile read_scene_text(std::string_view json, const std::vector<Override>& overrides = {});
 
 // The scene as a Weft scene file, such that reading it gives the same scene.

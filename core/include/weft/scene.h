@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -38,10 +39,10 @@ struct Rotation {
   friend bool operator==(const Rotation&, const Rotation&) = default;
 };
 
-// A held particle of the grid. Its place is where it starts or where its keys say, turned by its
+// A held particle of the grid, or, with j 0, particle i of a mesh. Its place is where it starts or where its keys say, turned by its
 // rotation, and then moved by as much as the collider that it follows has moved since the start.
 struct Pin {
-  int i = 0;  // column, 0 … nx-1
+  int i = 0;  // column, 0 … nx-1; of a mesh the vertex
   int j = 0;  // row, 0 … ny-1
   std::vector<Key> keys;
   Rotation rotate{};
@@ -61,6 +62,20 @@ struct Grid {
   Vec3 v{0, 0, 1};    // whole side, m
   double jitter = 0;  // m; each particle starts up to this far off the sheet along its normal
   friend bool operator==(const Grid&, const Grid&) = default;
+};
+
+struct TriangleMesh;  // weft/mesh.h
+
+// Cloth of any shape: the triangles of a mesh file, whose vertices are its particles, in the file's order.
+// What is read is scaled, turned and then moved.
+struct MeshSource {
+  std::string file;                             // .obj; beside the scene file, or absolute
+  double scale = 1;                             // > 0; m for each unit of the file
+  Vec3 rotate{};                                // degrees, about x, then y, then z
+  Vec3 translate{};                             // m
+  std::shared_ptr<const TriangleMesh> shape{};  // as read (load_meshes()), or made by a program
+  bool given() const { return !file.empty() || shape; }
+  friend bool operator==(const MeshSource&, const MeshSource&) = default;
 };
 
 // One value for each kind of constraint: structural (1,0) (0,1), shear (1,1) (1,-1),
@@ -127,6 +142,7 @@ enum class Lumping { automatic, area, equal };
 
 struct Cloth {
   Grid grid;
+  MeshSource mesh;             // given: in place of the grid
   double density = 0.3;        // kg/m²; total mass density*|u x v|, shared as `lumping` says
   double particle_mass = 0;    // kg; > 0 replaces density
   std::vector<double> masses;  // kg, nx*ny in row-major order; not empty: replaces both
@@ -294,6 +310,12 @@ struct Fault {
 // Every fault of a scene, empty when it can be simulated. A Simulation refuses any other.
 std::vector<Fault> validate(const Scene& scene);
 
+// How many particles a cloth has; 0 where its mesh is not read yet.
+int particle_count(const Cloth& cloth);
+
+// Where the vertices of a cloth's mesh, which is read, start [m].
+std::vector<Vec3> placed_vertices(const MeshSource& mesh);
+
 // Spacing of the grid along u and v [m].
 double spacing_u(const Grid& grid);
 double spacing_v(const Grid& grid);
@@ -306,7 +328,12 @@ inline int particle_number(const Grid& grid, int i, int j) {
   return j * grid.nx + i;
 }
 
-// Mass of particle (i,j) [kg] by the cloth's masses, particle_mass, or density and lumping.
+// The number of the particle that a pin holds.
+inline int particle_number(const Cloth& cloth, const Pin& pin) {
+  return cloth.mesh.given() ? pin.i : particle_number(cloth.grid, pin.i, pin.j);
+}
+
+// Mass of particle (i,j) of a grid [kg] by the cloth's masses, particle_mass, or density and lumping.
 double particle_mass(const Cloth& cloth, int i, int j);
 
 // Whether a cloth's border counts half (Lumping::area, be it by Lumping::automatic).

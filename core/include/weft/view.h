@@ -10,7 +10,7 @@
 
 namespace weft {
 
-// One cloth as a lattice of rows: component arrays of `rows * stride` floats, particle (i,j) at
+// One cloth as rows of particles: component arrays of `rows * stride` floats, particle (i,j) at
 // j*stride + i with 0 <= i < columns. Lanes between columns and stride are padding.
 struct ClothView {
   int columns = 0;                      // nx
@@ -19,8 +19,11 @@ struct ClothView {
   std::span<const float> x, y, z;       // position from the view's origin [m]
   std::span<const float> vx, vy, vz;    // velocity [m/s]; half a substep behind but for order 2
   std::span<const float> inverse_mass;  // 1/kg; 0 = pinned
-  std::uint64_t topology_version = 0;   // rises when triangles change (tearing)
-  bool torn = false;                    // whether any constraint is gone
+  // Of a mesh, whose rows are of different lengths: where each particle is in the component arrays. Of a
+  // grid: none.
+  std::span<const std::uint32_t> lanes;
+  std::uint64_t topology_version = 0;  // rises when triangles change (tearing)
+  bool torn = false;                   // whether any constraint is gone
   // With topology_version > 0: the triangles that are left, corners as j*stride + i. Else all, two of
   // every square: (i,j) (i+1,j) (i,j+1) and (i+1,j) (i+1,j+1) (i,j+1).
   std::span<const std::array<std::uint32_t, 3>> triangles;

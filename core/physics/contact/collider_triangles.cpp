@@ -114,7 +114,7 @@ class ColliderTriangles final : public RowStage {
         far_(parts, collider_.fastest()),
         particles_(particles),
         upright_(collider.shape),
-        edge_(longest_edge(parts.cloth.grid)),
+        edge_(longest_edge(parts.cloth)),
         allowed_(parts.cloth, collider),
         edges_(parts_),
         lengths_(std::size_t(parts.lattice.rows)) {}

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "physics/model/path.h"
+#include "weft/mesh.h"
 
 namespace weft::physics {
 namespace {
@@ -13,17 +14,25 @@ constexpr double kStrain = 0.2;  // SpeculativeCulling's
 
 }  // namespace
 
-double longest_edge(const Grid& grid) {
-  return std::hypot(spacing_u(grid), spacing_v(grid));
+double longest_edge(const Cloth& cloth) {
+  if (!cloth.mesh.given()) return std::hypot(spacing_u(cloth.grid), spacing_v(cloth.grid));
+  const std::vector<Vec3> x = placed_vertices(cloth.mesh);
+  double longest = 0;  // squared
+  for (const auto& t : cloth.mesh.shape->triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 e = minus(x[std::size_t(t[(k + 1) % 3])], x[std::size_t(t[k])]);
+      longest = std::max(longest, dot(e, e));
+    }
+  return std::sqrt(longest);
 }
 
 bool resolves(const Cloth& cloth, const Collider& collider) {
   const double feature = std::visit([](const auto& s) { return feature_of(s); }, collider.shape);
-  return feature + collider.offset > kSmallFeature * longest_edge(cloth.grid);
+  return feature + collider.offset > kSmallFeature * longest_edge(cloth);
 }
 
 AllowedDepth::AllowedDepth(const Cloth& cloth, const Collider& collider)
-    : edge_(longest_edge(cloth.grid)), at_rest_(0), stretched_(kSlack * edge_), harmless_(0) {
+    : edge_(longest_edge(cloth)), at_rest_(0), stretched_(kSlack * edge_), harmless_(0) {
   if (!resolves(cloth, collider)) return;
   const double radius =
       collider.offset + std::visit([](const auto& s) { return feature_of(s); }, collider.shape);

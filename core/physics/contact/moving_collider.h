@@ -20,7 +20,7 @@ struct StartInside {
 inline constexpr int kPulledFrames = 10;
 
 // Of a flat triangle of the cloth [m].
-double longest_edge(const Grid& grid);
+double longest_edge(const Cloth& cloth);
 
 // Whether the cloth's mesh is fine enough for the collider's features: more than kSmallFeature of those
 // edges. Else it could slip through between the particles.

@@ -42,7 +42,7 @@ void find_triangles_inside(const ClothParts& parts, const Collider& collider, St
   const Particles& l = parts.particles;
   const bool resolved = resolves(parts.cloth, collider);
   const AllowedDepth allowed(parts.cloth, collider);
-  const double edge = longest_edge(parts.cloth.grid);
+  const double edge = longest_edge(parts.cloth);
   const Upright upright(collider.shape);
   const Vec3 place = place_at(collider, found.time);
   for (const std::array<int, 3>& triangle : parts.model.surface().triangles) {
@@ -91,7 +91,7 @@ double deepest_in(const Cloth& cloth, const Collider& collider, double time,
   const Vec3 place = place_at(collider, time);
   const Upright upright(collider.shape);
   const AllowedDepth allowed(cloth, collider);
-  const double at_rest = longest_edge(cloth.grid);
+  const double at_rest = longest_edge(cloth);
   constexpr double kFlatness = 0.02;  // of an edge: so deep a moving sheet cuts a sharp edge
   return std::visit(
       [&](const auto& shape) {

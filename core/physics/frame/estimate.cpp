@@ -7,6 +7,7 @@
 
 #include "physics/model/lattice/stability.h"
 #include "physics/model/lattice/stencil.h"
+#include "weft/mesh.h"
 #include "weft/simulation.h"
 
 namespace weft {
@@ -28,6 +29,7 @@ constexpr double kTearing = 60;
 constexpr double kMasses = 40;
 constexpr double kParticles = 430;  // contact of a folded sheet; 230 where it lies flat
 constexpr double kSurface = 1100;   // 900 where it lies flat
+constexpr double kMeshVertex = 2500;
 }  // namespace memory
 
 // Nanoseconds on one thread of a current x86-64 core with AVX-512, measured as docs/benchmarks.md tells
@@ -38,6 +40,7 @@ constexpr double kFrameParticle = 12;            // a particle and frame: saving
 constexpr double kSpring = 0.5, kDampedSpring = 0.75;
 constexpr double kGaussSeidel = 1.0, kJacobi = 0.6, kLine = 1.3;  // and sweep
 constexpr double kSpringBend = 2, kSweepBend = 5;                 // from here on: a particle
+constexpr double kVertex = 9, kBentVertex = 18;                   // of a mesh
 constexpr double kProjection = 1.2, kTethers = 1.5;
 constexpr double kStrainLimit = 1.2, kTearing = 0.6, kWind = 0.8;
 constexpr double kCollider = 0.5, kBox = 20;       // and collider; a box meets whole triangles
@@ -50,7 +53,8 @@ bool is_spring(Method method) {
 
 // A cutting of a cloth with the same springs: its corner, as heavy as its lightest particle.
 Cloth cutting(const Cloth& from) {
-  constexpr int kPoints = 24;  // a side; the longest constraint spans 8
+  if (from.mesh.given()) return from;  // its finest triangles may be anywhere
+  constexpr int kPoints = 24;          // a side; the longest constraint spans 8
   Cloth cloth;
   const Grid& grid = from.grid;
   cloth.grid.nx = std::min(grid.nx, kPoints);
@@ -99,6 +103,7 @@ Way way_of(const Scene& scene) {
 }
 
 double constraints_of(const Cloth& cloth) {
+  if (cloth.mesh.given()) return 1.5 * double(cloth.mesh.shape->triangles.size());
   double count = 0;
   for (const Stencil& f : stencils_of(cloth))
     count += double(std::max(0, f.per_row(cloth.grid.nx))) * std::max(0, cloth.grid.ny - f.dj);
@@ -116,14 +121,16 @@ double bytes_of(const Cloth& cloth, const Solver& solver) {
   if (!cloth.masses.empty()) each += memory::kMasses;
   if (cloth.self_collision.mode == SelfCollisionMode::particles) each += memory::kParticles;
   if (cloth.self_collision.mode == SelfCollisionMode::surface) each += memory::kSurface;
+  if (cloth.mesh.given()) return memory::kMeshVertex * particle_count(cloth);
   return each * row_stride(cloth.grid.nx) * cloth.grid.ny;
 }
 
 // Of one substep [ns].
 double constraint_cost(const Cloth& cloth, const Solver& solver) {
   const double count = constraints_of(cloth);
-  const double particles = double(cloth.grid.nx) * cloth.grid.ny;
+  const double particles = particle_count(cloth);
   const double bends = cloth.bending.given() ? particles : 0;
+  if (cloth.mesh.given()) return particles * (bends > 0 ? cost::kBentVertex : cost::kVertex);
   if (solver.method == Method::spring) return count * cost::kSpring + bends * cost::kSpringBend;
   if (solver.method == Method::spring_friction)
     return count * cost::kDampedSpring + bends * cost::kSpringBend;
@@ -145,8 +152,7 @@ double substep_cost(const Scene& scene, const Cloth& cloth, const Solver& solver
             (std::holds_alternative<Box>(collider.shape) ? cost::kBox : cost::kCollider);
   if (cloth.self_collision.mode == SelfCollisionMode::particles) each += cost::kParticles;
   if (cloth.self_collision.mode == SelfCollisionMode::surface) each += cost::kSurface;
-  return cost::kSubstep + constraint_cost(cloth, solver) +
-         each * double(cloth.grid.nx) * cloth.grid.ny;
+  return cost::kSubstep + constraint_cost(cloth, solver) + each * particle_count(cloth);
 }
 
 std::string words(double value, const char* unit) {
@@ -166,10 +172,10 @@ Estimate estimate(const Scene& scene) {
   e.bytes = memory::kProgram;
   double nanoseconds = 0;
   for (const Cloth& cloth : scene.cloths) {
-    e.particles += std::int64_t(cloth.grid.nx) * cloth.grid.ny;
+    e.particles += std::int64_t(particle_count(cloth));
     e.constraints += std::int64_t(constraints_of(cloth));
     e.bytes += bytes_of(cloth, way.solver);
-    nanoseconds += cost::kFrame + cost::kFrameParticle * double(cloth.grid.nx) * cloth.grid.ny +
+    nanoseconds += cost::kFrame + cost::kFrameParticle * particle_count(cloth) +
                    way.substeps * substep_cost(scene, cloth, way.solver);
   }
   e.frame_seconds = nanoseconds * 1e-9;

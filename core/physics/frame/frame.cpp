@@ -214,6 +214,7 @@ std::optional<int> first_at_fault(const Particles& p) {
 
 // A particle as messages name it: [column, row] in a grid.
 std::string name_of(const Cloth& cloth, int particle) {
+  if (cloth.mesh.given()) return "particle " + std::to_string(particle);
   return "particle [" + std::to_string(particle % cloth.grid.nx) + "," +
          std::to_string(particle / cloth.grid.nx) + "]";
 }

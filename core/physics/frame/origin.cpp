@@ -16,6 +16,7 @@ Scene moved(Scene scene, const Vec3& by) {
   const auto move = [&](Vec3& p) { p = plus(p, by); };
   for (Cloth& cloth : scene.cloths) {
     move(cloth.grid.origin);
+    move(cloth.mesh.translate);
     for (Pin& pin : cloth.pins) {
       for (Key& key : pin.keys) move(key.position);
       if (!pin.rotate.keys.empty()) move(pin.rotate.about);
@@ -35,16 +36,20 @@ Vec3 origin_of(const Scene& scene) {
   Vec3 low, high, middle;
   low.fill(std::numeric_limits<double>::infinity());
   high.fill(-std::numeric_limits<double>::infinity());
-  for (const Cloth& cloth : scene.cloths)
+  const auto cover = [&](const Vec3& corner) {
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], corner[k]);
+      high[k] = std::max(high[k], corner[k]);
+    }
+  };
+  for (const Cloth& cloth : scene.cloths) {
+    const Grid& g = cloth.grid;
+    if (cloth.mesh.given())
+      for (const Vec3& p : placed_vertices(cloth.mesh)) cover(p);
     for (const double a : {0, 1})
-      for (const double b : {0, 1}) {
-        const Grid& g = cloth.grid;
-        const Vec3 corner = plus(g.origin, plus(times(g.u, a), times(g.v, b)));
-        for (int k = 0; k < 3; ++k) {
-          low[k] = std::min(low[k], corner[k]);
-          high[k] = std::max(high[k], corner[k]);
-        }
-      }
+      for (const double b : {0, 1})
+        if (!cloth.mesh.given()) cover(plus(g.origin, plus(times(g.u, a), times(g.v, b))));
+  }
   bool near = true;
   for (int k = 0; k < 3; ++k) {
     middle[k] = std::round((low[k] + high[k]) / 2);

@@ -98,6 +98,11 @@ View Simulation::view() const {
     c.vy = l.v.component(1);
     c.vz = l.v.component(2);
     c.inverse_mass = state_->masses(n).span();
+    if (const DrawnMesh* drawn = step->model().drawn_mesh()) {
+      c.lanes = drawn->lanes;
+      c.triangles = drawn->triangles;
+      c.topology_version = 1;
+    }
     if (Tearing* t = step->model().tearing()) {
       const TornSurface torn = t->surface();
       c.topology_version = t->version();

@@ -21,6 +21,11 @@ std::size_t Snapshot::bytes() const {
   return bytes;
 }
 
+// Of a grid; a mesh counts as one row.
+static int columns_of(const Cloth& cloth) {
+  return cloth.mesh.given() ? particle_count(cloth) : cloth.grid.nx;
+}
+
 Snapshot Simulation::State::snapshot() const {
   Snapshot m;
   m.time = double(frame) * scene.time.frame;
@@ -29,7 +34,7 @@ Snapshot Simulation::State::snapshot() const {
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     const Particles& p = cloths[n]->particles();
     Snapshot::ClothState c;
-    c.columns = scene.cloths[n].grid.nx;
+    c.columns = columns_of(scene.cloths[n]);
     c.positions.reserve(3 * std::size_t(p.count()));
     c.velocities.reserve(c.positions.capacity());
     for (const Vec3& v : velocities_now(*this, n))
@@ -64,7 +69,7 @@ bool all_finite(const Numbers& numbers) {
 void check_cloth(const Snapshot::ClothState& c, const ClothStep& step, std::size_t colliders) {
   const int particles = step.particles().count();
   const std::size_t values = 3 * std::size_t(particles);
-  require(c.columns == step.cloth().grid.nx && c.positions.size() == values &&
+  require(c.columns == columns_of(step.cloth()) && c.positions.size() == values &&
               c.velocities.size() == values && c.inside.size() == colliders,
           "is of another scene");
   require(all_finite(c.positions) && all_finite(c.velocities),
@@ -157,11 +162,11 @@ namespace {
 void change_pins(const Cloth& before, const Cloth& after, Snapshot::ClothState& cloth) {
   const auto pinned = [](const Cloth& c, int particle) {
     return std::any_of(c.pins.begin(), c.pins.end(),
-                       [&](const Pin& p) { return particle_number(c.grid, p.i, p.j) == particle; });
+                       [&](const Pin& p) { return particle_number(c, p) == particle; });
   };
   std::erase_if(cloth.held, [&](int at) { return pinned(before, at) && !pinned(after, at); });
   for (const Pin& p : after.pins) {
-    const int at = particle_number(after.grid, p.i, p.j);
+    const int at = particle_number(after, p);
     if (!pinned(before, at) &&
         std::find(cloth.held.begin(), cloth.held.end(), at) == cloth.held.end())
       cloth.held.push_back(at);
@@ -175,8 +180,8 @@ void Simulation::set_scene(Scene scene) {
   const Scene &before = this->scene(), after = next.scene();
   bool same = before.cloths.size() == after.cloths.size();
   for (std::size_t n = 0; same && n < after.cloths.size(); ++n)
-    same = before.cloths[n].grid.nx == after.cloths[n].grid.nx &&
-           before.cloths[n].grid.ny == after.cloths[n].grid.ny;
+    same = columns_of(before.cloths[n]) == columns_of(after.cloths[n]) &&
+           particle_count(before.cloths[n]) == particle_count(after.cloths[n]);
   if (same) {
     Snapshot m = state_->snapshot();
     for (std::size_t n = 0; n < after.cloths.size(); ++n)

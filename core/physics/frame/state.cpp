@@ -60,7 +60,7 @@ struct FarPins {
 FarPins far_pins(const Cloth& cloth, double distance) {
   FarPins far;
   for (const Pin& pin : cloth.pins) {
-    if (!pin.moves()) continue;
+    if (!pin.moves() || cloth.mesh.given()) continue;
     const Vec3 off = minus(pin_alone_at(cloth, pin, 0), place_on(cloth.grid, pin.i, pin.j));
     const double length = std::sqrt(dot(off, off));
     if (length <= distance) continue;
@@ -176,6 +176,7 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
                   : "moved out over " + std::to_string(kPulledFrames) + " frames"));
     }
     const Cloth& cloth = scene.cloths[c];
+    if (cloth.mesh.given()) continue;
     const double spacing = std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
     if (const FarPins far = far_pins(cloth, spacing); far.count > 0)
       notes.push_back(which + ": " + std::to_string(far.count) +

@@ -55,6 +55,13 @@ void Simulation::State::choose_method_and_substeps() {
     if (count == kAutoSubsteps && resolved) {
       count = clamp_to_int(needed, 1, kMostSubsteps);
       notes.push_back("substeps from the stability limit of " + number(limit) + " s");
+    } else if (only_explicit() && (!resolved || scene.time.frame / count > limit)) {
+      if (!resolved)
+        throw SceneError({{"/cloths", "the mesh needs " + number(needed) + " substeps a frame",
+                           "softer or heavier cloth, larger triangles or shorter frames"}});
+      count = clamp_to_int(needed, 1, kMostSubsteps);
+      notes.push_back("the mesh needs substeps below " + number(limit) + " s; " +
+                      std::to_string(count) + " a frame run");
     } else if (!resolved || scene.time.frame / count > limit) {
       notes.push_back("springs need substeps below " + number(limit) + " s, " + number(needed) +
                       " a frame at " + number(kLimitShare) +
@@ -80,6 +87,11 @@ void Simulation::State::choose_method_and_substeps() {
     if (!scene.solver.full_first_kick) stagger(lag);
   }
   open_guard();
+}
+
+bool Simulation::State::only_explicit() const {
+  return std::any_of(cloths.begin(), cloths.end(),
+                     [](const auto& step) { return step->model().only_explicit(); });
 }
 
 void Simulation::State::take_substeps(int count) {
@@ -114,6 +126,7 @@ bool Simulation::State::carry_out(Verdict verdict) {
                 " gained energy from nowhere; velocities were reduced to what is left without it");
       return false;
     case Verdict::change_method:
+      if (only_explicit()) return carry_out(Verdict::clamp);
       restore();
       change_method(which, count);
       break;

@@ -326,6 +326,8 @@ struct TearRow {
   float longest;        // m
 };
 
+struct MeshRow;  // kernels/mesh.h
+struct MeshForces;
 struct TransposeRows;
 struct SecondOrderRow;  // kernels/second_order.h
 struct TetherRow;
@@ -380,6 +382,9 @@ struct KernelTable {
   float (*greatest_square)(const FarRows&);     // of a constraint's length
   double (*stretch_energy)(const StretchRow&);  // J
   void (*tangent)(const TangentRow&);
+  void (*mesh_load)(const MeshRow&);       // positions and velocities into records, forces <- 0
+  void (*mesh_forces)(const MeshForces&);  // of triangles, added to the records of their corners
+  void (*mesh_move)(const MeshRow&);       // leapfrog step from the forces of the records
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

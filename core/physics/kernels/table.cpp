@@ -51,6 +51,9 @@ const physics::KernelTable& table() {
       .greatest_square = greatest_square,
       .stretch_energy = stretch_energy,
       .tangent = tangent,
+      .mesh_load = mesh_load,
+      .mesh_forces = mesh_forces,
+      .mesh_move = mesh_move,
   };
   return table;
 }

@@ -59,6 +59,8 @@ class ClothModel {
   // The grid behind the cloth, for stages that use its implicit structure; null where there is none.
   virtual LatticeParts* lattice() { return nullptr; }
 
+  // Whether no method that projects can move it.
+  virtual bool only_explicit() const { return false; }
   // Appends the stages that move the particles by this method and the scene's solver, up to contact;
   // then, after those of contact, what may not be exceeded at a substep's end.
   virtual void append_motion(Method method, StageList& list) = 0;
@@ -67,6 +69,8 @@ class ClothModel {
 
   // The triangles that are left.
   virtual const SurfaceMesh& surface() const = 0;
+  // What views show of a mesh; null: they know grids by themselves.
+  virtual const DrawnMesh* drawn_mesh() const { return nullptr; }
   virtual ConstraintCounts constraints() const = 0;
   virtual Pull pull() const = 0;
 

@@ -2,10 +2,13 @@
 #include "physics/model/particles.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "physics/model/vector.h"
 
 namespace weft::physics {
 
-Particles::Particles(const std::vector<int>& counts, bool keep_previous)
+Particles::Particles(const std::vector<int>& counts, bool keep_previous, std::vector<int> numbers)
     : rows(int(counts.size())),
       stride(row_stride(*std::max_element(counts.begin(), counts.end()))),
       first(counts.size() + 1),
@@ -14,7 +17,10 @@ Particles::Particles(const std::vector<int>& counts, bool keep_previous)
       inverse_mass(static_cast<std::size_t>(rows) * stride),
       column_width(static_cast<std::size_t>(stride)),
       inverse_width(static_cast<std::size_t>(stride)),
-      row_inverse_mass(static_cast<std::size_t>(rows)) {
+      row_inverse_mass(static_cast<std::size_t>(rows)),
+      numbers_(std::move(numbers)),
+      slots_(numbers_.size()) {
+  for (std::size_t n = 0; n < numbers_.size(); ++n) slots_[std::size_t(numbers_[n])] = int(n);
   for (std::size_t j = 0; j < counts.size(); ++j) first[j + 1] = first[j] + counts[j];
   if (keep_previous) previous = Rows(rows, stride);
   std::fill_n(column_width.data(), column_width.size(), 1.0f);
@@ -23,9 +29,13 @@ Particles::Particles(const std::vector<int>& counts, bool keep_previous)
 
 Particles::Place Particles::place(int particle) const {
   assert(particle >= 0 && particle < count());
-  const auto next = std::upper_bound(first.begin(), first.end(), particle);
+  return place_of_slot(slots_.empty() ? particle : slots_[std::size_t(particle)]);
+}
+
+Particles::Place Particles::place_of_slot(int slot) const {
+  const auto next = std::upper_bound(first.begin(), first.end(), slot);
   const int j = int(next - first.begin()) - 1;
-  return {j, particle - first[std::size_t(j)]};
+  return {j, slot - first[std::size_t(j)]};
 }
 
 std::vector<Vec3> Particles::gather(const Rows& values) const {
@@ -49,6 +59,24 @@ void Particles::weigh_row(int j) {
   for (int i = 0; i < count(j); ++i)
     uniform &= row[i] == inner * inverse_width[static_cast<std::size_t>(i)];
   row_inverse_mass[static_cast<std::size_t>(j)] = uniform ? inner : 0.0f;
+}
+
+void set_in_motion(Particles& p, const Vec3& velocity, const Vec3& spin,
+                   const std::vector<double>& masses) {
+  if (velocity == Vec3{} && spin == Vec3{}) return;
+  Vec3 middle{};
+  double mass = 0;
+  p.for_each([&](int j, int i) {
+    const double m = masses[std::size_t(p.number(j, i))];
+    middle = plus(middle, times(p.position(j, i), m));
+    mass += m;
+  });
+  middle = times(middle, 1 / mass);
+  p.for_each([&](int j, int i) {
+    if (!(p.w(j, i) > 0)) return;
+    const Vec3 v = plus(velocity, cross(spin, minus(p.position(j, i), middle)));
+    for (int k = 0; k < 3; ++k) p.v.at(k, j, i) = float(v[std::size_t(k)]);
+  });
 }
 
 EnergyRow energy_row(const Particles& particles, ConstRow3 x, ConstRow3 v, int j,

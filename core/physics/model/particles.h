@@ -2,7 +2,7 @@
 // 64-byte aligned, each row padded by at least 16 lanes. A row of a grid is a row; work on row j touches
 // rows j … j+reach (step/stage.h) whatever the rows stand for.
 //
-// Particles are numbered row after row. Arrays of one value for each, as those in double precision that
+// Particles are numbered row after row, unless an order of their own is given. Arrays of one value for each, as those in double precision that
 // measure a run, are in that order.
 #pragma once
 
@@ -15,11 +15,12 @@ namespace weft::physics {
 
 struct Particles {
   // As many rows as `counts`, each with so many particles, all at rest at zero and held.
-  // `keep_previous`: with room for earlier positions.
-  Particles(const std::vector<int>& counts, bool keep_previous);
+  // `keep_previous`: with room for earlier positions. `numbers`: of the particles, row after row; empty:
+  // 0, 1, 2 …
+  Particles(const std::vector<int>& counts, bool keep_previous, std::vector<int> numbers = {});
 
   int rows, stride;        // stride: floats from one row to the next
-  std::vector<int> first;  // the number of the first particle of each row, and how many there are
+  std::vector<int> first;  // how many particles there are in the rows before each, and in all
   Rows x;                  // position [m]
   Rows v;                  // velocity [m/s]
   // Earlier positions, where a stage asks for them: as predicted, or, for the second order, before the
@@ -40,7 +41,10 @@ struct Particles {
     int j, i;  // row, lane in it
   };
   Place place(int particle) const;
-  int number(int j, int i) const { return first[std::size_t(j)] + i; }
+  int number(int j, int i) const {
+    const int slot = first[std::size_t(j)] + i;
+    return numbers_.empty() ? slot : numbers_[std::size_t(slot)];
+  }
   // Where its values are in the component arrays.
   std::size_t lane(int particle) const {
     const Place p = place(particle);
@@ -51,7 +55,11 @@ struct Particles {
   // Calls visit(j, i) for every particle, in the order of their numbers.
   template <class Visit>
   void for_each(Visit&& visit) const {
-    for (int j = 0; j < rows; ++j)
+    for (const int slot : slots_) {
+      const Place p = place_of_slot(slot);
+      visit(p.j, p.i);
+    }
+    for (int j = 0; slots_.empty() && j < rows; ++j)
       for (int i = 0, n = count(j); i < n; ++i) visit(j, i);
   }
   // Positions or velocities in double precision.
@@ -65,9 +73,19 @@ struct Particles {
   const float* w(int j) const { return inverse_mass.data() + static_cast<std::size_t>(j) * stride; }
   float w(int j, int i) const { return inverse_mass[static_cast<std::size_t>(j) * stride + i]; }
   std::size_t bytes() const {
-    return x.bytes() + v.bytes() + previous.bytes() + inverse_mass.size() * sizeof(float);
+    return x.bytes() + v.bytes() + previous.bytes() + inverse_mass.size() * sizeof(float) +
+           (numbers_.size() + slots_.size()) * sizeof(int);
   }
+
+ private:
+  Place place_of_slot(int slot) const;
+  std::vector<int> numbers_;  // of the particles, row after row; empty: 0, 1, 2 …
+  std::vector<int> slots_;    // the other way round
 };
+
+// Gives free particles a velocity [m/s] and a spin [rad/s] about the center of all masses [kg].
+void set_in_motion(Particles& particles, const Vec3& velocity, const Vec3& spin,
+                   const std::vector<double>& masses);
 
 // Row j with positions x and velocities v, as the energy_sum is made of it.
 EnergyRow energy_row(const Particles& particles, ConstRow3 x, ConstRow3 v, int j,

@@ -102,11 +102,13 @@ inline Vec3 place_on(const Grid& grid, int i, int j) {
               plus(times(grid.u, i / double(grid.nx - 1)), times(grid.v, j / double(grid.ny - 1))));
 }
 
-// Where a pin is at a time; but for what it follows.
-inline Vec3 pin_alone_at(const Cloth& cloth, const Pin& pin, double time) {
-  const Vec3 base =
-      pin.keys.empty() ? place_on(cloth.grid, pin.i, pin.j) : position_at(pin.keys, time);
+// Where a pin is at a time whose particle starts at `place`; but for what it follows.
+inline Vec3 pin_alone_at(const Pin& pin, const Vec3& place, double time) {
+  const Vec3 base = pin.keys.empty() ? place : position_at(pin.keys, time);
   return pin.rotate.keys.empty() ? base : turned(pin.rotate, base, time);
+}
+inline Vec3 pin_alone_at(const Cloth& cloth, const Pin& pin, double time) {
+  return pin_alone_at(pin, place_on(cloth.grid, pin.i, pin.j), time);
 }
 
 }  // namespace weft::physics

@@ -23,4 +23,7 @@ struct Push {
 };
 Push push_of(const ClothParts& parts, double dt);
 
+// Constants of the leapfrog move over one substep.
+Advance advance_of(const ClothParts& parts, const Substep& substep);
+
 }  // namespace weft::physics

@@ -13,4 +13,10 @@ struct SurfaceMesh {
   std::uint64_t version = 0;                  // rises when they change
 };
 
+// The same by lanes of the component arrays, for views: where each particle is, and the triangles' corners.
+struct DrawnMesh {
+  std::vector<std::uint32_t> lanes;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
 }  // namespace weft::physics

@@ -164,7 +164,7 @@ class Tethers final : public RowStage {
       const Place p = slot.places[std::size_t(j) * l.columns + i];
       const Pin* pin = p.i < 0 ? nullptr : moving_[std::size_t(p.j) * l.columns + p.i];
       if (!pin) continue;
-      const Vec3 x = pin_at(parts_, *pin, time);
+      const Vec3 x = parts_.model.pin_position(*pin, time);
       for (int k = 0; k < 3; ++k) slot.pin.at(k, slot.row[std::size_t(j)], i) = float(x[k]);
     }
   }

@@ -8,33 +8,6 @@
 
 namespace weft::physics {
 
-namespace {
-
-// Velocity and spin at the start, of the particles that are free.
-void set_in_motion(const Cloth& cloth, Lattice& l) {
-  if (cloth.velocity == Vec3{} && cloth.spin == Vec3{}) return;
-  const auto at = [&](int i, int j) {
-    return Vec3{l.x.at(0, j, i), l.x.at(1, j, i), l.x.at(2, j, i)};
-  };
-  Vec3 middle{};
-  double mass = 0;
-  for (int j = 0; j < l.rows; ++j)
-    for (int i = 0; i < l.columns; ++i) {
-      const double m = particle_mass(cloth, i, j);
-      middle = plus(middle, times(at(i, j), m));
-      mass += m;
-    }
-  middle = times(middle, 1 / mass);
-  for (int j = 0; j < l.rows; ++j)
-    for (int i = 0; i < l.columns; ++i) {
-      if (!(l.w(j, i) > 0)) continue;
-      const Vec3 v = plus(cloth.velocity, cross(cloth.spin, minus(at(i, j), middle)));
-      for (int k = 0; k < 3; ++k) l.v.at(k, j, i) = float(v[k]);
-    }
-}
-
-}  // namespace
-
 Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bool keep_previous) {
   const Grid& g = cloth.grid;
   Lattice l(g.nx, g.ny, keep_previous);
@@ -65,7 +38,10 @@ Lattice make_lattice(const Cloth& cloth, int cloth_index, std::uint64_t seed, bo
     for (int k = 0; k < 3; ++k) l.x.at(k, pin.j, pin.i) = coordinate(start[k]);
   }
   for (int j = 0; j < g.ny; ++j) l.weigh_row(j);
-  set_in_motion(cloth, l);
+  std::vector<double> masses;
+  if (cloth.velocity != Vec3{} || cloth.spin != Vec3{})
+    l.for_each([&](int j, int i) { masses.push_back(particle_mass(cloth, i, j)); });
+  set_in_motion(l, cloth.velocity, cloth.spin, masses);
   return l;
 }
 

@@ -7,7 +7,8 @@
 #include "physics/model/lattice/energy.h"
 #include "physics/model/lattice/lattice_model.h"
 #include "physics/model/lattice/stability.h"
-#include "physics/model/vector.h"
+#include "physics/model/path.h"
+#include "weft/shape.h"
 
 namespace weft::physics {
 namespace {
@@ -105,7 +106,10 @@ double LatticeModel::limited_strain() const {
 }
 
 Vec3 LatticeModel::pin_position(const Pin& pin, double time) const {
-  return pin_at(parts_, pin, time);
+  const Vec3 alone = pin_alone_at(parts_.cloth, pin, time);
+  if (pin.follow < 0) return alone;
+  const auto n = std::size_t(pin.follow);
+  return plus(alone, minus(displacement(parts_.scene.colliders[n], time), first_moves_[n]));
 }
 
 double LatticeModel::greatest_coordinate(const Rows& x) const {

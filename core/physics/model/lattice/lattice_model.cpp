@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "physics/model/keyed_pins.h"
 #include "physics/model/lattice/plain_rows.h"
 #include "weft/shape.h"
 
@@ -128,11 +129,6 @@ std::size_t LatticeModel::bytes() const {
                       (history_ ? history_->bytes() : 0);
   if (tearing_) bytes += tearing_->bytes() + overlong_.size();
   return bytes;
-}
-
-std::unique_ptr<ClothModel> make_model(const Scene& scene, int index, Method method,
-                                       std::uint64_t seed, const KernelTable& kernels) {
-  return std::make_unique<LatticeModel>(scene, index, method, seed, kernels);
 }
 
 }  // namespace weft::physics

@@ -132,18 +132,6 @@ int greatest_reach(const LatticeParts& parts) {
   return reach;
 }
 
-Advance advance_of(const LatticeParts& parts, const Substep& s) {
-  // Explicit forces are those at the start of the substep, where they are symmetric about the velocity.
-  const double back = is_explicit(parts.method) ? s.dt : s.dt / 2;
-  const Vec3 g = gravity_at(parts.scene, s.time - back);
-  return {float(s.dt),
-          float(s.kick),
-          float(std::max(0.0, 1 - s.kick * parts.cloth.drag)),
-          float(g[0] * s.kick),
-          float(g[1] * s.kick),
-          float(g[2] * s.kick)};
-}
-
 std::unique_ptr<RowStage> make_springs(const LatticeParts& parts, bool damped) {
   if (is_plain(parts)) return std::make_unique<PlainSprings>(parts, damped);
   return std::make_unique<StencilSprings>(parts, greatest_reach(parts), damped);

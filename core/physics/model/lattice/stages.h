@@ -27,21 +27,14 @@ struct LatticeParts : ClothParts {
   std::int64_t constraints() const;
 };
 
-// Where a pin is at a time [s].
-Vec3 pin_at(const LatticeParts& parts, const Pin& pin, double time);
-
 // The most rows that a constraint spans.
 int greatest_reach(const LatticeParts& parts);
-
-// Constants of the leapfrog move over one substep.
-Advance advance_of(const LatticeParts& parts, const Substep& substep);
 
 std::unique_ptr<RowStage> make_springs(const LatticeParts& parts, bool damped);
 // `corrections`: what sweeps have found, if they gather it.
 std::unique_ptr<RowStage> make_predict(const LatticeParts& parts, struct Multipliers* multipliers,
                                        Rows* corrections);
 std::unique_ptr<RowStage> make_velocity(const LatticeParts& parts, bool compliant);
-std::unique_ptr<RowStage> make_keyed_pins(const LatticeParts& parts);
 // m, past which a constraint tears.
 inline float tear_length(const Cloth& cloth, const Stencil& stencil) {
   return float(stencil.rest * (1 + cloth.tear_strain));

@@ -1,0 +1,50 @@
+// Triangles of a mesh as kernels see them. A substep goes through the rows of vertices; those that triangles
+// of a row reach lie in records of four floats, a few rows in turn, in place of component arrays: a corner
+// is one load then.
+#pragma once
+
+#include "physics/kernels/kernels.h"
+
+namespace weft::physics {
+
+inline constexpr int kBatch = 16;  // triangles, no two of which share a vertex
+inline constexpr int kMeshCorners =
+    6;  // of a triangle, and those of its neighbours across each side
+
+// One row of vertices, and where its records are: position, velocity and force.
+struct MeshRow {
+  int columns;
+  Row3 x, v;
+  const float* w;
+  float *position, *velocity, *force;  // 4 floats a vertex; velocity may be null
+  Advance advance;
+};
+
+// Of 16 triangles. Records are told by their number; those of no triangle, and of no neighbour, are the
+// last, which nobody reads.
+struct alignas(64) MeshBatch {
+  std::int32_t corner[kMeshCorners][kBatch];
+  // x = corner 1 - corner 0, y = corner 2 - corner 0: d/du = x du[0] + y du[1], d/dv likewise [1/m].
+  float du[2][kBatch], dv[2][kBatch];
+  float area[kBatch];     // m²; 0: no triangle
+  float rest[3][kBatch];  // m; of the sides from corner k to the next
+  float half[3][kBatch];  // 1, or 0 for no triangle
+  // Hinge k: corner 3 + k off the triangle, as weights of all: away[k] (corner 3+k - foot) + own[k]
+  // (corner k+2 - foot), each foot at a share of the side from corner k on.
+  float away[3][kBatch], away_at[3][kBatch], own[3][kBatch], own_at[3][kBatch];
+  float moment[6][kBatch];  // of the hinges: 00 11 22 01 12 20 [N·m³]
+};
+
+struct MeshForces {
+  const MeshBatch* batches;
+  int count;
+  const float *position, *velocity;  // records; velocity null: nothing is damped
+  float* force;
+  bool membrane;                      // else springs along the sides
+  float c11, c22, c12, c66, damping;  // N/m, s
+  float stiffness, spring_damping;    // N/m, N·s/m; half of an inner edge's
+  bool bends;
+  float bend_damping;  // s
+};
+
+}  // namespace weft::physics

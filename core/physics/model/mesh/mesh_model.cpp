@@ -1,0 +1,226 @@
+#include "physics/model/mesh/mesh_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/model/keyed_pins.h"
+#include "physics/model/largest_eigenvalue.h"
+#include "physics/model/path.h"
+#include "physics/model/push.h"
+#include "weft/shape.h"
+
+namespace weft::physics {
+namespace {
+
+// Where what no force reaches is heavy enough for arithmetic, and held.
+constexpr double kLooseMass = 1;  // kg
+
+std::vector<Joined> edges_of(const TriangleMesh& mesh) {
+  std::vector<Joined> edges;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+double distance(const Vec3& a, const Vec3& b) {
+  const Vec3 e = minus(a, b);
+  return std::sqrt(dot(e, e));
+}
+
+}  // namespace
+
+MeshModel::MeshModel(const Scene& scene, int index, Method method, const KernelTable& kernels)
+    : mesh_(*scene.cloths[std::size_t(index)].mesh.shape),
+      method_(method),
+      start_(placed_vertices(scene.cloths[std::size_t(index)].mesh)),
+      triangles_(rest_triangles(mesh_, start_, scene.cloths[std::size_t(index)].bending)),
+      material_(material_of(scene.cloths[std::size_t(index)], method == Method::spring_friction)),
+      order_(order_of(mesh_)),
+      particles_(order_.counts, false, order_.vertices),
+      parts_{scene, scene.cloths[std::size_t(index)], method_, particles_, kernels, *this},
+      edges_(edges_of(mesh_)) {
+  for (const Collider& c : scene.colliders) first_moves_.push_back(displacement(c, 0));
+  for (const auto& [a, b] : edges_)
+    rest_.push_back(distance(start_[std::size_t(a)], start_[std::size_t(b)]));
+  surface_.triangles = mesh_.triangles;
+  const auto lane = [&](int p) { return std::uint32_t(particles_.lane(p)); };
+  for (int p = 0; p < particles_.count(); ++p) drawn_.lanes.push_back(lane(p));
+  for (const auto& [a, b, c] : mesh_.triangles)
+    drawn_.triangles.push_back({lane(a), lane(b), lane(c)});
+  weigh();
+  place();
+}
+
+// A third of each triangle to each corner.
+void MeshModel::weigh() {
+  masses_.assign(start_.size(), 0);
+  for (const RestTriangle& r : triangles_)
+    for (std::size_t k = 0; k < 3; ++k)
+      masses_[std::size_t(r.corner[k])] += parts_.cloth.density * r.area / 3;
+}
+
+void MeshModel::place() {
+  particles_.for_each([&](int j, int i) {
+    const auto p = std::size_t(particles_.number(j, i));
+    for (int k = 0; k < 3; ++k) particles_.x.at(k, j, i) = coordinate(start_[p][std::size_t(k)]);
+    const bool loose = masses_[p] == 0;
+    if (loose) masses_[p] = kLooseMass;
+    particles_.w(j)[i] = loose ? 0.0f : float(1 / masses_[p]);
+  });
+  for (const Pin& pin : parts_.cloth.pins) {
+    const auto [j, i] = particles_.place(pin.i);
+    particles_.w(j)[i] = 0;
+    const Vec3 at = pin_alone_at(pin, start_[std::size_t(pin.i)], 0);
+    for (int k = 0; k < 3; ++k) particles_.x.at(k, j, i) = coordinate(at[std::size_t(k)]);
+  }
+  for (int j = 0; j < particles_.rows; ++j) particles_.weigh_row(j);
+  set_in_motion(particles_, parts_.cloth.velocity, parts_.cloth.spin, masses_);
+}
+
+void MeshModel::append_motion(Method method, StageList& list) {
+  method_ = method;
+  material_ = material_of(parts_.cloth, method == Method::spring_friction);
+  list.skip("predict, sweeps, velocity", "springs are forces with this method");
+  if (!material_.bends) list.skip("bending", "bending is 0");
+  list.stages.push_back(make_triangles(parts_, order_, triangles_, material_));
+  list.skip("wind", "drag and lift are 0");
+  list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
+}
+
+void MeshModel::append_limits(StageList& list) {
+  list.skip("tear", "tear_strain is 0");
+  list.skip("strain_limit", "strain_limit is 0");
+}
+
+ConstraintCounts MeshModel::constraints() const {
+  return {std::int64_t(edges_.size()), 0, 0};
+}
+
+Pull MeshModel::pull() const {
+  const double stiffness = material_.membrane
+                               ? std::max({material_.c11, material_.c22, material_.c66})
+                               : 2 * material_.stiffness;
+  const double longest = *std::max_element(rest_.begin(), rest_.end());
+  const double force = 2 * stiffness * longest;
+  return {stiffness, force, 3 * force};
+}
+
+void MeshModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) const {
+  a.assign(start_.size(), Vec3{});
+  const std::vector<Vec3> x = particles_.gather(particles_.x);
+  if (material_.damped()) {
+    const std::vector<Vec3> v = particles_.gather(particles_.v);
+    add_mesh_forces(triangles_, material_, x, &v, a);
+  } else {
+    add_mesh_forces(triangles_, material_, x, nullptr, a);
+  }
+  particles_.for_each([&](int j, int i) {
+    Vec3& own = a[std::size_t(particles_.number(j, i))];
+    own = particles_.w(j, i) > 0 ? plus(times(own, particles_.w(j, i)), gravity) : Vec3{};
+  });
+}
+
+double MeshModel::elastic_energy() const {
+  return mesh_energy(triangles_, material_, particles_.gather(particles_.x));
+}
+
+Strain MeshModel::strain() const {
+  const std::vector<Vec3> x = particles_.gather(particles_.x);
+  Strain strain{-1, 0, std::int64_t(edges_.size())};
+  for (std::size_t n = 0; n < edges_.size(); ++n) {
+    const auto& [a, b] = edges_[n];
+    const double e = distance(x[std::size_t(a)], x[std::size_t(b)]) / rest_[n] - 1;
+    strain.max = std::max(strain.max, e);
+    strain.mean += e / double(edges_.size());
+  }
+  return strain;
+}
+
+Vec3 MeshModel::pin_position(const Pin& pin, double time) const {
+  const Vec3 alone = pin_alone_at(pin, start_[std::size_t(pin.i)], time);
+  if (pin.follow < 0) return alone;
+  const auto n = std::size_t(pin.follow);
+  return plus(alone, minus(displacement(parts_.scene.colliders[n], time), first_moves_[n]));
+}
+
+double MeshModel::held_energy(const Rows& x, double) const {
+  return mesh_energy(triangles_, material_, particles_.gather(x)) + rounding_gain();
+}
+
+// Every fourth edge is looked at.
+float MeshModel::greatest_stretch(const Rows& x) const {
+  double most = 0;
+  for (std::size_t n = 0; n < edges_.size(); n += 4) {
+    const auto at = [&](int p) {
+      const auto [j, i] = particles_.place(p);
+      return Vec3{x.at(0, j, i), x.at(1, j, i), x.at(2, j, i)};
+    };
+    most = std::max(most, distance(at(edges_[n][0]), at(edges_[n][1])) / rest_[n]);
+  }
+  return float(most * most);
+}
+
+double MeshModel::rounding_gain() const {
+  constexpr double kHalfUnit = 6e-8;  // of a position's last place, of the scene's size
+  const double size = std::max(1.0, double(particles_.x.greatest(parts_.kernels)));
+  return pull().stiffness * double(edges_.size()) * std::pow(kHalfUnit * size, 2);
+}
+
+// Of M^-1/2 K M^-1/2, K as the difference of forces, which are as good as linear so near to rest; the
+// damping's is that of forces by velocities.
+Spectrum MeshModel::spectrum(std::span<const float> inverse_masses) const {
+  const std::size_t count = start_.size();
+  std::vector<double> root(count);
+  for (std::size_t p = 0; p < count; ++p)
+    root[p] = std::sqrt(double(inverse_masses[particles_.lane(int(p))]));
+  using Field = std::vector<double>;
+  const auto weighted = [&](const Field& u, double by) {
+    std::vector<Vec3> field(count);
+    for (std::size_t n = 0; n < u.size(); ++n) field[n / 3][n % 3] = by * root[n / 3] * u[n];
+    return field;
+  };
+  const auto forces = [&](const std::vector<Vec3>& off, const std::vector<Vec3>* v) {
+    std::vector<Vec3> x = start_, f(count);
+    for (std::size_t p = 0; p < count; ++p) x[p] = plus(x[p], off[p]);
+    add_mesh_forces(triangles_, material_, x, v, f);
+    return f;
+  };
+  const double step = 1e-4 * *std::min_element(rest_.begin(), rest_.end());
+  const auto stiffness = [&](const Field& u, Field& y) {
+    double greatest = 1e-300;
+    for (std::size_t n = 0; n < u.size(); ++n)
+      greatest = std::max(greatest, std::abs(u[n]) * root[n / 3]);
+    const double scale = step / greatest;
+    const auto ahead = forces(weighted(u, scale), nullptr);
+    const auto back = forces(weighted(u, -scale), nullptr);
+    for (std::size_t n = 0; n < u.size(); ++n)
+      y[n] = root[n / 3] * (back[n / 3][n % 3] - ahead[n / 3][n % 3]) / (2 * scale);
+  };
+  const std::vector<Vec3> still(count);
+  const auto at_rest = forces(still, nullptr);
+  const auto damping = [&](const Field& u, Field& y) {
+    const std::vector<Vec3> v = weighted(u, 1);
+    const auto f = forces(still, &v);
+    for (std::size_t n = 0; n < u.size(); ++n)
+      y[n] = root[n / 3] * (at_rest[n / 3][n % 3] - f[n / 3][n % 3]);
+  };
+  Spectrum spectrum;
+  spectrum.omega_squared = largest_eigenvalue(3 * count, stiffness);
+  if (material_.damped()) spectrum.damping = largest_eigenvalue(3 * count, damping);
+  return spectrum;
+}
+
+bool MeshModel::folds_freely() const {
+  return material_.membrane && (material_.c66 == 0 || material_.c11 == 0 || material_.c22 == 0);
+}
+
+std::size_t MeshModel::bytes() const {
+  return particles_.bytes() + triangles_.size() * sizeof(RestTriangle) +
+         edges_.size() * (sizeof(Joined) + sizeof(double)) +
+         start_.size() * (sizeof(Vec3) + sizeof(double));
+}
+
+}  // namespace weft::physics

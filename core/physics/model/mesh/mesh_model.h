@@ -1,0 +1,59 @@
+// A cloth whose particles are the vertices of a triangle mesh. Particles keep the numbers that they have in
+// the mesh; in memory they lie in rows of breadth-first levels (mesh_order.h). Explicit methods only.
+#pragma once
+
+#include "physics/model/mesh/triangle_stage.h"
+
+namespace weft::physics {
+
+class MeshModel final : public ClothModel {
+ public:
+  // The cloth's mesh is read (Cloth::mesh.shape).
+  MeshModel(const Scene& scene, int index, Method method, const KernelTable& kernels);
+
+  const ClothParts& parts() const override { return parts_; }
+  bool only_explicit() const override { return true; }
+  void append_motion(Method method, StageList& list) override;
+  void append_limits(StageList& list) override;
+  double mass(int particle) const override { return masses_[std::size_t(particle)]; }
+  const SurfaceMesh& surface() const override { return surface_; }
+  const DrawnMesh* drawn_mesh() const override { return &drawn_; }
+  ConstraintCounts constraints() const override;
+  Pull pull() const override;
+  void accelerations(const Vec3& gravity, std::vector<Vec3>& a) const override;
+  double elastic_energy() const override;
+  Strain strain() const override;
+  double limited_strain() const override { return strain().max; }
+  Vec3 pin_position(const Pin& pin, double time) const override;
+  double held_energy(const Rows& x, double dt) const override;
+  float greatest_stretch(const Rows& x) const override;
+  double attachment_energy(const Rows&, double) const override { return 0; }
+  double rounding_gain() const override;
+  Spectrum spectrum(std::span<const float> inverse_masses) const override;
+  bool folds_freely() const override;
+  std::vector<Joined> constraints_near(const Vec3&, const Vec3&, double) const override {
+    return {};  // a mesh cannot be cut
+  }
+  std::size_t bytes() const override;
+
+ private:
+  void weigh();
+  void place();
+
+  const TriangleMesh& mesh_;
+  Method method_;
+  std::vector<Vec3> start_;  // of every particle [m]
+  std::vector<RestTriangle> triangles_;
+  MeshMaterial material_;
+  MeshOrder order_;
+  Particles particles_;
+  ClothParts parts_;
+  std::vector<double> masses_;     // kg, of every particle
+  std::vector<Vec3> first_moves_;  // of colliders
+  std::vector<Joined> edges_;      // each once
+  std::vector<double> rest_;       // m, of each edge
+  SurfaceMesh surface_;
+  DrawnMesh drawn_;
+};
+
+}  // namespace weft::physics

@@ -1,0 +1,248 @@
+#include "physics/model/mesh/rest_triangles.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/model/vector.h"
+
+namespace weft::physics {
+namespace {
+
+double length(const Vec3& a) {
+  return std::sqrt(dot(a, a));
+}
+
+// The direction of warp in a triangle, of unit length.
+Vec3 warp_of(const TriangleMesh& mesh, std::size_t t, const Vec3& p, const Vec3& q, const Vec3& n) {
+  Vec3 warp{};
+  if (!mesh.uv.empty()) {
+    const auto& [a, b, c] = mesh.uv[t];
+    // ∂x/∂u of x(u, v) along p and q.
+    const double v1 = b[1] - a[1], v2 = c[1] - a[1];
+    const double turn = (b[0] - a[0]) * v2 - (c[0] - a[0]) * v1;
+    warp = times(minus(times(p, v2), times(q, v1)), turn < 0 ? -1 : 1);
+  }
+  for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}}) {
+    if (length(warp) > 0) break;
+    const Vec3 along = minus(axis, times(n, dot(axis, n)));
+    if (length(along) > 0.1) warp = along;
+  }
+  return times(warp, 1 / length(warp));
+}
+
+// Of corner c seen from the side a, b: how far off it is, and where along the side.
+struct Foot {
+  double height, at;
+};
+Foot foot_of(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 side = minus(b, a), way = minus(c, a);
+  const double at = dot(way, side) / dot(side, side);
+  return {length(minus(way, times(side, at))), at};
+}
+
+// The corner across each side.
+struct Side {
+  int low, high, triangle, k;
+};
+std::vector<std::array<int, 3>> across_of(const TriangleMesh& mesh) {
+  std::vector<Side> sides;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int a = mesh.triangles[t][std::size_t(k)],
+                b = mesh.triangles[t][std::size_t(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), int(t), k});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
+  });
+  std::vector<std::array<int, 3>> across(mesh.triangles.size(), {-1, -1, -1});
+  const auto third = [&](const Side& s) {
+    return mesh.triangles[std::size_t(s.triangle)][std::size_t(s.k + 2) % 3];
+  };
+  for (std::size_t n = 1; n < sides.size(); ++n) {
+    const Side &a = sides[n - 1], &b = sides[n];
+    if (a.low != b.low || a.high != b.high) continue;
+    across[std::size_t(a.triangle)][std::size_t(a.k)] = third(b);
+    across[std::size_t(b.triangle)][std::size_t(b.k)] = third(a);
+  }
+  return across;
+}
+
+void set_hinges(RestTriangle& r, const std::vector<Vec3>& x, const Vec3& warp, const Vec3& weft,
+                const Vec3& normal, const Bending& bending) {
+  double weight[3], n1[3], n2[3];  // of a side: w, and its normal along warp and weft
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto at = [&](std::size_t c) { return x[std::size_t(r.corner[c])]; };
+    const Vec3 a = at(k), b = at((k + 1) % 3);
+    const Vec3 out = times(cross(minus(b, a), normal), 1 / r.rest[k]);
+    n1[k] = dot(out, warp);
+    n2[k] = dot(out, weft);
+    weight[k] = r.away[k] = r.away_at[k] = r.own[k] = r.own_at[k] = 0;
+    if (r.corner[3 + k] < 0) continue;
+    const Foot own = foot_of(a, b, at((k + 2) % 3)), away = foot_of(a, b, at(3 + k));
+    r.own[k] = 1 / own.height;
+    r.own_at[k] = own.at;
+    r.away[k] = 1 / away.height;
+    r.away_at[k] = away.at;
+    weight[k] = own.height / (own.height + away.height) * r.rest[k] / r.area;
+  }
+  for (std::size_t m = 0; m < 6; ++m) {
+    const std::size_t k = m % 3, l = m < 3 ? k : (k + 1) % 3;
+    r.moment[m] = r.area * weight[k] * weight[l] *
+                  (bending.warp * n1[k] * n1[k] * n1[l] * n1[l] +
+                   bending.weft * n2[k] * n2[k] * n2[l] * n2[l] +
+                   2 * bending.twist * n1[k] * n2[k] * n1[l] * n2[l]);
+  }
+}
+
+// One triangle as it lies: energy, and the force on its six corners.
+struct Pulled {
+  double energy = 0;
+  std::array<Vec3, 6> force{};
+};
+
+struct Corners {
+  std::array<Vec3, 6> x{}, v{};
+};
+
+void stretch_membrane(const RestTriangle& r, const MeshMaterial& m, const Corners& c, Pulled& p) {
+  const auto derivative = [&](const std::array<Vec3, 6>& y, const double(&d)[2]) {
+    return plus(times(minus(y[1], y[0]), d[0]), times(minus(y[2], y[0]), d[1]));
+  };
+  const Vec3 u = derivative(c.x, r.du), w = derivative(c.x, r.dv);
+  const Vec3 du = derivative(c.v, r.du), dw = derivative(c.v, r.dv);
+  double e11 = 0.5 * (dot(u, u) - 1), e22 = 0.5 * (dot(w, w) - 1), e12 = dot(u, w);
+  p.energy += r.area * (0.5 * m.c11 * e11 * e11 + 0.5 * m.c22 * e22 * e22 + m.c12 * e11 * e22 +
+                        0.5 * m.c66 * e12 * e12);
+  e11 += m.damping * dot(u, du);
+  e22 += m.damping * dot(w, dw);
+  e12 += m.damping * (dot(u, dw) + dot(du, w));
+  const double s11 = m.c11 * e11 + m.c12 * e22, s22 = m.c12 * e11 + m.c22 * e22, s12 = m.c66 * e12;
+  const Vec3 a = times(plus(times(u, s11), times(w, s12)), r.area);
+  const Vec3 b = times(plus(times(u, s12), times(w, s22)), r.area);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Vec3 pull = plus(times(a, r.du[k]), times(b, r.dv[k]));
+    p.force[0] = plus(p.force[0], pull);
+    p.force[k + 1] = minus(p.force[k + 1], pull);
+  }
+}
+
+void stretch_springs(const RestTriangle& r, const MeshMaterial& m, const Corners& c, Pulled& p) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    const Vec3 e = minus(c.x[next], c.x[k]);
+    const double l = std::max(length(e), 1e-10), over = l - r.rest[k];
+    p.energy += 0.5 * m.stiffness * over * over;
+    const double rate = dot(e, minus(c.v[next], c.v[k])) / l;
+    const Vec3 pull = times(e, (m.stiffness * over + m.spring_damping * rate) / l);
+    p.force[k] = plus(p.force[k], pull);
+    p.force[next] = minus(p.force[next], pull);
+  }
+}
+
+void bend(const RestTriangle& r, const MeshMaterial& m, const Corners& c, Pulled& p) {
+  // Jumps of slope of the positions, and of the velocities times the damping.
+  const auto jump = [&](const std::array<Vec3, 6>& y, std::size_t k) {
+    const Vec3 side = minus(y[(k + 1) % 3], y[k]);
+    const auto off = [&](std::size_t corner, double at, double weight) {
+      return times(minus(minus(y[corner], y[k]), times(side, at)), weight);
+    };
+    return plus(off(3 + k, r.away_at[k], r.away[k]), off((k + 2) % 3, r.own_at[k], r.own[k]));
+  };
+  std::array<Vec3, 3> h, felt;
+  for (std::size_t k = 0; k < 3; ++k) {
+    h[k] = jump(c.x, k);
+    felt[k] = plus(h[k], times(jump(c.v, k), m.bend_damping));
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
+    const auto moment = [&](const std::array<Vec3, 3>& of) {
+      return plus(times(of[k], r.moment[k]),
+                  plus(times(of[next], r.moment[3 + k]), times(of[last], r.moment[3 + last])));
+    };
+    p.energy += 0.5 * dot(h[k], moment(h));
+    const Vec3 away = times(moment(felt), r.away[k]), own = times(moment(felt), r.own[k]);
+    const Vec3 far = plus(times(away, r.away_at[k]), times(own, r.own_at[k]));
+    p.force[3 + k] = minus(p.force[3 + k], away);
+    p.force[last] = minus(p.force[last], own);
+    p.force[next] = plus(p.force[next], far);
+    p.force[k] = plus(p.force[k], minus(plus(away, own), far));
+  }
+}
+
+Pulled pulled(const RestTriangle& r, const MeshMaterial& m, const std::vector<Vec3>& x,
+              const std::vector<Vec3>* v) {
+  Corners c;
+  for (std::size_t k = 0; k < 6; ++k) {
+    if (r.corner[k] < 0) continue;
+    c.x[k] = x[std::size_t(r.corner[k])];
+    if (v) c.v[k] = (*v)[std::size_t(r.corner[k])];
+  }
+  Pulled p;
+  m.membrane ? stretch_membrane(r, m, c, p) : stretch_springs(r, m, c, p);
+  if (m.bends) bend(r, m, c, p);
+  return p;
+}
+
+}  // namespace
+
+std::vector<RestTriangle> rest_triangles(const TriangleMesh& mesh, const std::vector<Vec3>& x,
+                                         const Bending& bending) {
+  const auto across = across_of(mesh);
+  std::vector<RestTriangle> all(mesh.triangles.size());
+  for (std::size_t t = 0; t < all.size(); ++t) {
+    RestTriangle& r = all[t];
+    const auto& [a, b, c] = mesh.triangles[t];
+    r.corner = {a, b, c, across[t][0], across[t][1], across[t][2]};
+    const Vec3 p = minus(x[std::size_t(b)], x[std::size_t(a)]);
+    const Vec3 q = minus(x[std::size_t(c)], x[std::size_t(a)]);
+    const Vec3 doubled = cross(p, q), normal = times(doubled, 1 / length(doubled));
+    const Vec3 warp = warp_of(mesh, t, p, q, normal), weft = cross(normal, warp);
+    r.area = 0.5 * length(doubled);
+    r.rest[0] = length(p);
+    r.rest[1] = length(minus(q, p));
+    r.rest[2] = length(q);
+    // Inverse of the matrix with columns p and q, in the frame of warp and weft.
+    const double pu = dot(p, warp), pv = dot(p, weft), qu = dot(q, warp), qv = dot(q, weft);
+    const double d = pu * qv - qu * pv;
+    r.du[0] = qv / d, r.du[1] = -pv / d;
+    r.dv[0] = -qu / d, r.dv[1] = pu / d;
+    set_hinges(r, x, warp, weft, normal, bending);
+  }
+  return all;
+}
+
+MeshMaterial material_of(const Cloth& cloth, bool damped_springs) {
+  const Membrane& c = cloth.membrane;
+  MeshMaterial m{};
+  m.membrane = c.given();
+  m.bends = cloth.bending.given();
+  m.bend_damping = m.bends ? cloth.bending.damping : 0;
+  if (m.membrane) {
+    m.c11 = c.warp, m.c22 = c.weft, m.c12 = c.coupling, m.c66 = c.shear, m.damping = c.damping;
+  } else {
+    m.stiffness = cloth.stiffness.structural / 2;
+    m.spring_damping = damped_springs ? cloth.spring_damping.structural / 2 : 0;
+  }
+  return m;
+}
+
+double mesh_energy(const std::vector<RestTriangle>& triangles, const MeshMaterial& material,
+                   const std::vector<Vec3>& x) {
+  double sum = 0;
+  for (const RestTriangle& r : triangles) sum += pulled(r, material, x, nullptr).energy;
+  return sum;
+}
+
+void add_mesh_forces(const std::vector<RestTriangle>& triangles, const MeshMaterial& material,
+                     const std::vector<Vec3>& x, const std::vector<Vec3>* v,
+                     std::vector<Vec3>& forces) {
+  for (const RestTriangle& r : triangles) {
+    const Pulled p = pulled(r, material, x, v);
+    for (std::size_t k = 0; k < 6; ++k)
+      if (r.corner[k] >= 0)
+        forces[std::size_t(r.corner[k])] = plus(forces[std::size_t(r.corner[k])], p.force[k]);
+  }
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,178 @@
+// A triangle belongs to the first row that it reaches, and is evaluated there. What it exerts on later rows
+// stays in their records (kernels/mesh.h), so that a row is finished, and moved, as soon as its own
+// triangles are done. Batches hold triangles that share no vertex: their forces are added in one order,
+// however many lanes go at once.
+#include "physics/model/mesh/triangle_stage.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "physics/kernels/mesh.h"
+#include "physics/model/push.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr std::size_t kOpen = 64;  // batches that a triangle may still join
+
+// Triangles of one row in batches, packed in their order.
+std::vector<std::vector<int>> packed(const std::vector<int>& row,
+                                     const std::vector<RestTriangle>& triangles) {
+  std::vector<std::vector<int>> batches;
+  std::vector<std::size_t> open;
+  const auto apart = [&](int a, int b) {
+    const auto &p = triangles[std::size_t(a)].corner, &q = triangles[std::size_t(b)].corner;
+    return std::none_of(p.begin(), p.end(), [&](int corner) {
+      return corner >= 0 && std::find(q.begin(), q.end(), corner) != q.end();
+    });
+  };
+  for (const int t : row) {
+    const auto fits = [&](std::size_t b) {
+      return std::all_of(batches[b].begin(), batches[b].end(), [&](int s) { return apart(s, t); });
+    };
+    auto at = std::find_if(open.begin(), open.end(), fits);
+    if (at == open.end()) {
+      if (open.size() == kOpen) open.erase(open.begin());
+      at = open.insert(open.end(), batches.size());
+      batches.emplace_back();
+    }
+    batches[*at].push_back(t);
+    if (batches[*at].size() == kBatch) open.erase(at);
+  }
+  return batches;
+}
+
+class TriangleStage final : public RowStage {
+ public:
+  TriangleStage(const ClothParts& parts, const MeshOrder& order,
+                const std::vector<RestTriangle>& triangles, const MeshMaterial& material)
+      : RowStage("triangles", material.membrane ? "membrane forces" : "springs along edges",
+                 material.bends ? 2 : 1, std::int64_t(triangles.size()), "triangles"),
+        parts_(parts),
+        damped_(material.damped()),
+        ring_(reach + 1) {
+    fill(material);
+    make_batches(order, triangles, material.bends);
+  }
+
+  bool moves_particles() const override { return true; }
+
+  void reserve_slots(int slots) override {
+    for (AlignedArray<float>* records : {&position_, &velocity_, &force_})
+      if (records != &velocity_ || damped_)
+        *records = AlignedArray<float>(std::size_t(slots) * slot_floats());
+    loaded_.assign(std::size_t(slots), 0);
+  }
+  std::size_t bytes() const override {
+    return batches_.size() * sizeof(MeshBatch) +
+           (position_.size() + velocity_.size() + force_.size()) * sizeof(float);
+  }
+
+  void start(const Substep& s) override { loaded_[std::size_t(s.slot)] = 0; }
+
+  void run(int j, const Substep& s) override {
+    Particles& p = parts_.particles;
+    int& loaded = loaded_[std::size_t(s.slot)];
+    if (j == 0) loaded = 0;
+    for (loaded = std::max(loaded, j); loaded < std::min(j + ring_, p.rows); ++loaded)
+      parts_.kernels.mesh_load(row(loaded, s));
+    MeshForces f = forces_;
+    f.batches = batches_.data() + first_[std::size_t(j)];
+    f.count = first_[std::size_t(j) + 1] - first_[std::size_t(j)];
+    f.position = records(position_, s);
+    f.velocity = damped_ ? records(velocity_, s) : nullptr;
+    f.force = records(force_, s);
+    parts_.kernels.mesh_forces(f);
+    parts_.kernels.mesh_move(row(j, s));
+  }
+
+ private:
+  void fill(const MeshMaterial& m) {
+    forces_.membrane = m.membrane;
+    forces_.c11 = float(m.c11), forces_.c22 = float(m.c22), forces_.c12 = float(m.c12);
+    forces_.c66 = float(m.c66), forces_.damping = float(m.damping);
+    forces_.stiffness = float(m.stiffness), forces_.spring_damping = float(m.spring_damping);
+    forces_.bends = m.bends, forces_.bend_damping = float(m.bend_damping);
+  }
+
+  void make_batches(const MeshOrder& order, const std::vector<RestTriangle>& triangles,
+                    bool bends) {
+    std::vector<std::vector<int>> rows(order.counts.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      int first = int(rows.size());
+      for (std::size_t k = 0; k < (bends ? 6u : 3u); ++k)
+        if (const int c = triangles[t].corner[k]; c >= 0)
+          first = std::min(first, order.rows[std::size_t(c)]);
+      rows[std::size_t(first)].push_back(int(t));
+    }
+    first_.push_back(0);
+    for (const std::vector<int>& row : rows) {
+      for (const std::vector<int>& one : packed(row, triangles))
+        batches_.push_back(batch_of(one, order, triangles));
+      first_.push_back(int(batches_.size()));
+    }
+  }
+
+  MeshBatch batch_of(const std::vector<int>& chosen, const MeshOrder& order,
+                     const std::vector<RestTriangle>& triangles) const {
+    MeshBatch b{};
+    const int nobody = ring_ * parts_.particles.stride;
+    for (auto& corner : b.corner) std::fill(std::begin(corner), std::end(corner), nobody);
+    for (std::size_t n = 0; n < chosen.size(); ++n) {
+      const RestTriangle& r = triangles[std::size_t(chosen[n])];
+      for (std::size_t k = 0; k < 6; ++k)
+        if (const int c = r.corner[k]; c >= 0)
+          b.corner[k][n] = order.rows[std::size_t(c)] % ring_ * parts_.particles.stride +
+                           order.lanes[std::size_t(c)];
+      for (std::size_t k = 0; k < 2; ++k) b.du[k][n] = float(r.du[k]), b.dv[k][n] = float(r.dv[k]);
+      b.area[n] = float(r.area);
+      for (std::size_t k = 0; k < 3; ++k) {
+        b.rest[k][n] = float(r.rest[k]);
+        b.half[k][n] = 1;
+        b.away[k][n] = float(r.away[k]), b.away_at[k][n] = float(r.away_at[k]);
+        b.own[k][n] = float(r.own[k]), b.own_at[k][n] = float(r.own_at[k]);
+      }
+      for (std::size_t m = 0; m < 6; ++m) b.moment[m][n] = float(r.moment[m]);
+    }
+    return b;
+  }
+
+  // Of the rows in turn, and of nobody.
+  std::size_t slot_floats() const {
+    return 4 * (std::size_t(ring_) * parts_.particles.stride + 16);
+  }
+  float* records(AlignedArray<float>& all, const Substep& s) {
+    return all.data() + std::size_t(s.slot) * slot_floats();
+  }
+  MeshRow row(int j, const Substep& s) {
+    Particles& p = parts_.particles;
+    const std::size_t at = 4 * std::size_t(j % ring_) * p.stride;
+    return {p.count(j),
+            p.x.row(j),
+            p.v.row(j),
+            p.w(j),
+            records(position_, s) + at,
+            damped_ ? records(velocity_, s) + at : nullptr,
+            records(force_, s) + at,
+            advance_of(parts_, s)};
+  }
+
+  ClothParts parts_;
+  const bool damped_;
+  const int ring_;  // rows whose records are kept
+  MeshForces forces_{};
+  std::vector<MeshBatch> batches_;
+  std::vector<int> first_;  // batch of each row
+  AlignedArray<float> position_, velocity_, force_;
+  std::vector<int> loaded_;  // the next row to come into the records, of each slot
+};
+
+}  // namespace
+
+std::unique_ptr<RowStage> make_triangles(const ClothParts& parts, const MeshOrder& order,
+                                         const std::vector<RestTriangle>& triangles,
+                                         const MeshMaterial& material) {
+  return std::make_unique<TriangleStage>(parts, order, triangles, material);
+}
+
+}  // namespace weft::physics

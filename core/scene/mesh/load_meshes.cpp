@@ -1,0 +1,82 @@
+// Meshes of a scene: read, and put where the scene has them.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <numbers>
+
+#include "weft/mesh.h"
+
+namespace weft {
+namespace {
+
+constexpr double kFarthest = 1e4, kLarge = 100, kShortest = 1e-6;  // m
+
+// Turned about one axis, the others following in order.
+Vec3 turned(const Vec3& p, std::size_t axis, double degrees) {
+  const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+  const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+  Vec3 q = p;
+  q[a] = c * p[a] - s * p[b];
+  q[b] = s * p[a] + c * p[b];
+  return q;
+}
+
+// Whether the sizes of a mesh can be simulated; notes what is odd.
+void check_size(const MeshSource& mesh, const std::string& place, std::vector<Fault>& faults,
+                std::vector<std::string>& notes) {
+  const std::vector<Vec3> x = placed_vertices(mesh);
+  double farthest = 0, shortest = std::numeric_limits<double>::infinity();
+  Vec3 low = x[0], high = x[0];
+  for (const Vec3& p : x)
+    for (std::size_t k = 0; k < 3; ++k) {
+      farthest = std::max(farthest, std::abs(p[k]));
+      low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+    }
+  for (const auto& t : mesh.shape->triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = x[std::size_t(t[k])], &b = x[std::size_t(t[(k + 1) % 3])];
+      shortest = std::min(shortest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+    }
+  const double size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  if (farthest > kFarthest)
+    faults.push_back({place + "/scale", "the mesh reaches " + std::to_string(farthest) + " m away",
+                      "up to 10000 m"});
+  else if (shortest < kShortest)
+    faults.push_back({place + "/scale", "the shortest edge of the mesh is below 1e-6 m",
+                      "edges of at least 1e-6 m"});
+  else if (size > kLarge)
+    notes.push_back(place + ": the mesh is " + std::to_string(std::lround(size)) +
+                    " m across; scale says how long the file's unit is");
+}
+
+}  // namespace
+
+std::vector<Vec3> placed_vertices(const MeshSource& mesh) {
+  std::vector<Vec3> placed = mesh.shape->vertices;
+  for (Vec3& p : placed) {
+    for (double& value : p) value *= mesh.scale;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      if (mesh.rotate[axis] != 0) p = turned(p, axis, mesh.rotate[axis]);
+    for (std::size_t k = 0; k < 3; ++k) p[k] += mesh.translate[k];
+  }
+  return placed;
+}
+
+void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& faults,
+                 std::vector<std::string>& notes) {
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    MeshSource& mesh = scene.cloths[c].mesh;
+    if (mesh.file.empty() || mesh.shape) continue;
+    const std::string place = "/cloths/" + std::to_string(c) + "/mesh";
+    MeshFile file = read_mesh((std::filesystem::path(folder) / mesh.file).string());
+    for (Fault& fault : file.faults)
+      faults.push_back({place + "/file", fault.place + ": " + fault.what, fault.allowed});
+    notes.insert(notes.end(), file.notes.begin(), file.notes.end());
+    if (!file.faults.empty()) continue;
+    mesh.shape = std::make_shared<const TriangleMesh>(std::move(file.mesh));
+    check_size(mesh, place, faults, notes);
+  }
+}
+
+}  // namespace weft
