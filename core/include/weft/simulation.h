@@ -120,7 +120,8 @@ class Simulation {
   // zero lets them rest.
   void carry(int cloth, const Vec3& velocity);
   // Cuts every constraint of any cloth that comes within `width` [m] of the segment from a to b, and
-  // returns how many. A cloth that could not tear so far can from then on.
+  // returns how many. A sheet that could not tear so far can from then on. Meshes cannot be cut: where one
+  // is met, a note of plan() says so.
   int cut(const Vec3& a, const Vec3& b, double width);
   // Moves a collider evenly to `target` within the next frame, where it then rests: its sphere's or
   // box's center, its plane's point, its capsule's a. Replaces the keys of the scene.
@@ -133,7 +134,8 @@ class Simulation {
   // out.
   Snapshot snapshot() const;
   void restore(const Snapshot& snapshot);
-  // Goes on with another scene: cloths whose grids have the same points keep their state, pins that
+  // Goes on with another scene: cloths whose grids have the same points, and meshes of as many vertices, keep
+  // their state, pins that
   // differ between the scenes are set, colliders that differ take the new scene's place and keys; what
   // they meet there is moved out gently, as at a start.
   // Otherwise it starts anew. What is grabbed or carried is let go. Throws as the constructor does,

@@ -21,6 +21,10 @@ std::unique_ptr<RowStage> make_collider_triangles(const LatticeParts& parts,
                                                   const Collider& collider,
                                                   const StartInside& start,
                                                   const SpeculativeCulling& particles);
+// The same for the triangles of a mesh; null where the cloth has none.
+std::unique_ptr<RowStage> make_collider_triangles(const ClothParts& parts, const Collider& collider,
+                                                  const StartInside& start,
+                                                  const SpeculativeCulling& particles);
 // A collider that cuts.
 std::unique_ptr<RowStage> make_cut(const LatticeParts& parts, const Collider& collider,
                                    const StartInside& start);

@@ -9,6 +9,7 @@
 // particle: p's velocity into the surface is lost, friction shortens the rest. Beside a held corner the
 // others are long levers; none is moved by more than kMostLever times the depth at once.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -100,32 +101,27 @@ class Edges {
   std::array<Links*, 3> links_{};  // null: cannot tear
 };
 
-class ColliderTriangles final : public RowStage {
+// What all cloths have in common: when a row's triangles are looked at, and how one is lifted.
+class ColliderTriangles : public RowStage {
  public:
-  ColliderTriangles(const LatticeParts& parts, const Collider& collider, const StartInside& start,
-                    const SpeculativeCulling* particles)
-      : RowStage(particles ? "stretched_faces" : "collider_faces",
-                 particles ? "triangles of the sheet where it is stretched"
-                           : "triangles of the sheet against its small features",
-                 1, 2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1),
-                 "triangles"),
-        parts_(parts),
+  // `particles`: what the stage of the particles has found.
+  ColliderTriangles(const ClothParts& parts, const Collider& collider, const StartInside& start,
+                    const SpeculativeCulling& particles, std::int64_t triangles)
+      : RowStage(resolves(parts.cloth, collider) ? "stretched_faces" : "collider_faces",
+                 resolves(parts.cloth, collider)
+                     ? "triangles of the sheet where it is stretched"
+                     : "triangles of the sheet against its small features",
+                 1, triangles, "triangles"),
+        cloth_(parts),
         collider_(parts, collider, start, true),
         far_(parts, collider_.fastest()),
         particles_(particles),
+        resolved_(resolves(parts.cloth, collider)),
         upright_(collider.shape),
         edge_(longest_edge(parts.cloth)),
         allowed_(parts.cloth, collider),
-        edges_(parts_),
-        lengths_(std::size_t(parts.lattice.rows)) {}
+        lengths_(std::size_t(parts.particles.rows)) {}
 
-  void reserve_slots(int slots) override {
-    bound_ = Rows(slots, parts_.lattice.stride);
-    room_ = AlignedArray<std::int32_t>(room() * std::size_t(slots));
-  }
-  std::size_t bytes() const override {
-    return bound_.bytes() + room_.size() * sizeof(std::int32_t);
-  }
   double idle() const override { return far_.share(); }
   void follow(const Collider& collider) override {
     if (&collider != &collider_.collider()) return;
@@ -140,9 +136,36 @@ class ColliderTriangles final : public RowStage {
 
   using RowStage::run;
   void run(int begin, int end, const Substep& s) override {
-    for (int j = begin; j < std::min(end, parts_.lattice.rows - 1); ++j)
+    for (int j = begin; j < std::min(end, last_row()); ++j)
       if (!is_harmless(j, s) && !far_.skip(j, s)) keep_out(j, s);
   }
+
+ protected:
+  // Of the triangles that belong to row j: the greatest difference of positions or velocities between two
+  // corners [m, m/s].
+  virtual double greatest(const Rows& values, int j) const = 0;
+  // Lifts them, where edges are no longer than `longest` [m]; tells how far the row is.
+  virtual RowReach look(int j, const Substep& s, double longest) = 0;
+  // Rows from there on have no triangles.
+  virtual int last_row() const = 0;
+
+  // Of the rows beside the triangles, as the stage before this one has found them.
+  RowReach reach_of_particles(int j, const Substep& s) const {
+    const int next = std::min(j + 1, cloth_.particles.rows - 1);
+    const RowReach a = particles_.reach_at(j, s.time), b = particles_.reach_at(next, s.time);
+    return {std::min(a.clearance, b.clearance), std::max(a.speed, b.speed)};
+  }
+  // How often the triangles of a row are gone through.
+  int passes(double longest) const {
+    return longest > AllowedDepth::kStretched * edge_ ? kPasses : 1;
+  }
+  // An edge or a corner of the collider leaves a triangle by one of its sides after another.
+  void lift(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i) {
+    for (int n = 0; n < kTurns && touch(r, j, i); ++n) continue;
+  }
+  const MovingCollider& collider() const { return collider_; }
+  double edge() const { return edge_; }
+  const AllowedDepth& allowed() const { return allowed_; }
 
  private:
   // The longest edge of the triangles between two rows. Until a time it is no longer than matters.
@@ -159,9 +182,9 @@ class ColliderTriangles final : public RowStage {
   void keep_out(int j, const Substep& s) {
     Length& length = lengths_[std::size_t(j)];
     const bool known = length.known(s.time);
-    const double longest = known ? length.longest : edges_.greatest(parts_.lattice.x, j);
-    const double small = particles_ ? allowed_.harmless() : kShort * edge_;
-    const bool harmless = particles_ && longest <= small;
+    const double longest = known ? length.longest : greatest(cloth_.particles.x, j);
+    const double small = resolved_ ? allowed_.harmless() : kShort * edge_;
+    const bool harmless = resolved_ && longest <= small;
     RowReach row = harmless ? reach_of_particles(j, s) : look(j, s, longest);
     if (!known) length = {longest, s.time, s.time + time_to_grow(j, small - longest), harmless};
     // A triangle's points are no nearer than its corners by more than an edge.
@@ -172,50 +195,12 @@ class ColliderTriangles final : public RowStage {
   // suddenly adds to that.
   double time_to_grow(int j, double by) const {
     return std::max(0.0, by) /
-           (2 * edges_.greatest(parts_.lattice.v, j) + kSudden + collider_.fastest());
-  }
-
-  // Of the rows beside the triangles, as the stage before this one has found them.
-  RowReach reach_of_particles(int j, const Substep& s) const {
-    const RowReach a = particles_->reach_at(j, s.time), b = particles_->reach_at(j + 1, s.time);
-    return {std::min(a.clearance, b.clearance), std::max(a.speed, b.speed)};
-  }
-
-  RowReach look(int j, const Substep& s, double longest) {
-    Lattice& l = parts_.lattice;
-    FacesRow f;
-    f.row = collider_.row(parts_, j, s);
-    f.x_next = l.x.row(j + 1);
-    f.v_next = l.v.row(j + 1);
-    f.edge = float(std::max(edge_, longest / kReached));
-    f.slack = float(allowed_.at(longest));
-    const Row3 bound = bound_.row(s.slot);
-    f.bound[0] = bound.x;
-    f.bound[1] = bound.y;
-    f.room = room_.data() + room() * std::size_t(s.slot);
-    const RowReach reach = parts_.kernels.collider[collider_.shape()]->below_faces(f);
-    // The way of a substep matters only where it is long against the collider.
-    const float way = reach.speed * f.row.dt;
-    const float near = way > 0.5f * f.row.shape.thin ? way : -f.slack;
-    const int passes = longest > AllowedDepth::kStretched * edge_ ? kPasses : 1;
-    for (int pass = 0; pass < passes; ++pass)
-      for (int i = 0; i + 1 < l.columns; ++i) {
-        if (f.bound[0][i] < near && edges_.whole(i, j, 0))
-          lift(f.row, {j, j, j + 1}, {i, i + 1, i});
-        if (f.bound[1][i] < near && edges_.whole(i, j, 1))
-          lift(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
-      }
-    return reach;
-  }
-
-  // An edge or a corner of the collider leaves a triangle by one of its sides after another.
-  void lift(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i) {
-    for (int n = 0; n < kTurns && touch(r, j, i); ++n) continue;
+           (2 * greatest(cloth_.particles.v, j) + kSudden + collider_.fastest());
   }
 
   // Lifts one triangle out once; whether it may be in by another side still.
   bool touch(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i) {
-    Lattice& l = parts_.lattice;
+    Particles& l = cloth_.particles;
     const Vec3 place{r.cx, r.cy, r.cz}, u{r.ux, r.uy, r.uz};
     std::array<Vec3, 3> v;
     Corners c;
@@ -275,20 +260,129 @@ class ColliderTriangles final : public RowStage {
             plus(times(touch.normal, std::max(0.0, -into)), lost)};
   }
 
-  std::size_t room() const { return 2 * std::size_t(parts_.lattice.stride) + 16; }
-
-  LatticeParts parts_;
+  ClothParts cloth_;
   MovingCollider collider_;
   SpeculativeCulling far_;
-  const SpeculativeCulling*
-      particles_;  // null where the mesh at rest does not resolve the collider
+  const SpeculativeCulling& particles_;
+  const bool resolved_;  // the mesh at rest resolves the collider
   Upright upright_;
   double edge_;  // m, longest of a flat triangle
   AllowedDepth allowed_;
-  Edges edges_;
   std::vector<Length> lengths_;  // of every row
+};
+
+// Of a grid: two of every square, between its row and the next, found by a kernel.
+class SquareTriangles final : public ColliderTriangles {
+ public:
+  SquareTriangles(const LatticeParts& parts, const Collider& collider, const StartInside& start,
+                  const SpeculativeCulling& particles)
+      : ColliderTriangles(parts, collider, start, particles,
+                          2 * std::int64_t(parts.lattice.columns - 1) * (parts.lattice.rows - 1)),
+        parts_(parts),
+        edges_(parts_) {}
+
+  void reserve_slots(int slots) override {
+    bound_ = Rows(slots, parts_.lattice.stride);
+    room_ = AlignedArray<std::int32_t>(room() * std::size_t(slots));
+  }
+  std::size_t bytes() const override {
+    return bound_.bytes() + room_.size() * sizeof(std::int32_t);
+  }
+
+ private:
+  int last_row() const override { return parts_.lattice.rows - 1; }
+  double greatest(const Rows& values, int j) const override { return edges_.greatest(values, j); }
+
+  RowReach look(int j, const Substep& s, double longest) override {
+    Lattice& l = parts_.lattice;
+    FacesRow f;
+    f.row = collider().row(parts_, j, s);
+    f.x_next = l.x.row(j + 1);
+    f.v_next = l.v.row(j + 1);
+    f.edge = float(std::max(edge(), longest / kReached));
+    f.slack = float(allowed().at(longest));
+    const Row3 bound = bound_.row(s.slot);
+    f.bound[0] = bound.x;
+    f.bound[1] = bound.y;
+    f.room = room_.data() + room() * std::size_t(s.slot);
+    const RowReach reach = parts_.kernels.collider[collider().shape()]->below_faces(f);
+    // The way of a substep matters only where it is long against the collider.
+    const float way = reach.speed * f.row.dt;
+    const float near = way > 0.5f * f.row.shape.thin ? way : -f.slack;
+    for (int pass = 0; pass < passes(longest); ++pass)
+      for (int i = 0; i + 1 < l.columns; ++i) {
+        if (f.bound[0][i] < near && edges_.whole(i, j, 0))
+          lift(f.row, {j, j, j + 1}, {i, i + 1, i});
+        if (f.bound[1][i] < near && edges_.whole(i, j, 1))
+          lift(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
+      }
+    return reach;
+  }
+
+  std::size_t room() const { return 2 * std::size_t(parts_.lattice.stride) + 16; }
+
+  LatticeParts parts_;
+  Edges edges_;
   Rows bound_;
   AlignedArray<std::int32_t> room_;
+};
+
+// Of a mesh: each belongs to the first row that it reaches.
+class MeshTriangles final : public ColliderTriangles {
+ public:
+  MeshTriangles(const ClothParts& parts, const Collider& collider, const StartInside& start,
+                const SpeculativeCulling& particles)
+      : ColliderTriangles(parts, collider, start, particles,
+                          std::int64_t(parts.model.surface().triangles.size())),
+        parts_(parts),
+        rows_(std::size_t(parts.particles.rows)) {
+    for (const auto& corners : parts.model.surface().triangles) {
+      Placed t;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [j, i] = parts.particles.place(corners[k]);
+        t.j[k] = j, t.i[k] = i;
+      }
+      const auto [first, last] = std::minmax_element(t.j.begin(), t.j.end());
+      assert(*last - *first <= reach);
+      rows_[std::size_t(*first)].push_back(t);
+    }
+  }
+
+  std::size_t bytes() const override { return std::size_t(items) * sizeof(Placed); }
+
+ private:
+  struct Placed {
+    std::array<int, 3> j, i;  // row and lane of the corners
+  };
+
+  int last_row() const override { return parts_.particles.rows; }
+  double greatest(const Rows& values, int j) const override {
+    double square = 0;
+    for (const Placed& t : rows_[std::size_t(j)])
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t next = (k + 1) % 3;
+        Vec3 e{};
+        for (int m = 0; m < 3; ++m)
+          e[std::size_t(m)] =
+              double(values.at(m, t.j[next], t.i[next])) - values.at(m, t.j[k], t.i[k]);
+        square = std::max(square, dot(e, e));
+      }
+    return std::sqrt(square);
+  }
+
+  RowReach look(int j, const Substep& s, double longest) override {
+    const RowReach near = reach_of_particles(j, s);
+    const CollideRow row = collider().row(parts_, j, s);
+    // No point of a triangle is further from a corner than its longest side.
+    const double way = near.speed * s.dt + longest;
+    if (near.clearance > way) return near;
+    for (int pass = 0; pass < passes(longest); ++pass)
+      for (const Placed& t : rows_[std::size_t(j)]) lift(row, t.j, t.i);
+    return near;
+  }
+
+  ClothParts parts_;
+  std::vector<std::vector<Placed>> rows_;
 };
 
 }  // namespace
@@ -298,10 +392,15 @@ std::unique_ptr<RowStage> make_collider_triangles(const LatticeParts& parts,
                                                   const StartInside& start,
                                                   const SpeculativeCulling& particles) {
   if (!caught_by_triangles(collider)) return nullptr;
-  const bool resolved = resolves(parts.cloth, collider);
-  if (resolved && parts.stencils.empty()) return nullptr;
-  return std::make_unique<ColliderTriangles>(parts, collider, start,
-                                             resolved ? &particles : nullptr);
+  if (resolves(parts.cloth, collider) && parts.stencils.empty()) return nullptr;
+  return std::make_unique<SquareTriangles>(parts, collider, start, particles);
+}
+
+std::unique_ptr<RowStage> make_collider_triangles(const ClothParts& parts, const Collider& collider,
+                                                  const StartInside& start,
+                                                  const SpeculativeCulling& particles) {
+  if (!caught_by_triangles(collider) || parts.model.surface().triangles.empty()) return nullptr;
+  return std::make_unique<MeshTriangles>(parts, collider, start, particles);
 }
 
 }  // namespace weft::physics

@@ -26,7 +26,7 @@ void ClothStep::meet(std::size_t collider, const StartInside& inside) {
 void ClothStep::allow_tearing() {
   if (model_->tearing()) return;
   model_->allow_tearing();
-  choose_anew(method_);
+  if (model_->tearing()) choose_anew(method_);
 }
 
 void ClothStep::choose_anew(Method method) {
@@ -79,7 +79,7 @@ void ClothStep::choose_stages() {
   model_->append_limits(list_);
 }
 
-// Colliders, and what cuts. Triangles and constraints are those of a grid.
+// Colliders, and what cuts, which grids alone know.
 void ClothStep::choose_contact() {
   const auto& colliders = parts().scene.colliders;
   LatticeParts* const lattice = model_->lattice();
@@ -88,9 +88,9 @@ void ClothStep::choose_contact() {
     for (std::size_t k = 0; k < colliders.size(); ++k) {
       if (colliders[k].cuts) continue;
       auto particles = make_collider(parts(), colliders[k], starts_[k]);
-      auto faces =
-          lattice ? make_collider_triangles(*lattice, colliders[k], starts_[k], particles->far())
-                  : nullptr;
+      const SpeculativeCulling& far = particles->far();
+      auto faces = lattice ? make_collider_triangles(*lattice, colliders[k], starts_[k], far)
+                           : make_collider_triangles(parts(), colliders[k], starts_[k], far);
       list_.stages.push_back(std::move(particles));
       if (faces) list_.stages.push_back(std::move(faces));
       pushed = true;

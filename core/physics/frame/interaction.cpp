@@ -153,17 +153,25 @@ void Simulation::State::meet(std::size_t collider) {
                                       double(frame) * scene.time.frame));
 }
 
+void Simulation::State::note_once(const std::string& note) {
+  std::vector<std::string>& notes = plan.notes;
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+}
+
 int Simulation::State::cut(const Vec3& begin, const Vec3& end, double width) {
   const Vec3 a = minus(begin, origin), d = minus(end, begin);
   std::int64_t cut = 0;
   for (auto& step : cloths) {
     const std::vector<Joined> found = step->model().constraints_near(a, d, width);
     if (found.empty()) continue;
-    touch();
+    const bool could_tear = step->model().tearing();
+    step->allow_tearing();
     if (!step->model().tearing()) {
-      step->allow_tearing();
-      plan_changed();
+      note_once("what is cut is a mesh, which does not tear: nothing of it was cut");
+      continue;
     }
+    touch();
+    if (!could_tear) plan_changed();
     cut += step->model().tearing()->end_all(found);
   }
   if (cut > 0) ++changes;

@@ -38,6 +38,8 @@ struct Simulation::State {
   void carry(int cloth, const Vec3& velocity);
   void hold(int cloth, int particle, bool held);
   int cut(const Vec3& a, const Vec3& b, double width);
+  // Adds a note to the plan that it does not have yet.
+  void note_once(const std::string& note);
   // Positions are counted from `from`; velocities lie `behind` them by so much [s]. Not given: as those that
   // velocities() tells where they are these, else not at all.
   void set(std::span<const double> positions, const Vec3& from, std::span<const double> velocities,

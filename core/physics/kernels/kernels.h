@@ -279,15 +279,19 @@ struct AirRow {
   float *drag, *lift;
 };
 
-// Air on the triangles between a row and the next.
-struct WindRow {
-  int columns;
-  ConstRow3 x, x_next, v, v_next;
-  AirRow air, air_next;
+// The air at a time, and how it acts on cloth.
+struct Air {
   float wx, wy, wz;  // m/s
   float drag, lift;  // kg/m³
   float gust_speed;  // m/s; 0: none
   Gust gusts[kGusts];
+};
+
+// Air on the triangles between a row and the next.
+struct WindRow : Air {
+  int columns;
+  ConstRow3 x, x_next, v, v_next;
+  AirRow air, air_next;
 };
 
 // Moves a row by what air has done to it, and starts its sums anew.
@@ -327,6 +331,7 @@ struct TearRow {
 };
 
 struct MeshRow;  // kernels/mesh.h
+struct MeshWind;
 struct MeshForces;
 struct TransposeRows;
 struct SecondOrderRow;  // kernels/second_order.h
@@ -361,6 +366,7 @@ struct KernelTable {
   void (*bend_twist)(const TwistRow&);  // and of every second cell between two rows
   const ColliderKernels* collider[kShapes];
   void (*wind)(const WindRow&);
+  void (*mesh_wind)(const MeshWind&);  // of triangles, added to the sums of their corners
   void (*push)(const PushRow&);
   void (*block_bounds)(const BlockRows&);  // how a block lies and moves
   void (*block_edges)(const BlockRows&);   // and its edges

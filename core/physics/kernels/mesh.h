@@ -47,4 +47,18 @@ struct MeshForces {
   float bend_damping;  // s
 };
 
+// Of 16 triangles in the wind; those past `count` are none. The values of a corner lie in the component
+// arrays at `corner`, and the sums of what air does to it at `sum`.
+struct MeshAirBatch {
+  std::int32_t corner[3][kBatch], sum[3][kBatch];
+  int count;
+};
+
+struct MeshWind : Air {
+  const MeshAirBatch* batches;
+  int count;
+  ConstRow3 x, v;  // of all vertices
+  AirRow sums;
+};
+
 }  // namespace weft::physics

@@ -115,6 +115,7 @@ void mesh_load(const physics::MeshRow&);
 void mesh_forces(const physics::MeshForces&);
 void mesh_move(const physics::MeshRow&);
 void wind(const physics::WindRow&);
+void mesh_wind(const physics::MeshWind&);
 void push(const physics::PushRow&);
 void block_bounds(const physics::BlockRows&);
 void block_edges(const physics::BlockRows&);

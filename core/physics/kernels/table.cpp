@@ -31,6 +31,7 @@ const physics::KernelTable& table() {
       .bend_twist = bend_twist,
       .collider = {WEFT_SHAPES(WEFT_KERNELS_OF_SHAPE)},
       .wind = wind,
+      .mesh_wind = mesh_wind,
       .push = push,
       .block_bounds = block_bounds,
       .block_edges = block_edges,

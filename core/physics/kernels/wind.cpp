@@ -7,11 +7,13 @@
 // it at each corner. A particle gains  w T ΣF / (1 + a + b²),  a = w T Σ A/3 drag (u·n),  b = w T Σ A/3
 // lift |u|:  by drag, as much as in the exact motion of a plate against still air; by both, never more
 // than the whole relative motion.
+#include "physics/kernels/mesh.h"
 #include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {
 
+using physics::Air;
 using physics::AirRow;
 using physics::Gust;
 using physics::PushRow;
@@ -30,7 +32,7 @@ WEFT_INLINE Wide wave(Wide phase) {
   return s * (8.0f - 16.0f * abs(s));
 }
 
-WEFT_INLINE Wide3 gust(const WindRow& r, Wide3 x) {
+WEFT_INLINE Wide3 gust(const Air& r, Wide3 x) {
   Wide sum[3] = {};
   for (int n = 0; n < physics::kGusts; ++n) {
     const Gust& g = r.gusts[n];
@@ -50,7 +52,7 @@ WEFT_INLINE Third operator+(const Third& a, const Third& b) {
 }
 
 // Of the triangle a, b, c with velocities' sum v3.
-WEFT_INLINE Third third_of(const WindRow& r, WideInt inside, Wide3 air, Wide3 a, Wide3 b, Wide3 c,
+WEFT_INLINE Third third_of(const Air& r, WideInt inside, Wide3 air, Wide3 a, Wide3 b, Wide3 c,
                            Wide3 v3) {
   const Wide third = wide(1.0f / 3.0f);
   const Wide3 doubled = cross(b - a, c - a);
@@ -83,7 +85,48 @@ WEFT_INLINE void add(const AirRow& air, int i, const Third& t) {
   store(air.lift + i, load(air.lift + i) + t.lift);
 }
 
+// One value each for kLanes places.
+WEFT_INLINE Wide gathered(const float* from, const std::int32_t* at) {
+  alignas(64) float values[kLanes];
+  for (int l = 0; l < kLanes; ++l) values[l] = from[at[l]];
+  return load(values);
+}
+WEFT_INLINE Wide3 gathered(ConstRow3 from, const std::int32_t* at) {
+  return {gathered(from.x, at), gathered(from.y, at), gathered(from.z, at)};
+}
+
+// Adds the first `count` lanes where they belong.
+WEFT_INLINE void scatter(float* to, const std::int32_t* at, int count, Wide value) {
+  alignas(64) float values[kLanes];
+  store(values, value);
+  for (int l = 0; l < count; ++l) to[at[l]] += values[l];
+}
+
 }  // namespace
+
+// Triangles of a batch share no corner: sums are added in the order of batches, whatever the lanes.
+void mesh_wind(const physics::MeshWind& r) {
+  for (const physics::MeshAirBatch* b = r.batches; b < r.batches + r.count; ++b)
+    for (int lane = 0; lane < b->count; lane += kLanes) {
+      Wide3 x[3], v3{};
+      for (int k = 0; k < 3; ++k) {
+        x[k] = gathered(r.x, b->corner[k] + lane);
+        v3 = v3 + gathered(r.v, b->corner[k] + lane);
+      }
+      Wide3 air = wide3(r.wx, r.wy, r.wz);
+      if (r.gust_speed > 0) air = air + gust(r, (x[0] + x[1] + x[2]) * wide(1.0f / 3.0f));
+      const int count = b->count - lane < kLanes ? b->count - lane : kLanes;
+      const Third t = third_of(r, lanes_below(count), air, x[0], x[1], x[2], v3);
+      for (int k = 0; k < 3; ++k) {
+        const std::int32_t* const at = b->sum[k] + lane;
+        scatter(r.sums.f.x, at, count, t.force.x);
+        scatter(r.sums.f.y, at, count, t.force.y);
+        scatter(r.sums.f.z, at, count, t.force.z);
+        scatter(r.sums.drag, at, count, t.drag);
+        scatter(r.sums.lift, at, count, t.lift);
+      }
+    }
+}
 
 void wind(const WindRow& given) {
   const WindRow r = given;

@@ -7,6 +7,7 @@
 #include "physics/model/largest_eigenvalue.h"
 #include "physics/model/path.h"
 #include "physics/model/push.h"
+#include "physics/model/segment_distance.h"
 #include "weft/shape.h"
 
 namespace weft::physics {
@@ -32,9 +33,11 @@ double distance(const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-MeshModel::MeshModel(const Scene& scene, int index, Method method, const KernelTable& kernels)
+MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t seed,
+                     const KernelTable& kernels)
     : mesh_(*scene.cloths[std::size_t(index)].mesh.shape),
       method_(method),
+      seed_(seed),
       start_(placed_vertices(scene.cloths[std::size_t(index)].mesh)),
       triangles_(rest_triangles(mesh_, start_, scene.cloths[std::size_t(index)].bending)),
       material_(material_of(scene.cloths[std::size_t(index)], method == Method::spring_friction)),
@@ -86,7 +89,7 @@ void MeshModel::append_motion(Method method, StageList& list) {
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
   if (!material_.bends) list.skip("bending", "bending is 0");
   list.stages.push_back(make_triangles(parts_, order_, triangles_, material_));
-  list.skip("wind", "drag and lift are 0");
+  list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_), "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
 }
 
@@ -105,7 +108,7 @@ Pull MeshModel::pull() const {
                                : 2 * material_.stiffness;
   const double longest = *std::max_element(rest_.begin(), rest_.end());
   const double force = 2 * stiffness * longest;
-  return {stiffness, force, 3 * force};
+  return {stiffness, force, 3 * force / *std::min_element(masses_.begin(), masses_.end())};
 }
 
 void MeshModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) const {
@@ -215,6 +218,17 @@ Spectrum MeshModel::spectrum(std::span<const float> inverse_masses) const {
 
 bool MeshModel::folds_freely() const {
   return material_.membrane && (material_.c66 == 0 || material_.c11 == 0 || material_.c22 == 0);
+}
+
+std::vector<Joined> MeshModel::constraints_near(const Vec3& a, const Vec3& way,
+                                                double distance) const {
+  const std::vector<Vec3> x = particles_.gather(particles_.x);
+  std::vector<Joined> found;
+  for (const Joined& edge : edges_) {
+    const Vec3 &from = x[std::size_t(edge[0])], &to = x[std::size_t(edge[1])];
+    if (segment_distance(a, way, from, minus(to, from)) <= distance) found.push_back(edge);
+  }
+  return found;
 }
 
 std::size_t MeshModel::bytes() const {

@@ -9,7 +9,8 @@ namespace weft::physics {
 class MeshModel final : public ClothModel {
  public:
   // The cloth's mesh is read (Cloth::mesh.shape).
-  MeshModel(const Scene& scene, int index, Method method, const KernelTable& kernels);
+  MeshModel(const Scene& scene, int index, Method method, std::uint64_t seed,
+            const KernelTable& kernels);
 
   const ClothParts& parts() const override { return parts_; }
   bool only_explicit() const override { return true; }
@@ -31,9 +32,8 @@ class MeshModel final : public ClothModel {
   double rounding_gain() const override;
   Spectrum spectrum(std::span<const float> inverse_masses) const override;
   bool folds_freely() const override;
-  std::vector<Joined> constraints_near(const Vec3&, const Vec3&, double) const override {
-    return {};  // a mesh cannot be cut
-  }
+  std::vector<Joined> constraints_near(const Vec3& a, const Vec3& way,
+                                       double distance) const override;
   std::size_t bytes() const override;
 
  private:
@@ -42,6 +42,7 @@ class MeshModel final : public ClothModel {
 
   const TriangleMesh& mesh_;
   Method method_;
+  std::uint64_t seed_;
   std::vector<Vec3> start_;  // of every particle [m]
   std::vector<RestTriangle> triangles_;
   MeshMaterial material_;

@@ -6,7 +6,8 @@
 namespace weft::physics {
 namespace {
 
-constexpr int kLeastRow = 48;  // vertices: three whole vectors
+// Vertices: from so many on, batches of triangles that share none of six corners are mostly full.
+constexpr int kLeastRow = 256;
 
 // The vertices that share an edge with each, ascending.
 std::vector<std::vector<int>> neighbours_of(const TriangleMesh& mesh) {

@@ -8,39 +8,11 @@
 #include <cassert>
 
 #include "physics/kernels/mesh.h"
+#include "physics/model/mesh/triangle_batches.h"
 #include "physics/model/push.h"
 
 namespace weft::physics {
 namespace {
-
-constexpr std::size_t kOpen = 64;  // batches that a triangle may still join
-
-// Triangles of one row in batches, packed in their order.
-std::vector<std::vector<int>> packed(const std::vector<int>& row,
-                                     const std::vector<RestTriangle>& triangles) {
-  std::vector<std::vector<int>> batches;
-  std::vector<std::size_t> open;
-  const auto apart = [&](int a, int b) {
-    const auto &p = triangles[std::size_t(a)].corner, &q = triangles[std::size_t(b)].corner;
-    return std::none_of(p.begin(), p.end(), [&](int corner) {
-      return corner >= 0 && std::find(q.begin(), q.end(), corner) != q.end();
-    });
-  };
-  for (const int t : row) {
-    const auto fits = [&](std::size_t b) {
-      return std::all_of(batches[b].begin(), batches[b].end(), [&](int s) { return apart(s, t); });
-    };
-    auto at = std::find_if(open.begin(), open.end(), fits);
-    if (at == open.end()) {
-      if (open.size() == kOpen) open.erase(open.begin());
-      at = open.insert(open.end(), batches.size());
-      batches.emplace_back();
-    }
-    batches[*at].push_back(t);
-    if (batches[*at].size() == kBatch) open.erase(at);
-  }
-  return batches;
-}
 
 class TriangleStage final : public RowStage {
  public:
@@ -97,20 +69,10 @@ class TriangleStage final : public RowStage {
 
   void make_batches(const MeshOrder& order, const std::vector<RestTriangle>& triangles,
                     bool bends) {
-    std::vector<std::vector<int>> rows(order.counts.size());
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      int first = int(rows.size());
-      for (std::size_t k = 0; k < (bends ? 6u : 3u); ++k)
-        if (const int c = triangles[t].corner[k]; c >= 0)
-          first = std::min(first, order.rows[std::size_t(c)]);
-      rows[std::size_t(first)].push_back(int(t));
-    }
-    first_.push_back(0);
-    for (const std::vector<int>& row : rows) {
-      for (const std::vector<int>& one : packed(row, triangles))
-        batches_.push_back(batch_of(one, order, triangles));
-      first_.push_back(int(batches_.size()));
-    }
+    const TriangleBatches all = batches_of(order, triangles, bends ? 6 : 3);
+    for (const std::vector<int>& one : all.triangles)
+      batches_.push_back(batch_of(one, order, triangles));
+    first_ = all.first;
   }
 
   MeshBatch batch_of(const std::vector<int>& chosen, const MeshOrder& order,

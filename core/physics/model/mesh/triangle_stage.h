@@ -1,4 +1,4 @@
-// Stage "triangles": all inner forces of a mesh and its leapfrog step, row after row of vertices.
+// Stages of a mesh, row after row of vertices. "triangles": all inner forces and the leapfrog step.
 #pragma once
 
 #include "physics/model/mesh/mesh_order.h"
@@ -9,5 +9,10 @@ namespace weft::physics {
 std::unique_ptr<RowStage> make_triangles(const ClothParts& parts, const MeshOrder& order,
                                          const std::vector<RestTriangle>& triangles,
                                          const MeshMaterial& material);
+
+// Air on the triangles; null where none acts on cloth. `seed`: of gusts.
+std::unique_ptr<RowStage> make_mesh_wind(const ClothParts& parts, const MeshOrder& order,
+                                         const std::vector<RestTriangle>& triangles,
+                                         std::uint64_t seed);
 
 }  // namespace weft::physics
