@@ -12,6 +12,7 @@
 #include "physics/model/vector.h"
 #include "weft/output.h"
 #include "weft/read_scene.h"
+#include "weft/recording.h"
 
 namespace weft {
 namespace {
@@ -489,6 +490,16 @@ TEST_F(MeshScene, ExportsTheVerticesInTheFilesOrder) {
   EXPECT_TRUE(again.faults.empty());
   EXPECT_EQ(again.mesh.vertices, file.scene.cloths[0].mesh.shape->vertices);
   EXPECT_EQ(again.mesh.triangles, file.scene.cloths[0].mesh.shape->triangles);
+}
+
+TEST_F(MeshScene, IsRefusedByRecordingsWhichHoldNoMeshes) {
+  const SceneFile file = read(R"({"mesh": {"file": "square.obj"}})");
+  ASSERT_TRUE(file.faults.empty());
+  const Simulation run(file.scene, {.threads = 1});
+  const std::string path = (folder_ / "r.weft").string();
+  EXPECT_THROW(Recorder(path, run), WriteError);
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_THROW(open_animation((folder_ / "r.glb").string(), run.view(), 1), WriteError);
 }
 
 }  // namespace

@@ -74,6 +74,9 @@ void apply(const Input& input, Simulation& simulation) {
 }
 
 Recorder::Recorder(const std::string& path, const Simulation& simulation) : file_(path) {
+  for (const Cloth& cloth :
+       simulation.scene().cloths)  // a recording is one file, and holds no meshes
+    if (cloth.mesh.given()) throw WriteError(path, "a mesh is not recorded; grids alone are");
   const Json header{{"weft_recording", 2},
                     {"seed", simulation.options().seed},
                     {"scene", scene_json(simulation.scene())}};

@@ -10,6 +10,7 @@
 
 #include "scene/document.h"
 #include "scene/fields.h"
+#include "scene/mesh/faces.h"
 #include "weft/mesh.h"
 
 namespace weft {
@@ -106,32 +107,53 @@ class Together {
   // What meshes do not have, or not yet.
   void mesh(const Cloth& cloth, const std::string& place) {
     if (!sound({place})) return;
+    if (cloth.mesh.shape)
+      if (const auto wrong = fault_of(cloth.mesh, place + "/mesh"))
+        return fault(wrong->place, wrong->what, wrong->allowed);
     const auto refuse = [&](bool given, const char* key, const char* what, const char* allowed) {
       if (given) fault(place + key, what, allowed);
     };
     refuse(cloth.grid != Grid{}, "/mesh", "both grid and mesh are given", "one of the two");
     refuse(cloth.particle_mass > 0 || !cloth.masses.empty(), "/mesh",
            "masses are given with a mesh", "density");
-    refuse(cloth.stiffness.shear != Kinds{1000, 1000, 200}.shear ||
-               cloth.stiffness.bend != Kinds{1000, 1000, 200}.bend,
-           "/stiffness", "shear or bend is given with a mesh", "structural, for all edges alike");
+    refuse(cloth.lumping == Lumping::equal, "/lumping", "the vertices of a mesh are to be alike",
+           "auto or area, with a mesh: a vertex weighs what its triangles do");
+    const Kinds plain = Cloth{}.stiffness;
+    refuse(cloth.stiffness.shear != plain.shear || cloth.stiffness.bend != plain.bend, "/stiffness",
+           "shear or bend is given with a mesh", "structural, for all edges alike");
+    refuse(cloth.spring_damping.shear > 0 || cloth.spring_damping.bend > 0, "/spring_damping",
+           "shear or bend is given with a mesh", "structural, for all edges alike");
     refuse(cloth.level > 0, "/level", "a mesh has a level", "0, with a mesh");
+    refuse(cloth.level_diagonals != LevelDiagonals::both, "/level_diagonals",
+           "a mesh has no levels", "both, with a mesh");
+    refuse(cloth.positional_k != Cloth{}.positional_k, "/positional_k", "a mesh is not projected",
+           "0.5, with a mesh");
     refuse(cloth.stiffness_gradient > 0, "/stiffness_gradient", "a mesh has a gradient",
            "0, with a mesh");
     refuse(cloth.strain_limit > 0, "/strain_limit", "a mesh has a strain limit", "0, with a mesh");
     refuse(cloth.tear_strain > 0, "/tear_strain", "a mesh is to tear", "0, with a mesh");
+    refuse(cloth.tears != Tears::split, "/tears", "a mesh does not tear", "split, with a mesh");
     refuse(cloth.self_collision.mode != SelfCollisionMode::off, "/self_collision/mode",
            "a mesh is to meet itself", "off, with a mesh");
+    SelfCollision off = cloth.self_collision;
+    off.mode = SelfCollisionMode::off;
+    refuse(off != SelfCollision{}, "/self_collision", "a mesh does not meet itself",
+           "nothing, with a mesh");
     const Method method = scene_.solver.method;
     const bool springs = method == Method::spring || method == Method::spring_friction;
     refuse(!springs && sound({"/solver/method"}), "/mesh",
            "a mesh is to be projected by the scene's method",
            "method spring or spring_friction, with a mesh");
-    refuse(scene_.wind.drag > 0 || scene_.wind.lift > 0, "/mesh", "wind blows on a mesh",
-           "wind without drag and lift, with a mesh");
     for (const Collider& collider : scene_.colliders)
       if (collider.cuts)
         return fault(place + "/mesh", "a collider cuts a mesh", "grids alone are cut");
+    for (std::size_t c = 0; c < scene_.cloths.size(); ++c) {
+      const Cloth& other = scene_.cloths[c];
+      if (!other.mesh.given() && other.self_collision.mode != SelfCollisionMode::off)
+        return fault("/cloths/" + std::to_string(c) + "/self_collision/mode",
+                     "cloth is to meet cloth beside a mesh, which meets none",
+                     "off, beside a mesh");
+    }
     mesh_pins(cloth, place + "/pins");
   }
 
@@ -215,10 +237,17 @@ class Together {
       fault(
           place + "/membrane/coupling", "coupling is " + number_words(membrane.coupling),
           number_words(-most) + " to " + number_words(most) + " N/m, the root of warp times weft");
+    if (!membrane.given() && membrane.damping > 0)
+      fault(place + "/membrane/damping", "damping is given, and warp, weft and shear are 0",
+            "0 without moduli");
+    const Bending& bending = cloth.bending;
+    if (sound({place + "/bending"}) && !bending.given() && bending.damping > 0)
+      fault(place + "/bending/damping", "damping is given, and warp, weft and twist are 0",
+            "0 without rigidity");
     if (cloth.mesh.given()) return;
     if (membrane.given())
       fault(place + "/membrane", "a grid has a membrane", "stiffness, on a grid");
-    if (sound({place + "/bending"}) && !cloth.bending.plain())
+    if (sound({place + "/bending"}) && !bending.plain())
       fault(place + "/bending", "bending differs with the direction or is damped",
             "one number, on a grid");
   }

@@ -118,6 +118,10 @@ struct Study::Reader {
     study.scene_ = value.dump();
     const SceneFile file = read_scene_text(study.scene_);
     if (!file.faults.empty()) return scene_faults(file);
+    for (std::size_t c = 0; c < file.scene.cloths.size(); ++c)
+      if (file.scene.cloths[c].mesh.given())
+        return fault("/scene/cloths/" + std::to_string(c) + "/mesh", "a study has a mesh",
+                     "grids alone");
     scene = file.scene;
   }
   void scene_faults(const SceneFile& file) {

@@ -39,8 +39,9 @@ struct Rotation {
   friend bool operator==(const Rotation&, const Rotation&) = default;
 };
 
-// A held particle of the grid, or, with j 0, particle i of a mesh. Its place is where it starts or where its keys say, turned by its
-// rotation, and then moved by as much as the collider that it follows has moved since the start.
+// A held particle of the grid, or, with j 0, particle i of a mesh. Its place is where it starts or where its
+// keys say, turned by its rotation, and then moved by as much as the collider that it follows has moved
+// since the start.
 struct Pin {
   int i = 0;  // column, 0 … nx-1; of a mesh the vertex
   int j = 0;  // row, 0 … ny-1
@@ -75,7 +76,11 @@ struct MeshSource {
   Vec3 translate{};                             // m
   std::shared_ptr<const TriangleMesh> shape{};  // as read (load_meshes()), or made by a program
   bool given() const { return !file.empty() || shape; }
-  friend bool operator==(const MeshSource&, const MeshSource&) = default;
+  // What comes from the same file is equal, read or not.
+  friend bool operator==(const MeshSource& a, const MeshSource& b) {
+    return a.file == b.file && a.scale == b.scale && a.rotate == b.rotate &&
+           a.translate == b.translate && (!a.file.empty() || a.shape == b.shape);
+  }
 };
 
 // One value for each kind of constraint: structural (1,0) (0,1), shear (1,1) (1,-1),

@@ -13,7 +13,7 @@ namespace weft {
 // One cloth as rows of particles: component arrays of `rows * stride` floats, particle (i,j) at
 // j*stride + i with 0 <= i < columns. Lanes between columns and stride are padding.
 struct ClothView {
-  int columns = 0;                      // nx
+  int columns = 0;                      // nx; of a mesh, whose rows differ, see lanes
   int rows = 0;                         // ny
   int stride = 0;                       // floats from one row to the next, a multiple of 16
   std::span<const float> x, y, z;       // position from the view's origin [m]

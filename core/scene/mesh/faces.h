@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "weft/mesh.h"
@@ -21,6 +22,10 @@ struct RawMesh {
   void note(const std::string& what) const { file.notes.push_back(name + ": " + what); }
   bool full() const { return file.faults.size() >= kMaxMeshFaults; }
 };
+
+// What keeps a mesh, which is read or made by a program, from being simulated where the scene puts it. Faces
+// without area and edges of more than two are told of as files are read.
+std::optional<Fault> fault_of(const MeshSource& mesh, const std::string& place);
 
 // Cuts a polygon into triangles of its corners' numbers, by ears, seen along its mean normal; the shorter
 // diagonal of a quadrilateral where both lie inside.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "scene/mesh/faces.h"
 #include "weft/mesh.h"
 
 namespace weft {
@@ -22,35 +23,59 @@ Vec3 turned(const Vec3& p, std::size_t axis, double degrees) {
   return q;
 }
 
-// Whether the sizes of a mesh can be simulated; notes what is odd.
-void check_size(const MeshSource& mesh, const std::string& place, std::vector<Fault>& faults,
-                std::vector<std::string>& notes) {
+void note_size(const MeshSource& mesh, const std::string& place, std::vector<std::string>& notes) {
   const std::vector<Vec3> x = placed_vertices(mesh);
-  double farthest = 0, shortest = std::numeric_limits<double>::infinity();
   Vec3 low = x[0], high = x[0];
   for (const Vec3& p : x)
-    for (std::size_t k = 0; k < 3; ++k) {
-      farthest = std::max(farthest, std::abs(p[k]));
+    for (std::size_t k = 0; k < 3; ++k)
       low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
-    }
-  for (const auto& t : mesh.shape->triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 &a = x[std::size_t(t[k])], &b = x[std::size_t(t[(k + 1) % 3])];
-      shortest = std::min(shortest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
-    }
   const double size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
-  if (farthest > kFarthest)
-    faults.push_back({place + "/scale", "the mesh reaches " + std::to_string(farthest) + " m away",
-                      "up to 10000 m"});
-  else if (shortest < kShortest)
-    faults.push_back({place + "/scale", "the shortest edge of the mesh is below 1e-6 m",
-                      "edges of at least 1e-6 m"});
-  else if (size > kLarge)
+  if (size > kLarge && size < 2 * kFarthest)
     notes.push_back(place + ": the mesh is " + std::to_string(std::lround(size)) +
                     " m across; scale says how long the file's unit is");
 }
 
+// Whether triangles are of vertices that are there, as those of files are.
+bool has_corners(const TriangleMesh& mesh) {
+  const auto there = [&](int corner) {
+    return corner >= 0 && std::size_t(corner) < mesh.vertices.size();
+  };
+  return !mesh.triangles.empty() && (mesh.uv.empty() || mesh.uv.size() == mesh.triangles.size()) &&
+         std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
+                     [&](const auto& t) { return std::all_of(t.begin(), t.end(), there); });
+}
+
+// The shortest edge [m].
+double shortest_edge(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = x[std::size_t(t[k])], &b = x[std::size_t(t[(k + 1) % 3])];
+      shortest = std::min(shortest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+    }
+  return shortest;
+}
+
 }  // namespace
+
+std::optional<Fault> text::fault_of(const MeshSource& mesh, const std::string& place) {
+  if (!has_corners(*mesh.shape))
+    return Fault{place, "the mesh has no triangles, or they are not of its vertices",
+                 "corners from 0 to the number of vertices less one, uv of all triangles or none"};
+  const std::vector<Vec3> x = placed_vertices(mesh);
+  double farthest = 0;
+  for (const Vec3& p : x)
+    for (const double value : p)
+      farthest = std::isnan(value) ? std::numeric_limits<double>::infinity()
+                                   : std::max(farthest, std::abs(value));
+  if (!(farthest <= kFarthest))
+    return Fault{place + "/scale", "the mesh reaches " + std::to_string(farthest) + " m away",
+                 "up to 10000 m"};
+  if (shortest_edge(*mesh.shape, x) < kShortest)
+    return Fault{place + "/scale", "the shortest edge of the mesh is below 1e-6 m",
+                 "edges of at least 1e-6 m"};
+  return {};
+}
 
 std::vector<Vec3> placed_vertices(const MeshSource& mesh) {
   std::vector<Vec3> placed = mesh.shape->vertices;
@@ -75,7 +100,7 @@ void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& fa
     notes.insert(notes.end(), file.notes.begin(), file.notes.end());
     if (!file.faults.empty()) continue;
     mesh.shape = std::make_shared<const TriangleMesh>(std::move(file.mesh));
-    check_size(mesh, place, faults, notes);
+    note_size(mesh, place, notes);
   }
 }
 

@@ -12,8 +12,8 @@ namespace text {
 namespace {
 
 constexpr std::size_t kMaxMeshBytes = std::size_t{1} << 30;
-constexpr std::size_t kMaxCorners = 1000;  // of one face
-constexpr double kFarthest = 1e9;          // in the file's own units
+constexpr std::size_t kMaxCorners = 256;  // of one face, which is cut in the square of them
+constexpr double kFarthest = 1e9;         // in the file's own units
 
 // Words between blanks, one after the other.
 class Words {
@@ -152,7 +152,7 @@ class Reader {
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
       Corner one;
       if (!corner(word, one)) return false;
-      if (all.size() == kMaxCorners) return fault("the face has more corners", "3 to 1000"), false;
+      if (all.size() == kMaxCorners) return fault("the face has more corners", "3 to 256"), false;
       all.push_back(one);
     }
     return true;
@@ -162,7 +162,7 @@ class Reader {
     std::vector<Corner> all;
     if (!corners(words, all)) return;
     if (all.size() < 3)
-      return fault("the face has " + std::to_string(all.size()) + " corners", "3 to 1000");
+      return fault("the face has " + std::to_string(all.size()) + " corners", "3 to 256");
     if (drop_repeated(all))
       ++repeated_, first_repeated_ = first_repeated_ ? first_repeated_ : line_;
     if (all.size() < 3) return;
@@ -191,9 +191,11 @@ class Reader {
     }
     std::array<int, 3> t{};
     std::array<TriangleMesh::Uv, 3> uv{};
+    const bool mapped = corners[0].uv >= 0 && corners[1].uv >= 0 && corners[2].uv >= 0;
+    has_uv_ |= mapped;
     for (std::size_t k = 0; k < 3; ++k) {
       t[k] = corners[k].vertex;
-      if (corners[k].uv >= 0) uv[k] = uv_[std::size_t(corners[k].uv)], has_uv_ = true;
+      if (mapped) uv[k] = uv_[std::size_t(corners[k].uv)];
       for (std::set<int>* group : open_)
         if (group) group->insert(t[k]);
     }

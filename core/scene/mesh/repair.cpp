@@ -194,6 +194,9 @@ class Repair {
                 " to no face, first vertex " +
                 std::to_string(std::find(used.begin(), used.end(), false) - used.begin() + 1) +
                 "; what has no face has no mass and stays where it is");
+    if (!mesh_.edges.empty())
+      raw_.note(times_words(int(mesh_.edges.size()), "edge belongs", "edges belong") +
+                " to no face; the ends are not sewn together");
   }
 
   const Vec3& at(int vertex) const { return mesh_.vertices[std::size_t(vertex)]; }

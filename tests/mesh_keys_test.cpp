@@ -1,0 +1,175 @@
+// What each key of the scene format does to a mesh: it changes the run, or is refused, or is told of in a
+// note. A key that is new in the schema has to be named here.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "folder.h"
+#include "made_up_mesh.h"
+#include "weft/read_scene.h"
+#include "weft/simulation.h"
+
+namespace weft {
+namespace {
+
+using Json = nlohmann::json;
+
+// Where a key stands in a scene, a value that is not its default, and what it goes with.
+struct Key {
+  const char* value;
+  const char* beside = "{}";  // merged into the scene before
+};
+
+const std::map<std::string, Key> kKeys = {
+    {"/gravity", {"[0, -5, 0]"}},
+    {"/time/frame", {"0.01"}},
+    {"/time/substeps", {"300"}},
+    {"/solver/method", {R"("compliant")"}},
+    {"/solver/sweep", {R"("jacobi")"}},
+    {"/solver/tethers", {"true"}},
+    {"/solver/order", {"2"}},
+    {"/solver/iterations", {"3"}},
+    {"/solver/iterate_springs", {"true", R"({"solver": {"iterations": 2}})"}},
+    {"/solver/full_first_kick", {"true"}},
+    {"/solver/collision_iterations", {"3"}},
+    {"/solver/sleep", {"0.5"}},
+    {"/colliders", {R"([{"plane": {"point": [0, -0.01, 0]}}])"}},
+    {"/wind/velocity", {"[3, 1, 0]", R"({"wind": {"drag": 0.5}})"}},
+    {"/wind/drag", {"0.5", R"({"wind": {"velocity": [3, 1, 0]}})"}},
+    {"/wind/lift", {"0.5", R"({"wind": {"velocity": [3, 1, 0]}})"}},
+    {"/wind/turbulence", {"0.5", R"({"wind": {"velocity": [3, 1, 0], "drag": 0.5}})"}},
+    {"/cloths/0/grid/points", {"[5, 5]"}},
+    {"/cloths/0/grid/origin", {"[0, 1, 0]"}},
+    {"/cloths/0/grid/u", {"[2, 0, 0]"}},
+    {"/cloths/0/grid/v", {"[0, 0, 2]"}},
+    {"/cloths/0/grid/jitter", {"0.01"}},
+    {"/cloths/0/mesh/file", {R"("other.obj")"}},
+    {"/cloths/0/mesh/scale", {"1.1"}},
+    {"/cloths/0/mesh/rotate", {"[10, 0, 0]"}},
+    {"/cloths/0/mesh/translate", {"[0, 1, 0]"}},
+    {"/cloths/0/density", {"0.1"}},
+    {"/cloths/0/particle_mass", {"0.01"}},
+    {"/cloths/0/masses", {"[0.01, 0.01]"}},
+    {"/cloths/0/stiffness/structural", {"500"}},
+    {"/cloths/0/stiffness/shear", {"500"}},
+    {"/cloths/0/stiffness/bend", {"500"}},
+    {"/cloths/0/spring_damping/structural",
+     {"0.1", R"({"solver": {"method": "spring_friction"}})"}},
+    {"/cloths/0/spring_damping/shear", {"0.1"}},
+    {"/cloths/0/spring_damping/bend", {"0.1"}},
+    {"/cloths/0/lumping", {R"("equal")"}},
+    {"/cloths/0/membrane/warp", {"500"}},
+    {"/cloths/0/membrane/weft", {"500"}},
+    {"/cloths/0/membrane/coupling", {"50"}},
+    {"/cloths/0/membrane/shear", {"500"}},
+    {"/cloths/0/membrane/damping", {"0.01"}},
+    {"/cloths/0/level", {"2"}},
+    {"/cloths/0/level_diagonals", {R"("one")"}},
+    {"/cloths/0/stiffness_gradient", {"0.5"}},
+    {"/cloths/0/positional_k", {"0.3"}},
+    {"/cloths/0/velocity", {"[0, 1, 0]"}},
+    {"/cloths/0/spin", {"[0, 1, 0]"}},
+    {"/cloths/0/drag", {"1"}},
+    {"/cloths/0/bending", {"0.01"}},
+    {"/cloths/0/strain_limit", {"0.1"}},
+    {"/cloths/0/tear_strain", {"0.5"}},
+    {"/cloths/0/tears", {R"("holes")"}},
+    {"/cloths/0/self_collision/mode", {R"("particles")"}},
+    {"/cloths/0/self_collision/thickness", {"0.02"}},
+    {"/cloths/0/self_collision/friction", {"0.1"}},
+    {"/cloths/0/self_collision/response", {R"("course")"}},
+    {"/cloths/0/pins", {"[1]"}},
+};
+// Words for people, and how long a run is.
+const std::set<std::string> kNotOfTheCloth = {"/weft", "/name", "/about", "/time/seconds"};
+
+// The places of all keys below an object of the schema.
+void collect(const Json& schema, const Json& object, const std::string& place,
+             std::set<std::string>& places) {
+  for (const auto& [key, value] : object.at("properties").items()) {
+    const std::string here = place + "/" + key;
+    if (key == "cloths")
+      collect(schema, schema.at("/$defs/cloth"_json_pointer), here + "/0", places);
+    else if (value.contains("properties"))
+      collect(schema, value, here, places);
+    else
+      places.insert(here);
+  }
+}
+
+std::set<std::string> places_of_the_schema() {
+  std::ifstream file(std::string(WEFT_SOURCE_DIR) + "/docs/scene.schema.json");
+  const Json schema = Json::parse(file);
+  std::set<std::string> places;
+  collect(schema, schema, "", places);
+  return places;
+}
+
+void write_mesh(const std::string& path, const TriangleMesh& mesh) {
+  std::ofstream file(path);
+  file.precision(17);
+  for (const Vec3& v : mesh.vertices) file << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
+  for (const auto& t : mesh.triangles)
+    file << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+}
+
+struct Outcome {
+  std::string refused;
+  std::uint64_t hash = 0;
+  std::vector<std::string> notes;
+};
+
+class MeshKeys : public testing::Test {
+ protected:
+  MeshKeys() {
+    write_mesh(folder_ / "m.obj", *made_up({.nx = 7, .ny = 6, .shift = 0.2}));
+    write_mesh(folder_ / "other.obj", *made_up({.nx = 6, .ny = 6, .shift = 0.2}));
+  }
+  Outcome run(const Json& scene) {
+    std::ofstream(folder_ / "s.json") << scene;
+    const SceneFile file = read_scene(folder_ / "s.json");
+    Outcome all;
+    for (const Fault& f : file.faults) all.refused += f.place + " " + f.what + "\n";
+    if (!file.faults.empty()) return all;
+    Simulation simulation(file.scene, {.threads = 1});
+    for (int n = 0; n < 4; ++n) simulation.advance_frame();
+    EXPECT_TRUE(simulation.status().ok);
+    all.hash = simulation.hash();
+    all.notes = simulation.plan().notes;
+    return all;
+  }
+  Folder folder_;
+};
+
+TEST_F(MeshKeys, AllAreNamed) {
+  std::set<std::string> named = kNotOfTheCloth;
+  for (const auto& [place, key] : kKeys) named.insert(place);
+  EXPECT_EQ(places_of_the_schema(), named);
+}
+
+TEST_F(MeshKeys, NoneIsIgnored) {
+  const Json base = Json::parse(R"({"weft": 1,
+      "cloths": [{"mesh": {"file": "m.obj"}, "pins": [0, 30]}],
+      "colliders": [{"sphere": {"center": [0.5, -0.11, 0.5], "radius": 0.1}, "friction": 0.3}]})");
+  for (const auto& [place, key] : kKeys) {
+    Json without = base;
+    without.merge_patch(Json::parse(key.beside));
+    Json with = without;
+    with[Json::json_pointer(place)] = Json::parse(key.value);
+    const Outcome a = run(without), b = run(with);
+    if (!b.refused.empty()) {
+      // At the key, its parent, or for the mesh as a whole.
+      const std::string at = b.refused.substr(0, b.refused.find(' '));
+      EXPECT_TRUE(place.rfind(at, 0) == 0 || at == "/cloths/0/mesh") << place << ": " << b.refused;
+      continue;
+    }
+    EXPECT_TRUE(a.refused.empty()) << place << ": " << a.refused;
+    EXPECT_TRUE(a.hash != b.hash || a.notes != b.notes) << place << " does nothing";
+  }
+}
+
+}  // namespace
+}  // namespace weft
