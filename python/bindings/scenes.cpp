@@ -2,7 +2,10 @@
 
 #include <pybind11/stl.h>
 
+#include <filesystem>
+
 #include "weft/estimate.h"
+#include "weft/mesh.h"
 #include "weft/output.h"
 #include "weft/printable.h"
 #include "weft/simulation.h"
@@ -27,9 +30,28 @@ py::list tuples(const std::vector<Fault>& faults) {
   return list;
 }
 
+// Of a scene without a file: they lie beside the working directory.
+void read_meshes(SceneFile& file) {
+  if (file.faults.empty()) load_meshes(file.scene, "", file.faults, file.notes);
+  if (file.faults.empty()) file.faults = validate(file.scene);
+}
+
+// A scene that has left its file: meshes are no longer beside it.
+Scene with_full_paths(SceneFile file) {
+  const std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
+  for (Cloth& cloth : file.scene.cloths)
+    if (!cloth.mesh.file.empty() && !file.path.empty())
+      cloth.mesh.file = std::filesystem::absolute(folder / cloth.mesh.file).string();
+  return std::move(file.scene);
+}
+
 SceneFile read_any(const py::object& scene, const py::dict& values) {
   const std::vector<Override> overrides = overrides_of(values);
-  if (py::isinstance<py::dict>(scene)) return read_scene_text(json_text(scene), overrides);
+  if (py::isinstance<py::dict>(scene)) {
+    SceneFile file = read_scene_text(json_text(scene), overrides);
+    read_meshes(file);
+    return file;
+  }
   const bool path = py::isinstance<py::str>(scene) || py::hasattr(scene, "__fspath__");
   if (!path)
     throw py::type_error("scene: a dict, a path, or the name of a shipped scene is needed, not " +
@@ -110,7 +132,7 @@ void register_scenes(py::module_& module) {
   module.def(
       "read_scene",
       [](const py::object& scene, const py::dict& values) {
-        return json_value(write_scene_text(read(scene, values).scene));
+        return json_value(write_scene_text(with_full_paths(read(scene, values))));
       },
       py::arg("scene"), py::arg("values") = py::dict(),
       R"(A scene as a dict: what differs from the defaults (see scene_schema()).

@@ -20,6 +20,7 @@ using Positions = py::array_t<double, py::array::c_style | py::array::forcecast>
 // Windows onto one cloth's arrays. Each keeps the memory that it looks at.
 struct ClothArrays {
   py::array positions, velocities, inverse_mass;
+  py::object lanes;  // of a mesh; of a grid None
   Vec3 origin;
 };
 
@@ -28,11 +29,18 @@ py::array window(const float* data, const ClothView& c, std::ptrdiff_t plane,
                  const std::shared_ptr<const void>& memory) {
   using Kept = std::shared_ptr<const void>;
   const py::capsule owner(new Kept(memory), [](void* p) { delete static_cast<Kept*>(p); });
-  std::vector<py::ssize_t> shape{c.rows, c.columns}, strides{c.stride * 4L, 4};
+  // The rows of a mesh are of different lengths: they come with their padding.
+  std::vector<py::ssize_t> shape{c.rows, c.lanes.empty() ? c.columns : c.stride},
+      strides{c.stride * 4L, 4};
   if (plane != 0) shape.push_back(3), strides.push_back(plane * 4);
   const py::array array(py::dtype::of<float>(), shape, strides, data, owner);
   array.attr("flags").attr("writeable") = false;
   return array;
+}
+
+py::object lanes_of(const ClothView& c) {
+  if (c.lanes.empty()) return py::none();
+  return py::array(py::ssize_t(c.lanes.size()), c.lanes.data());
 }
 
 std::vector<ClothArrays> windows(Shared& shared) {
@@ -42,7 +50,7 @@ std::vector<ClothArrays> windows(Shared& shared) {
   for (const ClothView& c : view.cloths)
     all.push_back({window(c.x.data(), c, c.y.data() - c.x.data(), memory),
                    window(c.vx.data(), c, c.vy.data() - c.vx.data(), memory),
-                   window(c.inverse_mass.data(), c, 0, memory), view.origin});
+                   window(c.inverse_mass.data(), c, 0, memory), lanes_of(c), view.origin});
   return all;
 }
 
@@ -99,6 +107,9 @@ void set_value(Shared& shared, const std::string& pointer, const py::object& val
   const Override change{pointer, json_text(value)};
   shared.call([&](Simulation& s) {
     SceneFile file = read_scene_text(write_scene_text(s.scene()), {change});
+    for (std::size_t c = 0; c < file.scene.cloths.size() && c < s.scene().cloths.size(); ++c)
+      if (file.scene.cloths[c].mesh.file == s.scene().cloths[c].mesh.file)
+        file.scene.cloths[c].mesh.shape = s.scene().cloths[c].mesh.shape;
     if (!file.faults.empty()) throw SceneError(std::move(file.faults));
     s.set_scene(std::move(file.scene));
   });
@@ -142,7 +153,8 @@ void register_arrays(Class& type) {
 
 A list with, for each cloth of r rows and c columns, positions (r, c, 3) float32 [m, from `origin`],
 velocities (r, c, 3) float32 [m/s; half a substep behind but for solvers of order 2], inverse_mass (r, c)
-float32 [1/kg; 0 = held] and origin, 3 floats [m]. Read-only. They always show the present state; they
+float32 [1/kg; 0 = held] and origin, 3 floats [m]. The rows of a mesh are padded: `lanes` tells where its
+vertices are, positions.reshape(-1, 3)[lanes]. Read-only. They always show the present state; they
 stay valid when the simulation is gone, and hold its memory until they are. After set(), set_scene()
 and restore() ask for them anew: older ones keep the state of before.)");
   type.def_property_readonly(
@@ -292,6 +304,10 @@ void register_simulation(py::module_& module) {
                     "(rows, columns, 3) float32 [m/s]; half a substep behind but for order 2")
       .def_readonly("inverse_mass", &ClothArrays::inverse_mass,
                     "(rows, columns) float32 [1/kg]; 0 = held")
+      .def_readonly(
+          "lanes", &ClothArrays::lanes,
+          "Of a mesh, whose rows are padded: where each vertex is, (vertices,) uint32, as in\n"
+          "positions.reshape(-1, 3)[lanes]; of a grid None.")
       .def_readonly("origin", &ClothArrays::origin,
                     "3 floats [m]: what positions are counted from; zero near the world's middle");
   py::class_<Snapshot>(module, "Snapshot", "A state of a simulation (Simulation.snapshot).")

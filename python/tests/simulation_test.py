@@ -302,6 +302,32 @@ def test_scenes_as_dicts():
     assert a.hash == b.hash
 
 
+def test_meshes(tmp_path):
+    xs = [(x, z) for z in range(3) for x in range(3)]
+    mesh = "".join(f"v {x} 0 {z}\n" for x, z in xs)
+    mesh += "".join(f"f {a} {a + 3} {a + 4} {a + 1}\n" for a in (1, 2, 4, 5))
+    (tmp_path / "square.obj").write_text(mesh)
+    scene = {"weft": 1, "cloths": [{"mesh": {"file": str(tmp_path / "square.obj"), "scale": 0.5},
+                                    "pins": [0, 8]}]}
+    sim = weft.Simulation(scene)
+    sim.advance(10)
+    assert sim.positions.shape == (9, 3) and sim.triangles.shape == (8, 3)
+    assert sim.triangles.max() == 8 and sim.edges.shape == (16, 2) and len(sim.strain) == 16
+    assert sim.positions[8].tolist() == [1, 0, 1] and sim.positions[1, 1] < 0
+    cloth = sim.cloths[0]
+    assert (cloth.positions.reshape(-1, 3)[cloth.lanes] == sim.positions).all()
+    assert cloth.inverse_mass.ravel()[cloth.lanes][[0, 8]].tolist() == [0, 0]
+    sim.set("/gravity", [0, 0, 0])  # the mesh stays as it was read
+    sim.advance(1)
+    scene["cloths"][0]["mesh"]["file"] = "none.obj"
+    with pytest.raises(weft.SceneError, match="none.obj"):
+        weft.Simulation(scene)
+    flags = [weft.Simulation(s) for s in ("flag_round", weft.read_scene("flag_round"))]
+    for flag in flags:
+        flag.advance(2)
+    assert flags[0].hash == flags[1].hash and flags[0].cloths[0].lanes.shape == (817,)
+
+
 def test_help_has_every_public_name_and_the_stubs_agree():
     stubs = (pathlib.Path(weft.__file__).parent / "__init__.pyi").read_text()
     for name in weft.__all__:

@@ -286,6 +286,7 @@ def changed(spec, pointer, value):
     (("positions",), {"frames": [3, 2]}, "/positions/frames/1"),
     (("positions",), {"frames": [13]}, "0 to 12"),
     (("frames",), -1, "/frames"),
+    (("scene",), "flag_round", "/scene/cloths/0/mesh: a study has a mesh"),
 ])
 def test_what_is_wrong_is_told_with_its_place_and_nothing_is_written(spec, tmp_path, pointer, value, message):
     wrong = changed(spec, pointer, value)

@@ -26,6 +26,7 @@ class ClothArrays:
     positions: npt.NDArray[np.float32]
     velocities: npt.NDArray[np.float32]
     inverse_mass: npt.NDArray[np.float32]
+    lanes: npt.NDArray[np.uint32] | None
     origin: list[float]
 
 class Snapshot:

@@ -48,6 +48,12 @@ std::vector<Fault> Document::open(const std::string& path_or_name,
   shipped_ = false;
   for (const ShippedScene& shipped : shipped_scenes()) shipped_ = shipped_ || shipped.path == path_;
   scene_ = std::move(file.scene);
+  meshes_.clear();
+  for (Cloth& cloth : scene_.cloths) {
+    if (!cloth.mesh.shape) continue;
+    cloth.mesh.file = fs::absolute(fs::path(path_).parent_path() / cloth.mesh.file).string();
+    meshes_[cloth.mesh.file] = cloth.mesh.shape;
+  }
   notes_ = std::move(file.notes);
   name_ = scene_.name.empty() ? fs::path(path_).stem().string() : scene_.name;
   json_ = text::document_of(scene_);
@@ -71,6 +77,7 @@ std::string Document::set(const std::vector<Change>& changes, bool joined) {
   text::check(text::scene_schema_json(), next, check);
   if (!check.faults.empty()) return line_of(check.faults.front());
   Scene scene = text::scene_of(next);
+  if (const auto faults = read_meshes(scene); !faults.empty()) return line_of(faults.front());
   if (const auto faults = validate(scene); !faults.empty()) return line_of(faults.front());
 
   const std::string& place = changes.front().pointer;
@@ -91,6 +98,19 @@ void Document::take(std::size_t position) {
   json_ = history_[position].json;
   revision_ = history_[position].revision;
   scene_ = text::scene_of(json_);
+  read_meshes(scene_);
+}
+
+std::vector<Fault> Document::read_meshes(Scene& scene) {
+  for (Cloth& cloth : scene.cloths)
+    if (const auto known = meshes_.find(cloth.mesh.file); known != meshes_.end())
+      cloth.mesh.shape = known->second;
+  std::vector<Fault> faults;
+  std::vector<std::string> notes;
+  load_meshes(scene, fs::path(path_).parent_path().string(), faults, notes);
+  for (const Cloth& cloth : scene.cloths)
+    if (cloth.mesh.shape) meshes_[cloth.mesh.file] = cloth.mesh.shape;
+  return faults;
 }
 
 void Document::undo() {
@@ -105,9 +125,19 @@ std::string Document::next_undo() const {
   return can_undo() ? history_[position_].place : "";
 }
 
+std::string Document::text_for(const std::string& path) const {
+  Scene scene = scene_;
+  const fs::path folder = fs::absolute(path).parent_path();
+  for (Cloth& cloth : scene.cloths) {
+    const fs::path beside = fs::path(cloth.mesh.file).lexically_relative(folder);
+    if (!beside.empty() && *beside.begin() != "..") cloth.mesh.file = beside.string();
+  }
+  return write_scene_text(scene);
+}
+
 void Document::save(const std::string& path) {
   OutputFile file(path);
-  file.write(write_scene_text(scene_));
+  file.write(text_for(path));
   file.commit();
   path_ = path;
   shipped_ = false;
@@ -139,7 +169,7 @@ std::string Document::keep() const {
   fs::create_directories(path.parent_path(), error);
   try {
     OutputFile file(path.string());
-    file.write(write_scene_text(scene_));
+    file.write(text_for(path.string()));
     file.commit();
   } catch (const WriteError& failure) {
     return "Unsaved changes cannot be kept: " + printable(failure.path) + ": " + failure.what();

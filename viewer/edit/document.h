@@ -3,10 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "scene/json_text.h"
+#include "weft/mesh.h"
 #include "weft/read_scene.h"
 
 namespace weft::viewer {
@@ -63,11 +66,16 @@ class Document {
     std::uint64_t revision;
   };
   void take(std::size_t position);
+  // Files of meshes are read once.
+  std::vector<Fault> read_meshes(Scene& scene);
+  // The scene as a file; meshes in its folder or below go by relative names, as they came.
+  std::string text_for(const std::string& path) const;
   std::string keep_path() const;
 
   text::Json json_;
   std::vector<std::string> notes_;
   Scene scene_;
+  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;  // by the name of the file
   std::string path_, name_;
   bool shipped_ = false;
   std::vector<State> history_;

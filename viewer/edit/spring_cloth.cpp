@@ -70,7 +70,7 @@ bool springs(Method method) {
 }  // namespace
 
 bool is_spring_cloth(const Scene& scene) {
-  return scene.cloths.size() == 1 && scene.cloths[0].level > 0 &&
+  return scene.cloths.size() == 1 && scene.cloths[0].level > 0 && !scene.cloths[0].mesh.given() &&
          scene.cloths[0].grid.nx == scene.cloths[0].grid.ny;
 }
 

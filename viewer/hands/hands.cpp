@@ -11,10 +11,6 @@ constexpr double kPull = 2000;  // N/m, of the hand's spring
 constexpr float kTurn = 3.2f;   // rad, by a drag over the picture's height
 constexpr std::size_t kMostMarks = 400;
 
-double spacing_of(const Cloth& cloth) {
-  return std::max(spacing_u(cloth.grid), spacing_v(cloth.grid));
-}
-
 }  // namespace
 
 void Hands::update(Workspace& workspace, const Area& area, const Pointer& pointer) {

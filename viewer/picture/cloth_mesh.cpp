@@ -1,6 +1,7 @@
 // The cloth's surface on the graphics card. The buffer is given up and filled anew each time, so
 // that the card never waits for the processor nor the other way round.
 #include "picture/meshes.h"
+#include "weft/mesh.h"
 
 namespace weft::viewer {
 
@@ -45,6 +46,32 @@ void append_lines(std::vector<std::uint32_t>& indices, const std::vector<Offset>
       }
 }
 
+// Texture coordinates of a mesh, one for each vertex: those of the file, or from 0 to 1 along the two sides
+// in which it is largest.
+std::vector<float> mesh_coordinates(const MeshSource& source) {
+  const TriangleMesh& mesh = *source.shape;
+  std::vector<float> uv(2 * mesh.vertices.size());
+  for (std::size_t t = 0; t < mesh.uv.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t side = 0; side < 2; ++side)
+        uv[2 * static_cast<std::size_t>(mesh.triangles[t][k]) + side] =
+            static_cast<float>(mesh.uv[t][k][side]);
+  if (!mesh.uv.empty()) return uv;
+  Vec3 low = mesh.vertices[0], high = low;
+  for (const Vec3& v : mesh.vertices)
+    for (std::size_t k = 0; k < 3; ++k)
+      low[k] = std::min(low[k], v[k]), high[k] = std::max(high[k], v[k]);
+  std::size_t thin = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (high[k] - low[k] < high[thin] - low[thin]) thin = k;
+  for (std::size_t n = 0; n < mesh.vertices.size(); ++n)
+    for (std::size_t k = 0, side = 0; k < 3; ++k)
+      if (k != thin)
+        uv[2 * n + side++] =
+            static_cast<float>((mesh.vertices[n][k] - low[k]) / std::max(high[k] - low[k], 1e-9));
+  return uv;
+}
+
 }  // namespace
 
 ClothMesh::ClothMesh()
@@ -57,14 +84,17 @@ ClothMesh::ClothMesh()
 
 void ClothMesh::update(const ClothCopy& whole, std::uint64_t scene, const Cloth& description,
                        const Look& look, Sampling sampling) {
-  if (look.draw != Look::Draw::surface) sampling.refinement = 1;
+  if (look.draw != Look::Draw::surface || whole.mesh)
+    sampling = {1, whole.mesh ? 1 : sampling.step};
   const ClothCopy thin = sampling.step > 1 ? thinned(whole, sampling.step) : ClothCopy{};
   const ClothCopy& cloth = sampling.step > 1 ? thin : whole;
   const bool same_size = columns_ == whole.columns && rows_ == whole.rows && sampling_ == sampling;
   const bool same = same_size && topology_ == whole.topology_version && scene_ == scene;
   size_surface(cloth, sampling.refinement, surface_);
   if (!same) triangulate(cloth, surface_);
-  if (cloth.torn)
+  if (cloth.mesh)
+    build_mesh_surface(cloth, surface_);
+  else if (cloth.torn)
     build_torn_surface(cloth, surface_);
   else
     build_surface(cloth, surface_);
@@ -74,7 +104,7 @@ void ClothMesh::update(const ClothCopy& whole, std::uint64_t scene, const Cloth&
   glBindVertexArray(array_.id());
   upload_vertices();
   if (same) return;
-  upload_coordinates(cloth);
+  whole.mesh ? upload_coordinates(mesh_coordinates(description.mesh)) : upload_coordinates(cloth);
   upload_triangles();
   if (sampling.refinement == 1) upload_lines(cloth, description);
   columns_ = whole.columns;
@@ -118,6 +148,10 @@ void ClothMesh::upload_coordinates(const ClothCopy& cloth) {
     const std::size_t v = vertex_of(cloth, surface_, particle);
     uv.insert(uv.end(), {uv[2 * v], uv[2 * v + 1]});
   }
+  upload_coordinates(uv);
+}
+
+void ClothMesh::upload_coordinates(const std::vector<float>& uv) {
   glBindBuffer(GL_ARRAY_BUFFER, coordinates_.id());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(uv.size() * sizeof(float)), uv.data(),
                GL_STATIC_DRAW);
@@ -152,11 +186,14 @@ void ClothMesh::upload_triangles() {
 
 void ClothMesh::upload_lines(const ClothCopy& cloth, const Cloth& description) {
   std::vector<std::uint32_t> indices;
-  const Offsets offsets = offsets_of(description);
+  const Offsets offsets = cloth.mesh ? Offsets{} : offsets_of(description);
   const std::vector<Offset>* const kinds[] = {&offsets.structural, &offsets.shear, &offsets.bend};
   for (int kind = 0; kind < 3; ++kind) {
     const std::size_t start = indices.size();
     append_lines(indices, *kinds[kind], cloth, surface_.indices);
+    if (cloth.mesh && kind == structural)
+      for (const auto& edge : edges_of(cloth))
+        indices.insert(indices.end(), edge.begin(), edge.end());
     lines_[kind] = {static_cast<GLsizei>(indices.size() - start), start};
   }
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, line_indices_.id());

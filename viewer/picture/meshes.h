@@ -38,6 +38,7 @@ class ClothMesh {
 
   void upload_vertices();
   void upload_coordinates(const ClothCopy& cloth);
+  void upload_coordinates(const std::vector<float>& uv);
   void upload_triangles();
   void upload_lines(const ClothCopy& cloth, const Cloth& description);
 

@@ -133,9 +133,10 @@ void Renderer::update_meshes(const Snapshot& snapshot, const Setting& setting, c
     cloths_[c].update(cloth, snapshot.scene_serial, snapshot.scene->cloths[c], look, sampling);
   }
   const Cloth& first = snapshot.scene->cloths.front();
-  const float weight =
-      static_cast<float>(particle_mass(first, first.grid.nx / 2, first.grid.ny / 2)) *
-      length(to_float(snapshot.scene->gravity));
+  const double mass = first.mesh.given()
+                          ? first.density * spacing_of(first) * spacing_of(first)
+                          : particle_mass(first, first.grid.nx / 2, first.grid.ny / 2);
+  const float weight = static_cast<float>(mass) * length(to_float(snapshot.scene->gravity));
   // Forces are drawn of one iteration, of which a substep may add several.
   const Solver& solver = snapshot.scene->solver;
   const auto repeats = static_cast<float>(solver.iterate_springs ? solver.iterations : 1);
@@ -161,7 +162,9 @@ void Renderer::update_bodies(const Snapshot& snapshot, const Setting& setting,
                              const LookSettings& settings) {
   double widest = 0;  // m, diagonal of a square of the grid
   for (const Cloth& cloth : snapshot.scene->cloths)
-    widest = std::max(widest, std::hypot(spacing_u(cloth.grid), spacing_v(cloth.grid)));
+    widest = std::max(widest, cloth.mesh.given()
+                                  ? spacing_of(cloth)
+                                  : std::hypot(spacing_u(cloth.grid), spacing_v(cloth.grid)));
   if (body_tessellation_ != settings.tessellation || body_size_ != setting.size) bodies_.clear();
   body_tessellation_ = settings.tessellation;
   body_size_ = setting.size;

@@ -5,14 +5,24 @@ namespace weft::viewer {
 
 namespace {
 
+// How long a sheet is, or a mesh as it starts.
+float side_of(const Cloth& cloth, const ClothCopy& copy) {
+  if (!cloth.mesh.given())
+    return std::max(length(to_float(cloth.grid.u)), length(to_float(cloth.grid.v)));
+  Bounds bounds;
+  for (int p = 0; p < copy.columns; ++p) bounds.add(copy.position(p));
+  const Vec3f size = bounds.high - bounds.low;
+  return std::max({size.x, size.y, size.z});
+}
+
 // How far down the cloth can hang, from its pins or draped over the colliders.
 float reach_of(const Cloth& cloth, const ClothCopy& copy, const Bounds& bodies, bool& held) {
-  const float side = std::max(length(to_float(cloth.grid.u)), length(to_float(cloth.grid.v)));
+  const float side = side_of(cloth, copy);
   float lowest = 1e30f;
   if (!cloth.pins.empty()) {
     float highest = -1e30f;
     for (const Pin& pin : cloth.pins)
-      highest = std::max(highest, copy.position(particle_number(cloth.grid, pin.i, pin.j)).y);
+      highest = std::max(highest, copy.position(particle_number(cloth, pin)).y);
     lowest = highest - 1.08f * side;
     held = true;
   } else if (!bodies.empty()) {

@@ -9,6 +9,22 @@ void copy(std::span<const float> from, std::vector<float>& to) {
   to.assign(from.begin(), from.end());
 }
 
+// The values of a mesh in the order of its numbers, and its triangles by them.
+void put_in_order(std::span<const std::uint32_t> lanes, ClothCopy& cloth) {
+  std::vector<std::uint32_t> numbers(cloth.x.size());
+  for (std::size_t n = 0; n < lanes.size(); ++n) numbers[lanes[n]] = static_cast<std::uint32_t>(n);
+  for (auto* values :
+       {&cloth.x, &cloth.y, &cloth.z, &cloth.vx, &cloth.vy, &cloth.vz, &cloth.inverse_mass}) {
+    std::vector<float> ordered(lanes.size());
+    for (std::size_t n = 0; n < lanes.size(); ++n) ordered[n] = (*values)[lanes[n]];
+    values->swap(ordered);
+  }
+  for (auto& triangle : cloth.triangles)
+    for (std::uint32_t& corner : triangle) corner = numbers[corner];
+  cloth.columns = cloth.stride = static_cast<int>(lanes.size());
+  cloth.rows = 1;
+}
+
 Vec3 negative(const Vec3& p) {
   return {-p[0], -p[1], -p[2]};
 }
@@ -61,6 +77,8 @@ void copy_view(const View& view, const Scene& scene, Snapshot& to) {
     cloth.tear_points.assign(from.tear_points.begin(), from.tear_points.end());
     cloth.tear_particles.assign(from.tear_particles.begin(), from.tear_particles.end());
     cloth.tear_triangles.assign(from.tear_triangles.begin(), from.tear_triangles.end());
+    cloth.mesh = !from.lanes.empty();
+    if (cloth.mesh) put_in_order(from.lanes, cloth);
   }
 }
 

@@ -13,14 +13,16 @@
 
 namespace weft::viewer {
 
-// One cloth: component arrays of rows * stride floats, as in weft/view.h.
+// One cloth: component arrays of rows * stride floats, as in weft/view.h. A mesh is one row, in the order of
+// its numbers.
 struct ClothCopy {
   int columns = 0, rows = 0, stride = 0;
   std::vector<float> x, y, z;
   std::vector<float> vx, vy, vz;
   std::vector<float> inverse_mass;
   std::uint64_t topology_version = 0;  // with the scene's serial: which triangles are left
-  bool torn = false;
+  bool torn = false;                   // a mesh, too, shows its triangles alone
+  bool mesh = false;
   std::vector<std::array<std::uint32_t, 3>> triangles;  // corners as at(i, j); unless torn: empty
   // What is left beside the tears (weft/view.h): points, the particle of each, triangles of them.
   std::vector<std::array<float, 3>> tear_points;

@@ -1,6 +1,8 @@
 // Refinement: Catmull-Rom splines (Catmull and Rom 1974), first along the rows, then across them.
 #include "picture/surface.h"
 
+#include "weft/mesh.h"
+
 namespace weft::viewer {
 
 namespace {
@@ -119,9 +121,49 @@ void each_link(const ClothCopy& cloth, Offset o, Link link) {
       link(cloth.at(i, j), cloth.at(i + o.di, j + o.dj));
 }
 
+void add_mesh_strains(const ClothCopy& cloth, const Cloth& description,
+                      std::vector<float>& strain) {
+  strain.assign(cloth.x.size(), 0);
+  const std::vector<Vec3> rest = placed_vertices(description.mesh);
+  for (const auto& [a, b] : edges_of(cloth)) {
+    const Vec3f now = cloth.position(static_cast<int>(b)) - cloth.position(static_cast<int>(a));
+    const float e = std::abs(length(now) / length(to_float(rest[b]) - to_float(rest[a])) - 1);
+    strain[a] = std::max(strain[a], e);
+    strain[b] = std::max(strain[b], e);
+  }
+}
+
 }  // namespace
 
+std::vector<std::array<std::uint32_t, 2>> edges_of(const ClothCopy& mesh) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      edges.push_back({std::min(a, b), std::max(a, b)});
+    }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+double spacing_of(const Cloth& cloth) {
+  if (!cloth.mesh.given()) return std::max(spacing_u(cloth.grid), spacing_v(cloth.grid));
+  constexpr std::size_t kLooked = 500;  // triangles
+  const TriangleMesh& mesh = *cloth.mesh.shape;
+  const std::size_t step = mesh.triangles.size() / kLooked + 1;
+  double sum = 0, count = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += step)
+    for (std::size_t k = 0; k < 3; ++k, ++count) {
+      const Vec3& a = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])];
+      const Vec3& b = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][(k + 1) % 3])];
+      sum += std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+    }
+  return cloth.mesh.scale * sum / count;
+}
+
 Sampling sampling_of(const ClothCopy& cloth, int detail) {
+  if (cloth.mesh) return {};
   const int side = std::max(cloth.columns, cloth.rows);
   const int thin = cloth.torn || side < 3 * detail / 2 ? 1 : (side + detail - 1) / detail;
   return {std::clamp(detail / side, 1, 6), thin};
@@ -185,6 +227,10 @@ Offsets offsets_of(const Cloth& description) {
 // f += k (|d| - l) d / |d|
 void add_forces(const ClothCopy& cloth, const Cloth& description, int step, ClothSurface& surface) {
   std::vector<float> fx(cloth.x.size()), fy = fx, fz = fx;
+  if (cloth.mesh) {
+    surface.fx = fx, surface.fy = fy, surface.fz = fz;
+    return;
+  }
   const auto add = [&](const std::vector<Offset>& offsets, double stiffness) {
     const auto k = static_cast<float>(stiffness);
     for (const Offset o : offsets) {
@@ -216,6 +262,7 @@ void add_forces(const ClothCopy& cloth, const Cloth& description, int step, Clot
 void add_strains(const ClothCopy& cloth, const Cloth& description, int step,
                  ClothSurface& surface) {
   std::vector<float> strain(cloth.x.size());
+  if (cloth.mesh) return add_mesh_strains(cloth, description, surface.strain);
   for (const Offset o : {Offset{1, 0}, Offset{0, 1}}) {
     const float rest = rest_length(description.grid, o);
     each_link(cloth, o, [&](std::size_t a, std::size_t b) {

@@ -45,7 +45,8 @@ void build_surface(const ClothCopy& cloth, ClothSurface& surface);
 // The triangles of a cloth, whole or torn, on a surface whose size is set.
 void triangulate(const ClothCopy& cloth, ClothSurface& surface);
 
-// build_surface() for a torn cloth; the triangles are there already.
+// build_surface() for a mesh, and for a torn cloth; the triangles are there already.
+void build_mesh_surface(const ClothCopy& cloth, ClothSurface& surface);
 void build_torn_surface(const ClothCopy& cloth, ClothSurface& surface);
 
 // Adds the vertices beside the tears to a surface that is complete otherwise.
@@ -53,8 +54,14 @@ void add_tear_boundary(const ClothCopy& cloth, ClothSurface& surface);
 // The vertex of the lattice for a particle, j*stride + i.
 std::size_t vertex_of(const ClothCopy& cloth, const ClothSurface& surface, std::uint32_t particle);
 
+// The sides of the triangles of a mesh, each once.
+std::vector<std::array<std::uint32_t, 2>> edges_of(const ClothCopy& mesh);
+
+// About how far neighbours are apart at rest [m].
+double spacing_of(const Cloth& cloth);
+
 // Adds to the surface of the thinned cloth the force of the springs on each particle [N] by Hooke's
-// law.
+// law. Of a mesh, whose forces are not those of springs alone: zero.
 void add_forces(const ClothCopy& cloth, const Cloth& description, int step, ClothSurface& surface);
 
 // Adds the greatest strain |length / rest - 1| of the structural constraints at each particle.

@@ -97,6 +97,12 @@ void add_normals(ClothSurface& s) {
 }  // namespace
 
 void triangulate(const ClothCopy& cloth, ClothSurface& surface) {
+  if (cloth.mesh) {
+    surface.indices.clear();
+    for (const auto& t : cloth.triangles)
+      surface.indices.insert(surface.indices.end(), t.begin(), t.end());
+    return;
+  }
   const Squares squares(cloth);
   const int r = surface.refinement, columns = surface.columns;
   std::vector<std::uint32_t>& indices = surface.indices;
@@ -149,6 +155,13 @@ void add_tear_boundary(const ClothCopy& cloth, ClothSurface& s) {
       s.tear_indices.push_back(static_cast<std::uint32_t>(first + p));
     }
   }
+}
+
+void build_mesh_surface(const ClothCopy& cloth, ClothSurface& surface) {
+  surface.x = cloth.x;
+  surface.y = cloth.y;
+  surface.z = cloth.z;
+  add_normals(surface);
 }
 
 void build_torn_surface(const ClothCopy& cloth, ClothSurface& surface) {
