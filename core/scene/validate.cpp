@@ -232,11 +232,6 @@ class Together {
     const Membrane& membrane = cloth.membrane;
     if (!sound({place + "/membrane", place + "/stiffness"})) return;
     if (membrane.given()) membrane_fits(cloth, place);
-    const double most = std::sqrt(membrane.warp * membrane.weft);
-    if (membrane.coupling > most || membrane.coupling < -most)
-      fault(
-          place + "/membrane/coupling", "coupling is " + number_words(membrane.coupling),
-          number_words(-most) + " to " + number_words(most) + " N/m, the root of warp times weft");
     if (!membrane.given() && membrane.damping > 0)
       fault(place + "/membrane/damping", "damping is given, and warp, weft and shear are 0",
             "0 without moduli");
@@ -244,16 +239,39 @@ class Together {
     if (sound({place + "/bending"}) && !bending.given() && bending.damping > 0)
       fault(place + "/bending/damping", "damping is given, and warp, weft and twist are 0",
             "0 without rigidity");
-    if (cloth.mesh.given()) return;
-    if (membrane.given())
-      fault(place + "/membrane", "a grid has a membrane", "stiffness, on a grid");
-    if (sound({place + "/bending"}) && !bending.plain())
-      fault(place + "/bending", "bending differs with the direction or is damped",
-            "one number, on a grid");
+    else if (sound({place + "/bending"}) && !cloth.mesh.given() && bending.damping > 0)
+      fault(place + "/bending/damping", "damping is " + number_words(bending.damping),
+            "0 s, on a grid");
+  }
+
+  // The energy of any strain is above 0, and the shear softer than the threads.
+  void positive(const Membrane& m, const std::string& place) {
+    const std::pair<const char*, double> moduli[] = {
+        {"warp", m.warp}, {"weft", m.weft}, {"shear", m.shear}};
+    for (const auto& [name, modulus] : moduli)
+      if (!(modulus > 0)) return fault(place + "/" + name, std::string(name) + " is 0", "above 0");
+    const double most = std::sqrt(m.warp * m.weft), softer = std::min(m.warp, m.weft);
+    if (m.coupling >= most || m.coupling <= -most)
+      fault(place + "/coupling", "coupling is " + number_words(m.coupling),
+            "between " + number_words(-most) + " and " + number_words(most) +
+                " N/m, the root of warp times weft");
+    if (m.shear >= softer)
+      fault(place + "/shear", "shear is " + number_words(m.shear),
+            "below " + number_words(softer) + " N/m, warp or weft");
   }
 
   // What a membrane cannot go with.
   void membrane_fits(const Cloth& cloth, const std::string& place) {
+    constexpr double kRight = 1e-6;  // cosine of the angle between u and v
+    positive(cloth.membrane, place + "/membrane");
+    const Vec3 &u = cloth.grid.u, &v = cloth.grid.v;
+    const auto product = [](const Vec3& a, const Vec3& b) {
+      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    };
+    if (!cloth.mesh.given() && sound({place + "/grid"}) &&
+        std::abs(product(u, v)) > kRight * std::sqrt(product(u, u) * product(v, v)))
+      fault(place + "/membrane", "u and v of the grid are not at right angles",
+            "a membrane's warp and weft are");
     if (cloth.stiffness != Kinds{1000, 1000, 200} || cloth.spring_damping != Kinds{})
       fault(place + "/membrane", "both membrane and stiffness or spring_damping are given",
             "one of the two");

@@ -39,7 +39,7 @@ constexpr double kFrame = 20e3, kSubstep = 400;  // a cloth
 constexpr double kFrameParticle = 12;            // a particle and frame: saving, looking, measuring
 constexpr double kSpring = 0.5, kDampedSpring = 0.75;
 constexpr double kGaussSeidel = 1.0, kJacobi = 0.6, kLine = 1.3;  // and sweep
-constexpr double kSpringBend = 2, kSweepBend = 5;                 // from here on: a particle
+constexpr double kMembrane = 1.6, kSpringBend = 2, kSweepBend = 5;                 // from here on: a particle
 constexpr double kVertex = 9, kBentVertex = 18;                   // of a mesh
 constexpr double kProjection = 1.2, kTethers = 1.5;
 constexpr double kStrainLimit = 1.2, kTearing = 0.6, kWind = 0.8;
@@ -69,6 +69,7 @@ Cloth cutting(const Cloth& from) {
   else
     cloth.particle_mass = lightest_mass(from);
   cloth.stiffness = from.stiffness;
+  cloth.membrane = from.membrane;
   cloth.spring_damping = from.spring_damping;
   cloth.level = from.level;
   cloth.bending = from.bending;
@@ -131,6 +132,8 @@ double constraint_cost(const Cloth& cloth, const Solver& solver) {
   const double particles = particle_count(cloth);
   const double bends = cloth.bending.given() ? particles : 0;
   if (cloth.mesh.given()) return particles * (bends > 0 ? cost::kBentVertex : cost::kVertex);
+  if (is_spring(solver.method) && cloth.membrane.given())
+    return particles * cost::kMembrane + bends * cost::kSpringBend;
   if (solver.method == Method::spring) return count * cost::kSpring + bends * cost::kSpringBend;
   if (solver.method == Method::spring_friction)
     return count * cost::kDampedSpring + bends * cost::kSpringBend;

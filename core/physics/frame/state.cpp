@@ -44,8 +44,7 @@ std::string steady_jacobi(Scene& scene) {
       return "Jacobi sweeps do not converge for masses this unequal; gauss_seidel runs in their "
              "place";
     }
-    const double k = std::max({c.stiffness.structural, c.stiffness.shear, c.stiffness.bend});
-    stiff |= 2 * k * dt * dt > lightest;
+    stiff |= 2 * greatest_stiffness(c) * dt * dt > lightest;
   }
   if (!stiff || scene.solver.method != Method::compliant || scene.solver.iterations > 1) return "";
   scene.solver.iterations = 2;

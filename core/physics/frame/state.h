@@ -150,6 +150,7 @@ struct Simulation::State {
   physics::FrameRun frame_run();
   bool carry_out(physics::Verdict verdict);
   void change_method(const std::string& which, int count);
+  void note_membranes(std::vector<std::string>& notes) const;
   void begin_again();
   void go_on_as(Method as, const Solver& solver);
   bool nothing_else_acts() const;

@@ -16,7 +16,7 @@ using namespace physics;
 namespace {
 
 constexpr int kMostSubsteps = 100000;  // per frame, flat; stretch may ask for 1.4 times as many
-constexpr double kGrabbed = 0.6;  // of stretched_limit's t, room for what a hand may do in a frame
+constexpr double kGrabbed = 1.6;  // on ω², at least: room for what a hand may do in a frame
 
 // What folds onto a line that stretches nothing has up to twice the flat sheet's ω², and no stretch adds
 // to that (a sheet without shear springs, or with nothing else).
@@ -76,6 +76,7 @@ void Simulation::State::choose_method_and_substeps() {
       notes.push_back("substeps of " + number(scene.time.frame / count) +
                       " s, so that sweeps hold up a sheet that hangs by an edge");
   }
+  note_membranes(notes);
   plan = describe_stages();
   plan.dt_limit = std::isfinite(limit) ? limit : 0;
   limit_ = limit;
@@ -155,8 +156,24 @@ void Simulation::State::change_method(const std::string& which, int count) {
       (springs ? "the compliant method runs" : "gauss_seidel sweeps run") + " in their place");
   plan.fallback = true;
   go_on_as(springs ? Method::compliant : method, steady);
+  if (springs) note_membranes(plan.notes);
   take_substeps(springs ? projection_substeps() : count);
   save();
+}
+
+// Methods that project know springs alone.
+void Simulation::State::note_membranes(std::vector<std::string>& notes) const {
+  for (std::size_t c = 0; c < scene.cloths.size() && !is_explicit(method); ++c) {
+    const Membrane& m = scene.cloths[c].membrane;
+    if (!m.given()) continue;
+    std::string note = "cloth " + std::to_string(c) +
+                       ": springs of the membrane's warp, weft and shear run in its place, without "
+                       "its damping";
+    if (m.coupling != m.shear)
+      note += "; they couple warp and weft by " + number(m.shear) + " N/m, not by " +
+              number(m.coupling);
+    notes.push_back(note);
+  }
 }
 
 // As the run began, from the state as it is.
@@ -235,11 +252,10 @@ double Simulation::State::stretched_limit() const {
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const ClothStep& step = *cloths[c];
     const float most = step.model().greatest_stretch(step.particles().x);
-    double t = most > 1 ? 1 - 1 / std::sqrt(double(most)) : 0;
-    if (grab_) t = std::max(t, kGrabbed);
-    // Springs in all directions: never more than twice the flat sheet's ω² for the stencils here.
+    double more = step.model().stiffening(std::sqrt(double(most)));
+    if (grab_) more = std::max(more, kGrabbed);
     Spectrum stretched = spectra[c];
-    stretched.omega_squared *= step.model().folds_freely() ? kFolded : 1 + t;
+    stretched.omega_squared *= step.model().folds_freely() ? kFolded : more;
     limit = std::min(limit, stretched.largest_substep());
   }
   return limit;

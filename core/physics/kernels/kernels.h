@@ -69,18 +69,35 @@ struct PlainRows {
   float* carry;
 };
 
-// Springs as forces, and the leapfrog step.
-struct SpringRows : PlainRows {
-  // Six for each row: (1,0) (0,1) (1,1) (-1,1) (2,0) (0,2); zero where row j+dj does not exist.
-  const SpringConstants* constants;
-  bool damped;  // whether springs have damping
+// Forces, and the leapfrog step.
+struct LeapfrogRows : PlainRows {
   // Inverse mass of the inner particles of rows begin … end-1; 0: there is more than columns to their
   // masses [1/kg].
   float alike;
+  Advance advance;
+};
+
+struct SpringRows : LeapfrogRows {
+  // Six for each row: (1,0) (0,1) (1,1) (-1,1) (2,0) (0,2); zero where row j+dj does not exist.
+  const SpringConstants* constants;
+  bool damped;  // whether springs have damping
   // Of every row: set to 1 where a spring that is not torn is past its tear length at the start; null:
   // nobody asks.
   std::uint8_t* overlong;
-  Advance advance;
+};
+
+// A row's edges and the cells between it and the next row (kernels/membrane.cpp).
+struct MembraneConstants {
+  float warp, weft;      // stiffness of an edge along the row, and of one to the next row [N/m]
+  float along, across;   // coupling: what a cell's strains across and along add to them [N/m]
+  float shear;           // pull of a cell's diagonals, of their squared lengths' difference [N/m³]
+};
+
+struct MembraneRows : LeapfrogRows {
+  const MembraneConstants* constants;  // of each row; zero but for `warp` where no row follows
+  const float* share;                  // of `weft`, of each column: half at both sides
+  float half_u, half_v;                // 1/(2 h²) of the spacings along and across rows [1/m²]
+  float damping;                       // s
 };
 
 // One stencil's constraints of one row in a Jacobi sweep.
@@ -342,6 +359,7 @@ struct TwistRow;
 
 struct KernelTable {
   void (*spring_rows)(const SpringRows&);
+  void (*membrane_rows)(const MembraneRows&);
   void (*spring_stencil)(const StencilRow&);         // f += spring force
   void (*damped_spring_stencil)(const StencilRow&);  // f += spring force and damping along it
   int (*tear)(const TearRow&);                       // returns how many have ended

@@ -85,7 +85,28 @@ WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const 
   store3(x, i, fma(velocity, wide(a.dt), load3(x, i)));
 }
 
+// Moves the block at `x` in the positions of a sheet's rows, of whose row `left` columns are left from its
+// first lane on. kSides: columns at the sides stand for half of an inner one; kAlike: all that the rows
+// hold is free, and of one mass but for that.
+template <bool kSides, bool kAlike>
+WEFT_INLINE void leapfrog(const physics::LeapfrogRows& r, float* x, int left, Wide3 force) {
+  const std::ptrdiff_t lane = x - r.x.x, plane = r.x.y - r.x.x;
+  const Wide3 before = load_planes(r.v.x + lane, plane);
+  Wide3 velocity;
+  if constexpr (kAlike) {
+    Wide gain = wide(r.alike * r.advance.kick);
+    if constexpr (kSides) gain = gain * load(r.inverse_width + (r.columns - left));
+    velocity = moved_free(before, gain, force, r.advance);
+    velocity = select(lanes_below(left), velocity, Wide3{});
+  } else {
+    velocity = moved(before, load(r.w + lane), force, r.advance);
+  }
+  store_planes(r.v.x + lane, plane, velocity);
+  store_planes(x, plane, fma(velocity, wide(r.advance.dt), load_planes(x, plane)));
+}
+
 void spring_rows(const SpringRows&);
+void membrane_rows(const physics::MembraneRows&);
 void spring_stencil(const StencilRow&);
 void damped_spring_stencil(const StencilRow&);
 int tear(const physics::TearRow&);

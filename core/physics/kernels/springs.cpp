@@ -35,19 +35,7 @@ struct SpringLaw {
   }
   WEFT_INLINE static void tell(const Rows& r, std::ptrdiff_t row) { r.overlong[row] = 1; }
   WEFT_INLINE static void finish(const Rows& r, const Block& b, Wide3 force) {
-    const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
-    const Wide3 before = load_planes(r.v.x + lane, plane);
-    Wide3 velocity;
-    if constexpr (kAlike) {
-      Wide gain = wide(r.alike * r.advance.kick);
-      if constexpr (kSides) gain = gain * Block::of_columns(r.inverse_width, r, b);
-      velocity = moved_free(before, gain, force, r.advance);
-      velocity = select(lanes_below(b.left), velocity, Wide3{});
-    } else {
-      velocity = moved(before, load(r.w + lane), force, r.advance);
-    }
-    store_planes(r.v.x + lane, plane, velocity);
-    store_planes(b.x, plane, fma(velocity, wide(r.advance.dt), load_planes(b.x, plane)));
+    leapfrog<kSides, kAlike>(r, b.x, b.left, force);
   }
 };
 

@@ -10,6 +10,7 @@ const physics::KernelTable& table();
 const physics::KernelTable& table() {
   static const physics::KernelTable table = {
       .spring_rows = spring_rows,
+      .membrane_rows = membrane_rows,
       .spring_stencil = spring_stencil,
       .damped_spring_stencil = damped_spring_stencil,
       .tear = tear,

@@ -87,7 +87,7 @@ class ClothModel {
 
   // Of the cloth with its particles at `x`: the energy that its constraints hold as the method feels
   // them in substeps of dt, with what rounding of the positions puts in at once [J]; the greatest
-  // squared length of a structural constraint, of its rest.
+  // squared length of the constraints that carry the cloth, of their rest.
   virtual double held_energy(const Rows& x, double dt) const = 0;
   virtual float greatest_stretch(const Rows& x) const = 0;
   // J; the energy of attachments that are stretched, and what springs gain in a substep by positions
@@ -100,6 +100,8 @@ class ClothModel {
   // same way.
   virtual Spectrum spectrum(std::span<const float> inverse_masses) const = 0;
   virtual bool folds_freely() const = 0;
+  // By how much ω² grows at most where constraints are `stretch` times as long as at rest.
+  virtual double stiffening(double stretch) const = 0;
 
   // Null while the cloth cannot tear; after allow_tearing() it can, where the model knows how, and its
   // stages are to be chosen anew. And the constraints that come within a distance [m] of a segment from a

@@ -28,12 +28,14 @@ void BendLinks::make_whole() {
 
 BendingStiffness bending_stiffness(const Cloth& cloth) {
   const Grid& g = cloth.grid;
-  const double hu = spacing_u(g), hv = spacing_v(g), d = cloth.bending.warp;
+  const double hu = spacing_u(g), hv = spacing_v(g);
   const double area = hu * hv;
+  const Bending& d = cloth.bending;
   if (lumps_by_area(cloth))
-    return {d * area / (hu * hu * hu * hu), d * area / (hv * hv * hv * hv), 2 * d / area};
-  return {d * area * (g.ny - 1) / g.ny / (hu * hu * hu * hu),
-          d * area * (g.nx - 1) / g.nx / (hv * hv * hv * hv), 2 * d / area};
+    return {d.warp * area / (hu * hu * hu * hu), d.weft * area / (hv * hv * hv * hv),
+            2 * d.twist / area};
+  return {d.warp * area * (g.ny - 1) / g.ny / (hu * hu * hu * hu),
+          d.weft * area * (g.nx - 1) / g.nx / (hv * hv * hv * hv), 2 * d.twist / area};
 }
 
 double bending_energy(const Cloth& cloth, const std::vector<Vec3>& x, const BendLinks* left) {

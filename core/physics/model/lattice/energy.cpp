@@ -47,9 +47,8 @@ std::vector<Vec3> spring_forces(const Cloth& cloth, const std::vector<Stencil>& 
   return force;
 }
 
-void accelerations(const Vec3& gravity, const Cloth& cloth, const std::vector<Stencil>& stencils,
-                   const Lattice& l, const BendLinks* left, bool damped, std::vector<Vec3>& a) {
-  a.assign(std::size_t(l.columns) * l.rows, Vec3{});
+void add_spring_forces(const Cloth& cloth, const std::vector<Stencil>& stencils, const Lattice& l,
+                       bool damped, std::vector<Vec3>& a) {
   for (const Stencil& f : stencils)
     for (int j = 0; j + f.dj < l.rows; ++j) {
       const double row = f.stiffness * row_factor(cloth, f, j);
@@ -68,15 +67,6 @@ void accelerations(const Vec3& gravity, const Cloth& cloth, const std::vector<St
                    a[std::size_t(j) * l.columns + near],
                    a[std::size_t(j + f.dj) * l.columns + far]);
       }
-    }
-  add_bending_forces(
-      cloth, [&](int p, int c) { return double(l.x.at(c, p / l.columns, p % l.columns)); }, a,
-      left);
-  for (int j = 0; j < l.rows; ++j)
-    for (int i = 0; i < l.columns; ++i) {
-      const double w = l.w(j, i);
-      Vec3& f = a[std::size_t(j) * l.columns + i];
-      for (int c = 0; c < 3; ++c) f[c] = w > 0 ? f[c] * w + gravity[c] : 0;
     }
 }
 

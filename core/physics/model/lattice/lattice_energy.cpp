@@ -66,15 +66,28 @@ Pull LatticeModel::pull() const {
   return pull;
 }
 
+MembraneCells LatticeModel::membrane() const {
+  return {parts_.cloth, stencils_, spring_repeats(parts_.scene.solver)};
+}
+
 void LatticeModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) const {
-  physics::accelerations(gravity, parts_.cloth, stencils_, lattice_, bend_links(),
-                         method_ == Method::spring_friction, a);
+  const auto add_stretch = [&](std::vector<Vec3>& force) {
+    if (!is_membrane())
+      return add_spring_forces(parts_.cloth, stencils_, lattice_,
+                               method_ == Method::spring_friction, force);
+    const MembraneCells cells = membrane();
+    const std::vector<Vec3> v = lattice_.gather(lattice_.v);
+    cells.add_forces(lattice_.gather(lattice_.x), cells.damping() > 0 ? &v : nullptr, 1,
+                     cells.damping(), force);
+  };
+  physics::accelerations(gravity, parts_.cloth, lattice_, bend_links(), add_stretch, a);
 }
 
 double LatticeModel::elastic_energy() const {
   const std::vector<Vec3> x = lattice_.gather(lattice_.x);
-  return physics::elastic_energy(parts_.cloth, stencils_, x) +
-         bending_energy(parts_.cloth, x, bend_links());
+  const double stretch = is_membrane() ? membrane().energy(x)
+                                       : physics::elastic_energy(parts_.cloth, stencils_, x);
+  return stretch + bending_energy(parts_.cloth, x, bend_links());
 }
 
 Strain LatticeModel::strain() const {
@@ -130,7 +143,7 @@ double LatticeModel::stretch_energy(const Rows& x, double dt) const {
 }
 
 double LatticeModel::held_energy(const Rows& x, double dt) const {
-  double sum = stretch_energy(x, dt);
+  double sum = is_membrane() ? membrane().energy(lattice_.gather(x)) : stretch_energy(x, dt);
   if (parts_.cloth.bending.given()) sum += bending_energy(parts_.cloth, lattice_.gather(x));
   return sum;
 }
@@ -169,7 +182,7 @@ double LatticeModel::rounding_gain() const {
 float LatticeModel::greatest_stretch(const Rows& x) const {
   float most = 0;
   for (const Stencil& f : stencils_) {
-    if (f.kind != Kind::structural) continue;
+    if (f.kind == Kind::bend || (f.kind == Kind::shear && !is_membrane())) continue;
     for (int j = 0; j + f.dj < lattice_.rows; j += 4) {
       const float longest = parts_.kernels.greatest_square(far_rows(f, x, lattice_.columns, j));
       most = std::max(most, longest / float(f.rest * f.rest));
@@ -181,8 +194,20 @@ float LatticeModel::greatest_stretch(const Rows& x) const {
 Spectrum LatticeModel::spectrum(std::span<const float> inverse_masses) const {
   Lattice start = make_lattice(parts_.cloth, index_, seed_, false);
   std::copy(inverse_masses.begin(), inverse_masses.end(), start.inverse_mass.data());
-  return estimate_spectrum(parts_.cloth, stencils_, start, method_ == Method::spring_friction,
-                           parts_.kernels);
+  if (is_membrane()) {
+    const MembraneCells cells = membrane();
+    return estimate_spectrum(parts_.cloth, {}, &cells, start, cells.damping(), parts_.kernels);
+  }
+  return estimate_spectrum(parts_.cloth, stencils_, nullptr, start,
+                           method_ == Method::spring_friction, parts_.kernels);
+}
+
+// Springs in all directions: never more than twice the flat sheet's ω² for the stencils here. An edge of a
+// membrane that is λ times as long is (3 λ² - 1)/2 times as stiff along itself, and (λ² - 1)/2 times
+// sideways, where others are along.
+double LatticeModel::stiffening(double stretch) const {
+  if (stretch <= 1) return 1;
+  return is_membrane() ? 2 * stretch * stretch - 1 : 1 + (1 - 1 / stretch);
 }
 
 bool LatticeModel::folds_freely() const {

@@ -60,12 +60,13 @@ void LatticeModel::append_motion(Method method, StageList& list) {
 }
 
 void LatticeModel::append_forces(StageList& list) {
-  if (parts_.cloth.tear_strain > 0 && is_plain(parts_))
+  if (parts_.cloth.tear_strain > 0 && is_plain(parts_) && !is_membrane())
     overlong_.resize(std::size_t(lattice_.rows));
   parts_.overlong = overlong_.empty() ? nullptr : overlong_.data();
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
   list.choose("bending", make_bending(parts_, method_), "bending is 0");
-  list.stages.push_back(make_springs(parts_, method_ == Method::spring_friction));
+  list.stages.push_back(is_membrane() ? make_membrane(parts_)
+                                      : make_springs(parts_, method_ == Method::spring_friction));
   list.choose("wind", make_wind(parts_, seed_), "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
 }

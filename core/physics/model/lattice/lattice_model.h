@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/model/cloth_model.h"
+#include "physics/model/lattice/membrane.h"
 #include "physics/model/lattice/stages.h"
 #include "physics/model/lattice/tearing.h"
 
@@ -33,6 +34,7 @@ class LatticeModel final : public ClothModel {
   double attachment_energy(const Rows& x, double dt) const override;
   double rounding_gain() const override;
   Spectrum spectrum(std::span<const float> inverse_masses) const override;
+  double stiffening(double stretch) const override;
   bool folds_freely() const override;
 
   Tearing* tearing() override { return tearing_.get(); }
@@ -49,6 +51,9 @@ class LatticeModel final : public ClothModel {
   const BendLinks* bend_links() const { return tearing_ ? tearing_->bend_links() : nullptr; }
   double stretch_energy(const Rows& x, double dt) const;
   double greatest_coordinate(const Rows& x) const;
+  // Whether the membrane's own forces act, and not springs in its place.
+  bool is_membrane() const { return parts_.cloth.membrane.given() && is_explicit(method_); }
+  MembraneCells membrane() const;
 
   const int index_;
   const std::uint64_t seed_;

@@ -14,8 +14,9 @@ inline bool is_plain(const LatticeParts& parts) {
 class PlainRowsStage : public RowStage {
  public:
   PlainRowsStage(const std::string& stage_name, const std::string& stage_detail,
-                 const LatticeParts& parts)
-      : RowStage(stage_name, stage_detail, 2, parts.constraints(), "constraints"), parts_(parts) {}
+                 const LatticeParts& parts, int rows_reached = 2)
+      : RowStage(stage_name, stage_detail, rows_reached, parts.constraints(), "constraints"),
+        parts_(parts) {}
 
   void reserve_slots(int slots) override { carry_ = AlignedArray<float>(slots * carried()); }
   std::size_t bytes() const override { return carry_.size() * sizeof(float); }
@@ -36,12 +37,28 @@ class PlainRowsStage : public RowStage {
     r.sides = l.column_width[0] < 1;
     r.width = l.column_width.data();
     r.inverse_width = l.inverse_width.data();
-    for (int f = 0; f < kPlainStencils; ++f) {
-      Links* const links = parts_.stencils[std::size_t(f)].links;
+    for (std::size_t f = 0; f < parts_.stencils.size(); ++f) {
+      Links* const links = parts_.stencils[f].links;
       r.alive[f] = links ? links->row(0) : nullptr;
     }
     if (begin == 0) start(s);
     r.carry = carry(s);
+  }
+
+  // The same, and what the leapfrog step asks, of rows of one inverse mass: calls run(rows) for every range
+  // of such.
+  template <class Rows, class Run>
+  void for_alike(Rows r, int begin, int end, const Substep& s, Run&& run_rows) {
+    const auto& weights = parts_.lattice.row_inverse_mass;
+    for (int first = begin; first < end;) {
+      int last = first + 1;
+      while (last < end && weights[last] == weights[first]) ++last;
+      fill(r, first, last, s);
+      r.alike = weights[first];
+      r.advance = advance_of(parts_, s);
+      run_rows(r);
+      first = last;
+    }
   }
 
   LatticeParts parts_;

@@ -33,31 +33,17 @@ class PlainSprings final : public PlainRowsStage {
   std::size_t bytes() const override {
     return PlainRowsStage::bytes() + springs_.size() * sizeof(SpringConstants);
   }
-  // Rows of one inverse mass at a time.
   bool moves_particles() const override { return true; }
   void run(int begin, int end, const Substep& s) override {
-    const auto& weights = parts_.lattice.row_inverse_mass;
-    for (int first = begin; first < end;) {
-      int last = first + 1;
-      while (last < end && weights[last] == weights[first]) ++last;
-      run_alike(first, last, weights[first], s);
-      first = last;
-    }
+    SpringRows r{};
+    r.constants = springs_.data();
+    r.damped = damped_;
+    r.overlong = parts_.overlong;
+    if (r.overlong) std::fill(r.overlong + begin, r.overlong + end, std::uint8_t{0});
+    for_alike(r, begin, end, s, parts_.kernels.spring_rows);
   }
 
  private:
-  void run_alike(int begin, int end, float alike, const Substep& s) {
-    SpringRows r{};
-    fill(r, begin, end, s);
-    r.constants = springs_.data();
-    r.damped = damped_;
-    r.alike = alike;
-    r.overlong = parts_.overlong;
-    if (r.overlong) std::fill(r.overlong + begin, r.overlong + end, std::uint8_t{0});
-    r.advance = advance_of(parts_, s);
-    parts_.kernels.spring_rows(r);
-  }
-
   bool damped_;
   std::vector<SpringConstants> springs_;
 };

@@ -33,19 +33,23 @@ void for_each_component(Visit&& visit, Fields&... fields) {
 struct Operator {
   const Cloth& cloth;
   const std::vector<Stencil>& stencils;
+  const MembraneCells* membrane;
   const Lattice& l;
   const KernelTable& kernels;
   bool damping;  // in place of the stiffness
+  std::vector<Vec3> rest;
   AlignedArray<float> root_w;
   Rows scaled;
 
-  Operator(const Cloth& c, const std::vector<Stencil>& f, const Lattice& lattice,
-           const KernelTable& k, bool of_damping)
+  Operator(const Cloth& c, const std::vector<Stencil>& f, const MembraneCells* cells,
+           const Lattice& lattice, const KernelTable& k, bool of_damping)
       : cloth(c),
         stencils(f),
+        membrane(cells),
         l(lattice),
         kernels(k),
         damping(of_damping),
+        rest(cells ? lattice.gather(lattice.x) : std::vector<Vec3>()),
         root_w(lattice.inverse_mass.size()),
         scaled(lattice.rows, lattice.stride) {
     for (std::size_t p = 0; p < size(); ++p) root_w[p] = std::sqrt(l.inverse_mass[p]);
@@ -62,6 +66,7 @@ struct Operator {
     y.clear();
     for (const Stencil& f : stencils)
       for (int j = 0; j + f.dj < l.rows; ++j) apply_row(f, j, y);
+    if (membrane) apply_membrane(y);
     if (cloth.bending.given() && !damping) apply_bending(y);
     for_each_component(
         [&](float* to) {
@@ -83,6 +88,16 @@ struct Operator {
     r.factor = column_factors(l, f);
     r.sideways = !damping;
     kernels.tangent(r);
+  }
+
+  void apply_membrane(Rows& y) {
+    const std::vector<Vec3> u = l.gather(scaled);
+    std::vector<Vec3> force(u.size(), Vec3{});
+    membrane->add_forces(rest, &u, 0, 1, force);
+    for (int j = 0; j < l.rows; ++j)
+      for (int i = 0; i < l.columns; ++i)
+        for (int c = 0; c < 3; ++c)
+          y.at(c, j, i) -= float(force[std::size_t(j) * l.columns + i][c]);
   }
 
   void apply_bending(Rows& y) {
@@ -149,9 +164,10 @@ double largest_eigenvalue(Operator& op) {
   return solver.eigenvalues().maxCoeff();
 }
 
-double largest(const Cloth& cloth, const std::vector<Stencil>& stencils, const Lattice& l,
-               const KernelTable& kernels, bool damping) {
-  Operator op(cloth, stencils, l, kernels, damping);
+double largest(const Cloth& cloth, const std::vector<Stencil>& stencils,
+               const MembraneCells* membrane, const Lattice& l, const KernelTable& kernels,
+               bool damping) {
+  Operator op(cloth, stencils, membrane, l, kernels, damping);
   return std::max(0.0, largest_eigenvalue(op)) * kMargin;
 }
 
@@ -164,10 +180,12 @@ double Spectrum::largest_substep() const {
 }
 
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Stencil>& stencils,
-                           const Lattice& l, bool damped, const KernelTable& kernels) {
+                           const MembraneCells* membrane, const Lattice& l, double damped,
+                           const KernelTable& kernels) {
   Spectrum spectrum;
-  spectrum.omega_squared = largest(cloth, stencils, l, kernels, false);
-  if (damped) spectrum.damping = largest(cloth, stencils, l, kernels, true);
+  spectrum.omega_squared = largest(cloth, stencils, membrane, l, kernels, false);
+  if (damped > 0)
+    spectrum.damping = damped * largest(cloth, stencils, membrane, l, kernels, true);
   return spectrum;
 }
 
@@ -190,8 +208,7 @@ double projection_substep(const Scene& scene) {
     double needed = std::sqrt(kSag * sweeps / (2 * g * points_over_spacing));
     if (solver.method != Method::positional) {
       const double lightest = lightest_mass(c);
-      const double k = spring_repeats(solver) *
-                       std::max({c.stiffness.structural, c.stiffness.shear, c.stiffness.bend});
+      const double k = spring_repeats(solver) * greatest_stiffness(c);
       needed = std::max(needed, std::sqrt(lightest / std::max(k, 1e-12)));
     }
     dt = std::min(dt, needed);

@@ -9,15 +9,19 @@
 #include <vector>
 
 #include "physics/model/lattice/lattice.h"
+#include "physics/model/lattice/membrane.h"
 #include "physics/model/lattice/stencil.h"
 #include "physics/model/spectrum.h"
 
 namespace weft::physics {
 
 // Estimates the spectrum of the lattice as it lies now by a Lanczos iteration, from above: the
-// substep it allows is never larger than the true limit, and at most about 3 % smaller.
+// substep it allows is never larger than the true limit, and at most about 3 % smaller. Of springs, or of
+// a membrane without stress in their place; `damped`: whether springs have damping, or the time by which a
+// membrane's damping is proportional to its stiffness [s].
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Stencil>& stencils,
-                           const Lattice& lattice, bool damped, const KernelTable& kernels);
+                           const MembraneCells* membrane, const Lattice& lattice, double damped,
+                           const KernelTable& kernels);
 
 // kg; of the lightest particle where masses are given one by one, else of an inner one: what lies on the
 // border may weigh less, and is held by as much less.

@@ -31,6 +31,7 @@ struct LatticeParts : ClothParts {
 int greatest_reach(const LatticeParts& parts);
 
 std::unique_ptr<RowStage> make_springs(const LatticeParts& parts, bool damped);
+std::unique_ptr<RowStage> make_membrane(const LatticeParts& parts);
 // `corrections`: what sweeps have found, if they gather it.
 std::unique_ptr<RowStage> make_predict(const LatticeParts& parts, struct Multipliers* multipliers,
                                        Rows* corrections);

@@ -1,6 +1,7 @@
 // Constraint stencils of a cloth (stencil.h).
 #include "physics/model/lattice/stencil.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace weft::physics {
@@ -31,6 +32,14 @@ std::vector<Stencil> stencils_of(const Cloth& cloth, const Solver& solver) {
     stencils.push_back(
         {di, dj, kind, rest_length(g, di, dj), repeats * stiffness, repeats * damping});
   };
+  if (cloth.membrane.given()) {
+    const Membrane& m = cloth.membrane;
+    add(1, 0, Kind::structural, m.warp - m.shear, 0);
+    add(0, 1, Kind::structural, m.weft - m.shear, 0);
+    add(1, 1, Kind::shear, m.shear, 0);
+    add(-1, 1, Kind::shear, m.shear, 0);
+    return stencils;
+  }
   const Kinds &k = cloth.stiffness, &d = cloth.spring_damping;
   if (cloth.level == 0) {
     add(1, 0, Kind::structural, k.structural, d.structural);
@@ -50,6 +59,12 @@ std::vector<Stencil> stencils_of(const Cloth& cloth, const Solver& solver) {
       add(-n, n, diagonal, k.structural, d.structural);
   }
   return stencils;
+}
+
+double greatest_stiffness(const Cloth& cloth) {
+  const Kinds& k = cloth.stiffness;
+  return cloth.membrane.given() ? std::max(cloth.membrane.warp, cloth.membrane.weft)
+                                : std::max({k.structural, k.shear, k.bend});
 }
 
 Links::Links(int rows, int stride, int per_row)

@@ -55,8 +55,13 @@ struct Stencil {
 double spring_repeats(const Solver& solver);
 
 // The stencils of a cloth that exist on its grid: structural, shear and bend of non-zero stiffness,
-// or those of its level (seed 000), as stiff as the solver's repeats make them.
+// or those of its level (seed 000), as stiff as the solver's repeats make them. Of a membrane: the edges
+// and diagonals of its cells, as stiff as springs must be to agree with it in all but its coupling, for
+// which they have the stiffness of the shear.
 std::vector<Stencil> stencils_of(const Cloth& cloth, const Solver& solver = {});
+
+// N/m, of the stiffest constraints between neighbours, without repeats.
+double greatest_stiffness(const Cloth& cloth);
 
 // Factor on the stiffness of a stencil's constraints of row j, columns at the sides aside: seed 003's
 // stiffness gradient, and a half along a border (weft::width_share).

@@ -1,0 +1,135 @@
+// The membrane of a sheet, and the leapfrog step, in one pass over the rows: the energy of a St.
+// Venant-Kirchhoff material in Green's strains, orthotropic along warp and weft,
+//
+//   on edges     e11 = (a·a/h_u² - 1)/2,  e22 = (b·b/h_v² - 1)/2
+//   in cells     γ = (p·p - q·q)/(4 h_u h_v),  p, q the diagonals
+//   E = h_u h_v Σ_cells [½ C11 mean(e11²) + ½ C22 mean(e22²) + C12 mean(e11) mean(e22) + ½ C66 γ²]
+//
+// with means over the two edges of a cell each way. An edge is pulled along itself by its own strain and
+// by those across of the cells at it; an edge of the sheet has one cell, and so counts half. The shear
+// pulls one diagonal of a cell and pushes the other. All of it is polynomial: no root, no division.
+// Damping puts e + damping de/dt in the place of e.
+#include "physics/kernels/root.h"
+#include "physics/kernels/row_kernels.h"
+
+namespace weft::WEFT_KERNELS {
+
+using physics::LeapfrogRows;
+using physics::MembraneConstants;
+using physics::MembraneRows;
+
+namespace {
+
+// The edges and diagonals of a block of cells: of positions, or of velocities.
+struct Cells {
+  Wide3 a, a_below, b, b_right, p, q;
+  WEFT_INLINE Cells(const float* row, const float* below, std::ptrdiff_t plane) {
+    const Wide3 x0 = load_planes(row, plane), right = load_planes(row + 1, plane);
+    const Wide3 x1 = load_planes(below, plane), opposite = load_planes(below + 1, plane);
+    a = right - x0;
+    a_below = opposite - x1;
+    b = x1 - x0;
+    b_right = opposite - right;
+    p = opposite - x0;
+    q = right - x1;
+  }
+};
+
+// Strains of a block of cells; the shear without its factor.
+struct Strains {
+  Wide a, a_below, b, b_right, shear;
+  WEFT_INLINE Strains(const Cells& x, float half_u, float half_v) {
+    const auto green = [](Wide3 edge, float half) {
+      return fma(squared_length(edge), wide(half), wide(-0.5f));
+    };
+    a = green(x.a, half_u);
+    a_below = green(x.a_below, half_u);
+    b = green(x.b, half_v);
+    b_right = green(x.b_right, half_v);
+    shear = squared_length(x.p) - squared_length(x.q);
+  }
+  // Adds `factor` times half of how fast they change.
+  WEFT_INLINE void add_rates(const Cells& x, const Cells& v, float half_u, float half_v,
+                             float factor) {
+    const Wide u = wide(half_u * factor), w = wide(half_v * factor);
+    a = fma(dot(x.a, v.a), u, a);
+    a_below = fma(dot(x.a_below, v.a_below), u, a_below);
+    b = fma(dot(x.b, v.b), w, b);
+    b_right = fma(dot(x.b_right, v.b_right), w, b_right);
+    shear = fma(dot(x.p, v.p) - dot(x.q, v.q), wide(factor), shear);
+  }
+};
+
+// Which edges, cells and shears of a block are there.
+struct There {
+  WideInt along, across, whole, sheared;
+  WEFT_INLINE There(int left)
+      : along(lanes_below(left - 1)), across(lanes_below(left)), whole(along), sheared(along) {}
+  // `lane`: of the block's first, from that of row 0. A cell is whole with its edges and diagonals.
+  WEFT_INLINE void less_torn(const MembraneRows& r, std::ptrdiff_t lane, std::ptrdiff_t below) {
+    const auto alive = [&](int stencil, std::ptrdiff_t at) {
+      return lanes_at(r.alive[stencil] + at);
+    };
+    sheared = sheared & alive(2, lane) & alive(3, lane);
+    whole = sheared & alive(0, lane) & alive(0, below) & alive(1, lane) & alive(1, lane + 1);
+    along = along & alive(0, lane);
+    across = across & alive(1, lane);
+  }
+};
+
+template <bool kDamped, bool kTorn, bool kSides, bool kAlike>
+WEFT_INLINE void one_row(const MembraneRows& r, int j) {
+  const std::ptrdiff_t plane = r.x.y - r.x.x, start = std::ptrdiff_t(j) * r.stride;
+  const std::ptrdiff_t next = j + 1 < r.rows ? start + r.stride : start;
+  const MembraneConstants c = r.constants[j];
+  Delay<1> coupled;
+  Delay3<1> to_right, to_below;
+  float* carry = r.carry;
+  for (int i = 0; i < r.columns; i += kLanes, carry += 4 * kLanes) {
+    const Cells x(r.x.x + start + i, r.x.x + next + i, plane);
+    Strains e(x, r.half_u, r.half_v);
+    if constexpr (kDamped)
+      e.add_rates(x, Cells(r.v.x + start + i, r.v.x + next + i, plane), r.half_u, r.half_v,
+                  2 * r.damping);
+    There there(r.columns - i);
+    if constexpr (kTorn) there.less_torn(r, start + i, next + i);
+
+    const Wide along = select(there.whole, (e.b + e.b_right) * c.along, Wide{});
+    const Wide across = select(there.whole, (e.a + e.a_below) * c.across, Wide{});
+    const Wide before = load(carry + 3 * kLanes);  // of the cells of the row before
+    const Wide pull_a = select(there.along, fma(e.a, wide(c.warp), before + along), Wide{});
+    const Wide weft = load(r.share + i) * c.weft;
+    const Wide pull_b =
+        select(there.across, fma(e.b, weft, across + coupled.next(across)), Wide{});
+    const Wide shear = select(there.sheared, e.shear * c.shear, Wide{});
+
+    const Wide3 a = x.a * pull_a, b = x.b * pull_b, p = x.p * shear, q = x.q * shear;
+    const Wide3 own = load_planes(carry, kLanes) + (a + b + p) + to_right.next(q - a);
+    store_planes(carry, kLanes, Wide3{} - (b + q + to_below.next(p)));
+    store(carry + 3 * kLanes, along);
+    leapfrog<kSides, kAlike>(r, r.x.x + start + i, r.columns - i, own);
+  }
+}
+
+template <bool kDamped, bool kTorn, bool kSides, bool kAlike>
+void rows_of(const MembraneRows& given) {
+  const MembraneRows r = given;
+  for (int j = r.begin; j < r.end; ++j) one_row<kDamped, kTorn, kSides, kAlike>(r, j);
+}
+template <bool kDamped, bool kTorn>
+void rows_of(const MembraneRows& r) {
+  if (!(r.alike > 0)) return rows_of<kDamped, kTorn, false, false>(r);
+  r.sides ? rows_of<kDamped, kTorn, true, true>(r) : rows_of<kDamped, kTorn, false, true>(r);
+}
+template <bool kDamped>
+void rows_of(const MembraneRows& r) {
+  r.alive[0] ? rows_of<kDamped, true>(r) : rows_of<kDamped, false>(r);
+}
+
+}  // namespace
+
+void membrane_rows(const MembraneRows& r) {
+  r.damping > 0 ? rows_of<true>(r) : rows_of<false>(r);
+}
+
+}  // namespace weft::WEFT_KERNELS
