@@ -45,19 +45,21 @@ double distance(const std::vector<double>& coarse, const std::vector<double>& fi
   return std::sqrt(sum / double(n * n));
 }
 
-// From 17 to 33 points a side, and on to 65.
-double order_in_space(const std::string& name, const std::function<void(Scene&)>& change) {
+// From 17 to 33 points a side, and on to 65; or from another number of squares a side.
+double order_in_space(const std::string& name, const std::function<void(Scene&)>& change,
+                      int coarsest = 16) {
   std::vector<double> before;
   double distances[2] = {};
   for (int step = 0; step < 3; ++step) {
-    Scene scene = curtain((16 << step) + 1);
+    Scene scene = curtain((coarsest << step) + 1);
     change(scene);
     const std::vector<double> now = after_half_a_second(scene);
-    if (step > 0) distances[step - 1] = distance(before, now, std::size_t((8 << step) + 1));
+    if (step > 0) distances[step - 1] = distance(before, now, std::size_t(((coarsest / 2) << step) + 1));
     before = now;
   }
   const double order = std::log2(distances[0] / distances[1]);
-  show({"curtain, order in space", name + ", 17, 33 and 65 points a side", 2, order - 2, "log₂"},
+  show({"curtain, order in space", name + ", " + std::to_string(coarsest + 1) + ", " + std::to_string(2 * coarsest + 1) + " and " +
+            std::to_string(4 * coarsest + 1) + " points a side", 2, order - 2, "log₂"},
        order);
   return order;
 }
@@ -72,6 +74,31 @@ void lines(Scene& scene, int order) {
 TEST(Curtain, IsOfSecondOrderInSpaceWhereItsBorderCountsHalf) {
   EXPECT_GT(order_in_space("springs", [](Scene&) {}), 1.9);
   EXPECT_GT(order_in_space("lines, order 2", [](Scene& s) { lines(s, 2); }), 1.9);
+}
+
+// A fabric that is stiff along its threads and soft in shear (C11 = 3000, C22 = 2000, C12 = 200,
+// C66 = 80 N/m, D = 2e-4 N·m), and one that agrees with the springs above.
+TEST(Curtain, IsOfSecondOrderInSpaceAsAMembrane) {
+  const auto as = [](const Membrane& membrane, double bending) {
+    return [=](Scene& s) {
+      s.cloths[0].stiffness = Kinds{1000, 1000, 200};  // none given
+      s.cloths[0].membrane = membrane;
+      s.cloths[0].bending = bending;
+    };
+  };
+  EXPECT_GT(order_in_space("membrane", as({1500, 1500, 500, 500, 0}, 1e-3)), 1.9);
+  EXPECT_GT(order_in_space("woven membrane", as({3000, 2000, 200, 80, 0}, 2e-4), 32), 1.7);
+}
+
+// Springs and the membrane agree to first order in strain.
+TEST(Curtain, OfSpringsAndOfTheMembraneThatTheyStandForAgree) {
+  Scene springs = curtain(65), membrane = springs;
+  membrane.cloths[0].stiffness = Kinds{1000, 1000, 200};
+  membrane.cloths[0].membrane = {1500, 1500, 500, 500, 0};
+  const std::vector<double> a = after_half_a_second(springs), b = after_half_a_second(membrane);
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  EXPECT_LT(std::sqrt(3 * sum / double(a.size())), 2e-4);
 }
 
 TEST(Curtain, IsOfFirstOrderWhereAllCountsAlike) {
