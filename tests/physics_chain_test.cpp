@@ -127,7 +127,7 @@ class Bundle final : public ClothModel {
   double rounding_gain() const override { return 0; }
   Spectrum spectrum(std::span<const float>) const override { return {}; }
   bool folds_freely() const override { return false; }
-  double stiffening(double stretch) const override { return stretch > 1 ? 1 + (1 - 1 / stretch) : 1; }
+  double stiffening(double stretch) const override { return stiffening_of_springs(stretch); }
   std::vector<Joined> constraints_near(const Vec3&, const Vec3&, double) const override {
     return {};
   }

@@ -89,11 +89,14 @@ class Sheet {
     const double shear = (dot(a, b) + m.damping * (dot(va, b) + dot(a, vb))) / (4 * hu * hv);
     // dE/da and dE/db of each edge.
     const auto pull = [&](const Vec3& along, double stress, double h, const Vec3& other) {
-      return (area * stress / (2 * h * h)) * along + (area * m.shear * shear / (4 * hu * hv)) * other;
+      return (area * stress / (2 * h * h)) * along +
+             (area * m.shear * shear / (4 * hu * hv)) * other;
     };
     const double across = m.coupling * (w0 + w1) / 2, along = m.coupling * (e0 + e1) / 2;
-    const Vec3 fa0 = pull(a0, m.warp * e0 + across, hu, b), fa1 = pull(a1, m.warp * e1 + across, hu, b);
-    const Vec3 fb0 = pull(b0, m.weft * w0 + along, hv, a), fb1 = pull(b1, m.weft * w1 + along, hv, a);
+    const Vec3 fa0 = pull(a0, m.warp * e0 + across, hu, b),
+               fa1 = pull(a1, m.warp * e1 + across, hu, b);
+    const Vec3 fb0 = pull(b0, m.weft * w0 + along, hv, a),
+               fb1 = pull(b1, m.weft * w1 + along, hv, a);
     f[c[0]] = f[c[0]] + fa0 + fb0;
     f[c[1]] = f[c[1]] - fa0 + fb1;
     f[c[2]] = f[c[2]] + fa1 - fb0;
@@ -130,7 +133,8 @@ TEST(Membrane, MovesAsItsEnergySaysInDoublePrecision) {
     Simulation simulation(scene, all[std::size_t(trial) % all.size()]);
     const Sheet truth(scene);
     Vectors x = vectors(simulation.positions()), v = vectors(simulation.velocities());
-    Vectors near = x, near_v = v;  // what comes of rounding the start alone, where a run rounds every substep
+    Vectors near = x,
+            near_v = v;  // what comes of rounding the start alone, where a run rounds every substep
     for (Vec3& p : near)
       for (double& c : p) c += between(-1e-7, 1e-7);
     simulation.advance_frame();
@@ -156,8 +160,8 @@ TEST(Membrane, HasTheStressOfTheContinuumInAnyOrientation) {
   struct Case {
     double uu, uv, vu, vv;  // the deformation gradient in the sheet's plane
   };
-  for (const Case& f : {Case{1.1, 0, 0, 1}, Case{1, 0, 0, 1.1}, Case{1.05, 0, 0, 1.08}, Case{1, 0.1, 0, 1},
-                        Case{1.03, 0.05, -0.02, 0.98}})
+  for (const Case& f : {Case{1.1, 0, 0, 1}, Case{1, 0, 0, 1.1}, Case{1.05, 0, 0, 1.08},
+                        Case{1, 0.1, 0, 1}, Case{1.03, 0.05, -0.02, 0.98}})
     for (const double turn : {0.0, 0.7, 2.0}) {
       constexpr int nx = 9, ny = 7;
       constexpr double hu = 0.125, hv = 0.0625;
@@ -168,7 +172,8 @@ TEST(Membrane, HasTheStressOfTheContinuumInAnyOrientation) {
       scene.cloths[0].density = 30;
       scene.time.substeps = 1;
       Simulation simulation(scene);
-      const Vec3 u = {std::cos(turn), std::sin(turn), 0}, w = {-0.6 * std::sin(turn), 0.6 * std::cos(turn), 0.8};
+      const Vec3 u = {std::cos(turn), std::sin(turn), 0},
+                 w = {-0.6 * std::sin(turn), 0.6 * std::cos(turn), 0.8};
       Vectors x;
       for (int j = 0; j < ny; ++j)
         for (int i = 0; i < nx; ++i)
@@ -176,13 +181,15 @@ TEST(Membrane, HasTheStressOfTheContinuumInAnyOrientation) {
       simulation.set_state(values(x), std::vector<double>(3 * x.size()));
       simulation.advance_frame();
       const Vectors v = vectors(simulation.velocities());
-      const double e11 = (f.uu * f.uu + f.vu * f.vu - 1) / 2, e22 = (f.uv * f.uv + f.vv * f.vv - 1) / 2;
+      const double e11 = (f.uu * f.uu + f.vu * f.vu - 1) / 2,
+                   e22 = (f.uv * f.uv + f.vv * f.vv - 1) / 2;
       const double s11 = m.warp * e11 + m.coupling * e22, s22 = m.weft * e22 + m.coupling * e11;
       const double s12 = m.shear * (f.uu * f.uv + f.vu * f.vv);
       const Vec3 fu = f.uu * u + f.vu * w, fv = f.uv * u + f.vv * w;
       const Vec3 on_u = hv * (s11 * fu + s12 * fv), on_v = hu * (s12 * fu + s22 * fv);
       const auto force = [&](int i, int j) {
-        return (particle_mass(scene.cloths[0], i, j) / scene.time.frame) * v[std::size_t(j * nx + i)];
+        return (particle_mass(scene.cloths[0], i, j) / scene.time.frame) *
+               v[std::size_t(j * nx + i)];
       };
       const double scale = oracle::length(on_u) + oracle::length(on_v);
       EXPECT_LT(oracle::length(force(nx - 1, 3) + on_u), 1e-4 * scale) << f.uu << ' ' << turn;
@@ -224,8 +231,10 @@ TEST(Membrane, KeepsMomentumAndDampsNoTurn) {
     const Motion before = motion(simulation, scene);
     for (int frame = 0; frame < 64; ++frame) simulation.advance_frame();
     const Motion after = motion(simulation, scene);
-    EXPECT_LT(oracle::length(after.momentum - before.momentum), 1e-4 * oracle::length(before.momentum));
-    EXPECT_LT(oracle::length(after.angular - before.angular), 1e-3 * oracle::length(before.angular));
+    EXPECT_LT(oracle::length(after.momentum - before.momentum),
+              1e-4 * oracle::length(before.momentum));
+    EXPECT_LT(oracle::length(after.angular - before.angular),
+              1e-3 * oracle::length(before.angular));
     EXPECT_TRUE(simulation.status().ok);
     EXPECT_FALSE(simulation.plan().fallback);
   }

@@ -344,22 +344,29 @@ TEST(Validate, NamesWhatIsNotFinite) {
 TEST(Validate, NamesWhatAMembraneDoesNotFit) {
   weft::Scene scene;
   weft::Cloth& cloth = scene.cloths.emplace_back();
-  cloth.membrane = {4, 9, 7, 1, 0};
+  cloth.membrane = {4, 9, 6, 4, 0};
   cloth.stiffness.bend = 0;
   cloth.level = 1;
-  cloth.bending = {};
+  cloth.grid.v = {0.1, 0, 1};
   cloth.bending.twist = 1e-5;
+  cloth.bending.damping = 0.5;
   scene.solver.method = weft::Method::positional;
   EXPECT_EQ(
       told(weft::validate(scene)),
+      "/cloths/0/membrane/coupling: coupling is 6 (between -6 and 6 N/m, the root of warp times "
+      "weft)\n"
+      "/cloths/0/membrane/shear: shear is 4 (below 4 N/m, warp or weft)\n"
+      "/cloths/0/membrane: u and v of the grid are not at right angles (a membrane's warp and weft "
+      "are)\n"
       "/cloths/0/membrane: both membrane and stiffness or spring_damping are given (one of the "
       "two)\n"
       "/cloths/0/membrane: a membrane is given (not with method positional)\n"
       "/cloths/0/membrane: a membrane is given beside a level (level 0)\n"
-      "/cloths/0/membrane/coupling: coupling is 7 (-6 to 6 N/m, the root of warp times weft)\n"
-      "/cloths/0/membrane: a grid has a membrane (stiffness, on a grid)\n"
-      "/cloths/0/bending: bending differs with the direction or is damped (one number, on a "
-      "grid)");
+      "/cloths/0/bending/damping: damping is 0.5 (0 s, on a grid)");
+  scene.cloths[0] = {};
+  scene.cloths[0].membrane = {4, 9, 0, 0, 0};
+  scene.solver.method = weft::Method::spring;
+  EXPECT_EQ(told(weft::validate(scene)), "/cloths/0/membrane/shear: shear is 0 (above 0)");
 }
 
 TEST(Validate, NamesWhatIsOutsideOfAnEnum) {

@@ -54,12 +54,15 @@ double order_in_space(const std::string& name, const std::function<void(Scene&)>
     Scene scene = curtain((coarsest << step) + 1);
     change(scene);
     const std::vector<double> now = after_half_a_second(scene);
-    if (step > 0) distances[step - 1] = distance(before, now, std::size_t(((coarsest / 2) << step) + 1));
+    if (step > 0)
+      distances[step - 1] = distance(before, now, std::size_t(((coarsest / 2) << step) + 1));
     before = now;
   }
   const double order = std::log2(distances[0] / distances[1]);
-  show({"curtain, order in space", name + ", " + std::to_string(coarsest + 1) + ", " + std::to_string(2 * coarsest + 1) + " and " +
-            std::to_string(4 * coarsest + 1) + " points a side", 2, order - 2, "log₂"},
+  show({"curtain, order in space",
+        name + ", " + std::to_string(coarsest + 1) + ", " + std::to_string(2 * coarsest + 1) +
+            " and " + std::to_string(4 * coarsest + 1) + " points a side",
+        2, order - 2, "log₂"},
        order);
   return order;
 }

@@ -22,6 +22,10 @@ Vec3 plus(const Vec3& a, const Vec3& b, double times = 1) {
   return sum;
 }
 
+double dot(const Vec3& a, const Vec3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 Vec3 middle(const Grid& g) {
   return plus(plus(g.origin, g.u, 0.5), g.v, 0.5);
 }
@@ -248,10 +252,27 @@ Cloth Parts::cloth(const Solver& solver, const Time& time) {
     c.drag = std::min(draw_.chance(0.9) ? draw_.decades(0.01, 20) : kFarthest, most);
   }
   if (some(0.25)) c.bending = draw_.chance(0.9) ? draw_.decades(1e-7, 0.1) : stiffness() * 1e-3;
+  if (some(0.2)) make_membrane(c, solver);
   limits(c);
   c.self_collision = self_collision(c.grid);
   c.pins = pins(c.grid, time);
   return c;
+}
+
+// A membrane in place of springs, where the cloth can have one.
+void Parts::make_membrane(Cloth& c, const Solver& solver) {
+  const Vec3 &u = c.grid.u, &v = c.grid.v;
+  const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v);
+  if (solver.method == Method::positional || c.level > 0 || uv * uv > 1e-13 * uu * vv) return;
+  c.stiffness = Cloth().stiffness;
+  c.spring_damping = {};
+  Membrane& m = c.membrane;
+  m.warp = draw_.decades(1, 1e4);
+  m.weft = m.warp * draw_.decades(0.2, 5);
+  m.coupling = draw_.uniform(-0.95, 0.95) * std::sqrt(m.warp * m.weft);
+  m.shear = std::min(m.warp, m.weft) * draw_.decades(0.01, 0.95);
+  if (some(0.4)) m.damping = draw_.chance(0.9) ? draw_.decades(1e-7, 1e-3) : 1;
+  if (some(0.3)) c.bending.weft *= draw_.decades(0.1, 10);
 }
 
 Cloth Parts::layer(const Cloth& below) {

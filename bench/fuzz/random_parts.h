@@ -33,6 +33,7 @@ class Parts {
   void points(weft::Grid& grid);
   void sides(weft::Grid& grid);
   void masses(weft::Cloth& cloth);
+  void make_membrane(weft::Cloth& cloth, const weft::Solver& solver);
   void limits(weft::Cloth& cloth);
   weft::SelfCollision self_collision(const weft::Grid& grid);
   weft::Shape shape(const weft::Vec3& at, double size);

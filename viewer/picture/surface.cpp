@@ -248,12 +248,18 @@ void add_forces(const ClothCopy& cloth, const Cloth& description, int step, Clot
       });
     }
   };
-  const Offsets offsets = offsets_of(description);
-  const Kinds& k = description.stiffness;
-  const bool levels = description.level > 0;
-  add(offsets.structural, k.structural);
-  add(offsets.shear, levels ? k.structural : k.shear);
-  add(offsets.bend, levels ? k.structural : k.bend);
+  if (const Membrane& m = description.membrane; m.given()) {  // as the springs that stand for it
+    add({{1, 0}}, m.warp - m.shear);
+    add({{0, 1}}, m.weft - m.shear);
+    add({{1, 1}, {1, -1}}, m.shear);
+  } else {
+    const Offsets offsets = offsets_of(description);
+    const Kinds& k = description.stiffness;
+    const bool levels = description.level > 0;
+    add(offsets.structural, k.structural);
+    add(offsets.shear, levels ? k.structural : k.shear);
+    add(offsets.bend, levels ? k.structural : k.bend);
+  }
   spread(fx, cloth, step, surface, surface.fx);
   spread(fy, cloth, step, surface, surface.fy);
   spread(fz, cloth, step, surface, surface.fz);

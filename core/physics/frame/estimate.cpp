@@ -38,9 +38,9 @@ namespace cost {
 constexpr double kFrame = 20e3, kSubstep = 400;  // a cloth
 constexpr double kFrameParticle = 12;            // a particle and frame: saving, looking, measuring
 constexpr double kSpring = 0.5, kDampedSpring = 0.75;
-constexpr double kGaussSeidel = 1.0, kJacobi = 0.6, kLine = 1.3;  // and sweep
-constexpr double kMembrane = 1.6, kSpringBend = 2, kSweepBend = 5;                 // from here on: a particle
-constexpr double kVertex = 9, kBentVertex = 18;                   // of a mesh
+constexpr double kGaussSeidel = 1.0, kJacobi = 0.6, kLine = 1.3;    // and sweep
+constexpr double kMembrane = 1.6, kSpringBend = 2, kSweepBend = 5;  // from here on: a particle
+constexpr double kVertex = 9, kBentVertex = 18;                     // of a mesh
 constexpr double kProjection = 1.2, kTethers = 1.5;
 constexpr double kStrainLimit = 1.2, kTearing = 0.6, kWind = 0.8;
 constexpr double kCollider = 0.5, kBox = 20;       // and collider; a box meets whole triangles

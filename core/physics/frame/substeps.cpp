@@ -16,7 +16,7 @@ using namespace physics;
 namespace {
 
 constexpr int kMostSubsteps = 100000;  // per frame, flat; stretch may ask for 1.4 times as many
-constexpr double kGrabbed = 1.6;  // on ω², at least: room for what a hand may do in a frame
+constexpr double kGrabbed = 1.6;       // on ω², at least: room for what a hand may do in a frame
 
 // What folds onto a line that stretches nothing has up to twice the flat sheet's ω², and no stretch adds
 // to that (a sheet without shear springs, or with nothing else).

@@ -88,9 +88,9 @@ struct SpringRows : LeapfrogRows {
 
 // A row's edges and the cells between it and the next row (kernels/membrane.cpp).
 struct MembraneConstants {
-  float warp, weft;      // stiffness of an edge along the row, and of one to the next row [N/m]
-  float along, across;   // coupling: what a cell's strains across and along add to them [N/m]
-  float shear;           // pull of a cell's diagonals, of their squared lengths' difference [N/m³]
+  float warp, weft;     // stiffness of an edge along the row, and of one to the next row [N/m]
+  float along, across;  // coupling: what a cell's strains across and along add to them [N/m]
+  float shear;          // pull of a cell's diagonals, of their squared lengths' difference [N/m³]
 };
 
 struct MembraneRows : LeapfrogRows {

@@ -99,8 +99,7 @@ WEFT_INLINE void one_row(const MembraneRows& r, int j) {
     const Wide before = load(carry + 3 * kLanes);  // of the cells of the row before
     const Wide pull_a = select(there.along, fma(e.a, wide(c.warp), before + along), Wide{});
     const Wide weft = load(r.share + i) * c.weft;
-    const Wide pull_b =
-        select(there.across, fma(e.b, weft, across + coupled.next(across)), Wide{});
+    const Wide pull_b = select(there.across, fma(e.b, weft, across + coupled.next(across)), Wide{});
     const Wide shear = select(there.sheared, e.shear * c.shear, Wide{});
 
     const Wide3 a = x.a * pull_a, b = x.b * pull_b, p = x.p * shear, q = x.q * shear;

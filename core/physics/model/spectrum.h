@@ -13,4 +13,14 @@ struct Spectrum {
   double largest_substep() const;
 };
 
+// By how much ω² grows at most where constraints are `stretch` times as long as at rest. Springs in all
+// directions: never to more than twice that of the flat sheet. An edge of a membrane that is λ times as long
+// is (3 λ² - 1)/2 times as stiff along itself, and (λ² - 1)/2 times sideways, where others are along.
+inline double stiffening_of_springs(double stretch) {
+  return stretch > 1 ? 1 + (1 - 1 / stretch) : 1;
+}
+inline double stiffening_of_membrane(double stretch) {
+  return stretch > 1 ? 2 * stretch * stretch - 1 : 1;
+}
+
 }  // namespace weft::physics

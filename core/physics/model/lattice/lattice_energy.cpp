@@ -85,8 +85,8 @@ void LatticeModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) cons
 
 double LatticeModel::elastic_energy() const {
   const std::vector<Vec3> x = lattice_.gather(lattice_.x);
-  const double stretch = is_membrane() ? membrane().energy(x)
-                                       : physics::elastic_energy(parts_.cloth, stencils_, x);
+  const double stretch =
+      is_membrane() ? membrane().energy(x) : physics::elastic_energy(parts_.cloth, stencils_, x);
   return stretch + bending_energy(parts_.cloth, x, bend_links());
 }
 
@@ -202,12 +202,8 @@ Spectrum LatticeModel::spectrum(std::span<const float> inverse_masses) const {
                            method_ == Method::spring_friction, parts_.kernels);
 }
 
-// Springs in all directions: never more than twice the flat sheet's ω² for the stencils here. An edge of a
-// membrane that is λ times as long is (3 λ² - 1)/2 times as stiff along itself, and (λ² - 1)/2 times
-// sideways, where others are along.
 double LatticeModel::stiffening(double stretch) const {
-  if (stretch <= 1) return 1;
-  return is_membrane() ? 2 * stretch * stretch - 1 : 1 + (1 - 1 / stretch);
+  return is_membrane() ? stiffening_of_membrane(stretch) : stiffening_of_springs(stretch);
 }
 
 bool LatticeModel::folds_freely() const {

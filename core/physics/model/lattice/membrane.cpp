@@ -37,7 +37,8 @@ struct MembraneCells::Cell {
   Strain strain(const std::vector<Vec3>& x, const std::vector<Vec3>& y, double hu, double hv,
                 double rest, double scale) const {
     const auto of = [&](int from, int to, double h) {
-      const double square = dot(edge(x, corner[from], corner[to]), edge(y, corner[from], corner[to]));
+      const double square =
+          dot(edge(x, corner[from], corner[to]), edge(y, corner[from], corner[to]));
       return scale * (square / (h * h) - rest) / 2;
     };
     const auto product = [&](int from, int to) {
@@ -58,8 +59,7 @@ MembraneCells::MembraneCells(const Cloth& cloth, const std::vector<Stencil>& ste
       hu_(spacing_u(cloth.grid)),
       hv_(spacing_v(cloth.grid)),
       gradient_(cloth.stiffness_gradient) {
-  for (double* modulus :
-       {&membrane_.warp, &membrane_.weft, &membrane_.coupling, &membrane_.shear})
+  for (double* modulus : {&membrane_.warp, &membrane_.weft, &membrane_.coupling, &membrane_.shear})
     *modulus *= repeats;
 }
 
@@ -68,7 +68,8 @@ double MembraneCells::factor(int j) const {
 }
 
 MembraneConstants MembraneCells::constants(int j) const {
-  const double f = factor(j), area = hu_ * hv_, per_u = area / (hu_ * hu_), per_v = area / (hv_ * hv_);
+  const double f = factor(j), area = hu_ * hv_, per_u = area / (hu_ * hu_),
+               per_v = area / (hv_ * hv_);
   return {float(per_u * membrane_.warp * (factor(j - 1) + f) / 2),
           float(per_v * membrane_.weft * f), float(per_u * membrane_.coupling * f / 4),
           float(per_v * membrane_.coupling * f / 4), float(membrane_.shear * f / (8 * area))};

@@ -184,8 +184,7 @@ Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Stencil>& stenc
                            const KernelTable& kernels) {
   Spectrum spectrum;
   spectrum.omega_squared = largest(cloth, stencils, membrane, l, kernels, false);
-  if (damped > 0)
-    spectrum.damping = damped * largest(cloth, stencils, membrane, l, kernels, true);
+  if (damped > 0) spectrum.damping = damped * largest(cloth, stencils, membrane, l, kernels, true);
   return spectrum;
 }
 

@@ -216,6 +216,10 @@ Spectrum MeshModel::spectrum(std::span<const float> inverse_masses) const {
   return spectrum;
 }
 
+double MeshModel::stiffening(double stretch) const {
+  return material_.membrane ? stiffening_of_membrane(stretch) : stiffening_of_springs(stretch);
+}
+
 bool MeshModel::folds_freely() const {
   return material_.membrane && (material_.c66 == 0 || material_.c11 == 0 || material_.c22 == 0);
 }

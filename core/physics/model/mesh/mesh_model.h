@@ -31,6 +31,7 @@ class MeshModel final : public ClothModel {
   double attachment_energy(const Rows&, double) const override { return 0; }
   double rounding_gain() const override;
   Spectrum spectrum(std::span<const float> inverse_masses) const override;
+  double stiffening(double stretch) const override;
   bool folds_freely() const override;
   std::vector<Joined> constraints_near(const Vec3& a, const Vec3& way,
                                        double distance) const override;
