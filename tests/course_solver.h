@@ -30,6 +30,7 @@ struct File {
   double ks = 5000;      // N/m
   bool structural = true, shearing = true, bending = true;
   std::vector<std::array<int, 2>> pinned;
+  bool limited = false;  // springs never longer than 110 %: not a key of the file
   bool sphere = false, plane = false;
   Vec origin{0.5, 0.2, 0.5};
   double radius = 0.2, sphere_friction = 0.3;
@@ -134,6 +135,20 @@ class Solver {
       if (file_.sphere) meet_sphere(p);
       if (file_.plane) meet_plane(p);
     }
+    if (file_.limited)
+      for (const Spring& s : springs_) limit(s);
+  }
+
+  // Half of what is too long goes to each end, all of it to the other of a pinned one.
+  void limit(const Spring& s) {
+    PointMass &a = points[std::size_t(s.a)], &b = points[std::size_t(s.b)];
+    const Vec between = b.position - a.position;
+    const double excess = length(between) - 1.1 * s.rest_length;
+    if (excess <= 0 || (a.pinned && b.pinned)) return;
+    const Vec way = (excess / length(between)) * between;
+    const double share = a.pinned || b.pinned ? 1 : 0.5;
+    if (!a.pinned) a.position = a.position + share * way;
+    if (!b.pinned) b.position = b.position - share * way;
   }
 
   // The tangent point, as seen from the last position; friction shortens the way there.

@@ -106,6 +106,7 @@ struct Variant {
   Sweep sweep = Sweep::gauss_seidel;
   int iterations = 1, level = 0;
   double bending = 0;
+  StrainLimitOrder limit = StrainLimitOrder::colours;
 };
 
 class LargeSheet : public testing::TestWithParam<Variant> {};
@@ -116,6 +117,7 @@ TEST_P(LargeSheet, HasOneResult) {
   scene.solver.iterations = GetParam().iterations;
   scene.cloths[0].level = GetParam().level;
   scene.cloths[0].bending = GetParam().bending;
+  scene.cloths[0].strain_limit_order = GetParam().limit;
   scene.cloths[0].spring_damping = {0.001, 0.001, 0.001};
   expect_one_result(scene);
 }
@@ -125,6 +127,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Variant{"spring", Method::spring},
                     Variant{"spring_level", Method::spring, Sweep::gauss_seidel, 1, 3},
                     Variant{"spring_friction", Method::spring_friction},
+                    Variant{"course_limit", Method::spring, Sweep::gauss_seidel, 1, 0, 0,
+                            StrainLimitOrder::course},
                     Variant{"positional", Method::positional, Sweep::gauss_seidel, 2},
                     Variant{"positional_jacobi", Method::positional, Sweep::jacobi, 2},
                     Variant{"compliant", Method::compliant, Sweep::gauss_seidel, 3},

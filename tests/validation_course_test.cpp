@@ -1,5 +1,6 @@
 // Course scenes against the course's simulator in double precision (course_solver.h): the same file for
-// both, position for position. Self-collision and the strain limit are off in both.
+// both, position for position. Self-collision is off in both, the strain limit where the file says nothing
+// else.
 #include "course_solver.h"
 #include "truth.h"
 #include "weft/read_scene.h"
@@ -14,9 +15,9 @@ using course::operator-;
 // sheet is Weft's. Where a sheet that is pressed together in its plane begins to fold, rounding decides to
 // which side, and a particle that meets a plane does so a step earlier or later: from then on both are right.
 double distance_after(const course::File& file, double seconds, int threads) {
-  const SceneFile read =
-      read_scene_text(course::text_of(file),
-                      {{"/cloths/0/strain_limit", "0"}, {"/cloths/0/self_collision/mode", "off"}});
+  const SceneFile read = read_scene_text(course::text_of(file),
+                                         {{"/cloths/0/strain_limit", file.limited ? "0.1" : "0"},
+                                          {"/cloths/0/self_collision/mode", "off"}});
   EXPECT_TRUE(read.faults.empty());
   Simulation simulation(read.scene, {.threads = threads});
   course::Solver truth(file);
@@ -93,6 +94,31 @@ TEST(Course, APlaneAndASphereAreTheCoursesUntilTheFirstFold) {
   sphere.sphere_friction = 0.05;
   sphere.damping = 0.05;
   row("on a smoother sphere over a plane, 0.5 s", sphere, 0.5, 3);
+}
+
+TEST(Course, TheStrainLimitIsTheCourses) {
+  const auto row = [](const std::string& what, course::File file, double seconds, int threads) {
+    file.limited = true;
+    expect({"strain limit in the course's order against its solver", what, 0, 1e-3, "m"},
+           distance_after(file, seconds, threads));
+  };
+  row("25 x 25 pinned by two corners, 5 s", hung(25, 25, 5000, 150, 0.2), 5, 2);
+  row("17 x 29, ks 1000, density 300, damping 0.9, 5 s", hung(17, 29, 1000, 300, 0.9), 5, 1);
+  row("20 x 20, ks 500, density 1000, damping 0.5, 5 s", hung(20, 20, 500, 1000, 0.5), 5, 3);
+  course::File four = hung(24, 18, 1000, 150, 0.3);
+  four.width = 1.3;
+  four.pinned = {{0, 0}, {23, 0}, {0, 17}, {23, 17}, {11, 8}};
+  row("24 x 18 over 1.3 m pinned by four corners and the middle, 5 s", four, 5, 2);
+  course::File vertical = hung(20, 20, 500, 150, 0.5);
+  vertical.vertical = true;
+  vertical.pinned = {{0, 19}, {19, 19}};
+  row("20 x 20 vertical, pinned above, 5 s", vertical, 5, 1);
+  course::File structural = hung(21, 21, 2000, 150, 0.2);
+  structural.shearing = structural.bending = false;
+  row("21 x 21 structural springs alone, 5 s", structural, 5, 2);
+  course::File sphere = hung(25, 25, 500, 150, 0.2);
+  sphere.sphere = true;
+  row("25 x 25 pinned by two corners over a sphere, 0.5 s", sphere, 0.5, 3);
 }
 
 // The first step from rest adds a whole step's acceleration: x = x0 + g dt².

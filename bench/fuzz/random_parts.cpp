@@ -136,6 +136,7 @@ void Parts::masses(Cloth& c) {
 
 void Parts::limits(Cloth& c) {
   if (some(0.25)) c.strain_limit = draw_.decades(1e-4, 10);
+  if (some(0.2)) c.strain_limit_order = StrainLimitOrder::course;
   if (some(0.2)) c.tear_strain = draw_.decades(1e-3, 10);
   if (draw_.chance(0.3)) c.tears = draw_.of({Tears::holes, Tears::particles});
 }

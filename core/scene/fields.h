@@ -46,6 +46,9 @@ constexpr std::array<const char*, 3> words(Tears) {
 constexpr std::array<const char*, 2> words(LevelDiagonals) {
   return {"both", "one"};
 }
+constexpr std::array<const char*, 2> words(StrainLimitOrder) {
+  return {"colours", "course"};
+}
 
 template <class Walk>
 void fields(Walk& walk, Rotation& rotation) {
@@ -135,6 +138,7 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("drag", cloth.drag);
   walk("bending", cloth.bending);
   walk("strain_limit", cloth.strain_limit);
+  walk("strain_limit_order", cloth.strain_limit_order);
   walk("tear_strain", cloth.tear_strain);
   walk("tears", cloth.tears);
   walk("self_collision", cloth.self_collision);

@@ -138,6 +138,11 @@ enum class Tears { split, holes, particles };
 // Diagonals of a level: both, or (i+n, j+n) alone (seed 000).
 enum class LevelDiagonals { both, one };
 
+// In which order a strain limit shortens constraints: `colours`, structural and shear, those that share no
+// particle side by side; `course`, all of them, bend as well, one after the other: row by row, from every
+// particle to the left, above, above left, above right, two to the left, two above (seeds 001 and 004).
+enum class StrainLimitOrder { colours, course };
+
 // What particles and constraints at the border of a sheet count for. `area`: a particle weighs the area
 // that it stands for, a quarter of an inner one's in a corner and half of it elsewhere on the border, and
 // what lies along the border acts on half a spacing of cloth, with half the stiffness. The lattice is then
@@ -166,7 +171,8 @@ struct Cloth {
   double drag = 0;            // 1/s; velocity is multiplied by 1 - dt*drag each substep
   Bending bending;            // energy of curvature
   double strain_limit = 0;    // 0.1 = structural and shear constraints never beyond 110 %; 0 = off
-  double tear_strain = 0;     // 0.5 = a constraint beyond 150 % is cut; 0 = cannot tear
+  StrainLimitOrder strain_limit_order = StrainLimitOrder::colours;
+  double tear_strain = 0;  // 0.5 = a constraint beyond 150 % is cut; 0 = cannot tear
   Tears tears = Tears::split;
   SelfCollision self_collision;
   std::vector<Pin> pins;

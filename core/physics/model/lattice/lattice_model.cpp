@@ -119,6 +119,8 @@ void LatticeModel::append_limits(StageList& list) {
   list.choose("tear", parts_.cloth.tear_strain > 0 ? make_tear(parts_, *tearing_) : nullptr,
               "tear_strain is 0");
   if (parts_.cloth.strain_limit <= 0) return list.skip("strain_limit", "strain_limit is 0");
+  if (parts_.cloth.strain_limit_order == StrainLimitOrder::course)
+    return list.stages.push_back(make_course_limit(parts_));
   SweepOptions limit;
   limit.limit = parts_.cloth.strain_limit;
   append_gauss_seidel(parts_, limit, list.stages);

@@ -63,6 +63,8 @@ struct SweepOptions {
   double limit = 0;             // > 0: the strain limit's one-sided sweep
 };
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
+// The strain limit, one constraint after the other.
+std::unique_ptr<RowStage> make_course_limit(const LatticeParts& parts);
 // After the sweeps: positions and velocities gain the corrections, which are then zero again.
 std::unique_ptr<RowStage> make_corrections(const LatticeParts& parts, Rows& corrections);
 // What the second-order substep keeps of the substep before (Lattice::previous is its position).
