@@ -232,6 +232,7 @@ void add_projections(std::vector<Case>& cases) {
 constexpr int kPlane = 1, kBox = 3;
 
 void add_contacts(std::vector<Case>& cases) {
+  // Model kFrictionModels: the layer in which sliding is damped.
   const auto touch = [](int shape, int model, float friction, bool moving) {
     return [=](const KernelTable& k, Patch& p) {
       CollideRow r{};
@@ -257,7 +258,12 @@ void add_contacts(std::vector<Case>& cases) {
       if (moving) r.ux = 0.3f, r.uy = -0.2f, r.uz = 0.1f;
       r.friction_static = friction;
       r.friction_dynamic = 0.8f * friction;
-      k.collider[shape]->collide[model](r);
+      r.bias = 0.5f * size;
+      r.damped = 0.3f;
+      if (model == kFrictionModels)
+        k.collider[shape]->damp_sliding(r);
+      else
+        k.collider[shape]->collide[model](r);
     };
   };
   for (const float friction : {0.0f, 0.4f})
@@ -265,9 +271,10 @@ void add_contacts(std::vector<Case>& cases) {
       const std::string has =
           std::string(friction > 0 ? " rough" : " smooth") + (moving ? ", moving" : "");
       for (int shape = 0; shape < kShapes; ++shape)
-        for (int model = 0; model < kFrictionModels; ++model)
-          cases.push_back({std::string(kShapeNames[shape]) + (model ? ", course" : "") + has, 2,
-                           touch(shape, model, friction, moving)});
+        for (int model = 0; model <= kFrictionModels; ++model)
+          cases.push_back(
+              {std::string(kShapeNames[shape]) + ", rule " + std::to_string(model) + has, 2,
+               touch(shape, model, friction, moving)});
     }
 }
 

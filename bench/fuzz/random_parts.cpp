@@ -320,6 +320,10 @@ Friction Parts::friction() {
   }
   f.statik = draw_.chance(0.9) ? draw_.uniform(0, 1.5) : 10;
   f.dynamic = draw_.chance(0.6) ? f.statik : f.statik * draw_.uniform(0, 1);
+  if (draw_.chance(0.2)) {
+    f.damping = draw_.decades(1e-2, 1e4);
+    f.bias = draw_.decades(1e-4, 10);
+  }
   return f;
 }
 

@@ -85,9 +85,14 @@ class FieldWriter {
     if (friction.model == FrictionModel::course) {
       object["course"] = write(friction.dynamic);
     } else {
-      if (friction.statik == friction.dynamic) return write(friction.dynamic);
+      const bool damps = friction.damping != 0 || friction.bias != 0;
+      if (friction.statik == friction.dynamic && !damps) return write(friction.dynamic);
       object["static"] = write(friction.statik);
       object["dynamic"] = write(friction.dynamic);
+      if (damps) {
+        object["damping"] = write(friction.damping);
+        object["bias"] = write(friction.bias);
+      }
     }
     return object;
   }

@@ -121,6 +121,8 @@ class FieldReader {
     FieldReader walk(value);
     walk("static", field.statik);
     walk("dynamic", field.dynamic);
+    walk("damping", field.damping);
+    walk("bias", field.bias);
   }
 
   template <class T>

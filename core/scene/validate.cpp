@@ -350,6 +350,11 @@ class Together {
             "dynamic friction " + number_words(friction.dynamic) + " is above static friction " +
                 number_words(friction.statik),
             "0 to " + number_words(friction.statik) + ", at most static");
+    if (sound({place + "/friction"}) && (friction.damping > 0) != (friction.bias > 0))
+      fault(place + "/friction",
+            "damping is " + number_words(friction.damping) + " and bias " +
+                number_words(friction.bias),
+            "both above 0, or neither");
     if (sound({place + "/keys"})) keys(collider.keys, place + "/keys");
     std::visit([&](const auto& shape) { this->shape(shape, place); }, collider.shape);
     if (collider.cuts && sound({place})) cutter(collider, place);

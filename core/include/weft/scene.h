@@ -221,10 +221,17 @@ struct Box {
 // position is multiplied by 1 - dynamic (seeds 001 and 004).
 enum class FrictionModel { coulomb, course };
 
+// Damping acts on what is nearer than `bias` to the surface on which cloth is kept, whether it touches or
+// not: its velocity along the surface, as seen from there, is multiplied by 1 - dt*damping each substep
+// (seed 003). With `coulomb` alone, and only if both are above 0.
+
 struct Friction {
   FrictionModel model = FrictionModel::coulomb;
   double statik = 0;   // >= dynamic
   double dynamic = 0;  // >= 0; course: 0 … 1
+  double damping = 0;  // 1/s
+  double bias = 0;     // m
+  bool damps() const { return model == FrictionModel::coulomb && damping > 0 && bias > 0; }
   friend bool operator==(const Friction&, const Friction&) = default;
 };
 

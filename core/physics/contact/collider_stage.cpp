@@ -1,4 +1,5 @@
-// Stage "collider": one collider against the particles of one cloth.
+// Stages "collider" and "friction_layer": one collider, or the layer about it in which sliding is damped,
+// against the particles of one cloth.
 #include "physics/contact/collider_stage.h"
 
 namespace weft::physics {
@@ -12,13 +13,14 @@ std::string detail_of(const Collider& c) {
 
 class ColliderStage final : public ParticlesStage {
  public:
-  ColliderStage(const ClothParts& parts, const Collider& collider, const StartInside& start)
-      : ParticlesStage("collider", detail_of(collider), 0, parts.particles.count(), "particles"),
+  using Kernel = RowReach (*)(const CollideRow&);
+  ColliderStage(const ClothParts& parts, const Collider& collider, const StartInside& start,
+                const std::string& name, Kernel kernel)
+      : ParticlesStage(name, detail_of(collider), 0, parts.particles.count(), "particles"),
         parts_(parts),
         collider_(parts, collider, start),
         far_(parts, collider_.fastest()),
-        kernel_(parts.kernels.collider[collider.shape.index()]
-                    ->collide[std::size_t(collider.friction.model)]) {}
+        kernel_(kernel) {}
 
   void run(int j, const Substep& s) override {
     if (far_.skip(j, s)) return;
@@ -37,14 +39,26 @@ class ColliderStage final : public ParticlesStage {
   ClothParts parts_;
   MovingCollider collider_;
   SpeculativeCulling far_;
-  RowReach (*kernel_)(const CollideRow&);
+  Kernel kernel_;
 };
+
+const ColliderKernels& kernels_of(const ClothParts& parts, const Collider& collider) {
+  return *parts.kernels.collider[collider.shape.index()];
+}
 
 }  // namespace
 
 std::unique_ptr<ParticlesStage> make_collider(const ClothParts& parts, const Collider& collider,
                                               const StartInside& start) {
-  return std::make_unique<ColliderStage>(parts, collider, start);
+  const auto kernel = kernels_of(parts, collider).collide[std::size_t(collider.friction.model)];
+  return std::make_unique<ColliderStage>(parts, collider, start, "collider", kernel);
+}
+
+std::unique_ptr<RowStage> make_friction_layer(const ClothParts& parts, const Collider& collider,
+                                              const StartInside& start) {
+  if (!collider.friction.damps() || collider.cuts) return nullptr;
+  return std::make_unique<ColliderStage>(parts, collider, start, "friction_layer",
+                                         kernels_of(parts, collider).damp_sliding);
 }
 
 }  // namespace weft::physics

@@ -15,6 +15,9 @@ class ParticlesStage : public RowStage {
 };
 std::unique_ptr<ParticlesStage> make_collider(const ClothParts& parts, const Collider& collider,
                                               const StartInside& start);
+// The layer of a collider's bias; null where its friction does not damp.
+std::unique_ptr<RowStage> make_friction_layer(const ClothParts& parts, const Collider& collider,
+                                              const StartInside& start);
 // Triangles against a collider, right after its particles; null for planes, and where nothing holds the
 // corners of triangles together. `particles`: what that stage found.
 std::unique_ptr<RowStage> make_collider_triangles(const LatticeParts& parts,

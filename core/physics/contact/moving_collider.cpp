@@ -66,6 +66,7 @@ MovingCollider::MovingCollider(const ClothParts& parts, const Collider& collider
   r.friction_static = float(collider.friction.statik);
   r.friction_dynamic = float(collider.friction.dynamic);
   r.offset = float(collider.offset);
+  r.bias = float(collider.friction.bias);
   r.resolved = resolves(parts.cloth, collider);
   std::visit(
       [&](const auto& shape) {
@@ -104,6 +105,7 @@ CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s)
   r.w = l.w(j);
   r.dt = float(s.dt);
   r.inverse_dt = float(1 / s.dt);
+  r.damped = float(std::min(1.0, collider_.friction.damping * s.dt));
   const double grown = (s.time - start_.time) / growth_;
   if (grown < 1) r.offset -= float(deepest() * (1 - grown));
   if (collider_.keys.empty()) return r;

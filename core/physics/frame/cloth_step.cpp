@@ -83,7 +83,13 @@ void ClothStep::choose_stages() {
 void ClothStep::choose_contact() {
   const auto& colliders = parts().scene.colliders;
   LatticeParts* const lattice = model_->lattice();
-  bool pushed = false, cut = false;
+  bool pushed = false, cut = false, damped = false;
+  for (std::size_t k = 0; k < colliders.size(); ++k)
+    if (auto layer = make_friction_layer(parts(), colliders[k], starts_[k])) {
+      list_.stages.push_back(std::move(layer));
+      damped = true;
+    }
+  if (!damped) list_.skip("friction_layer", "no collider's friction damps");
   for (int n = 0; n < parts().scene.solver.collision_iterations; ++n)
     for (std::size_t k = 0; k < colliders.size(); ++k) {
       if (colliders[k].cuts) continue;

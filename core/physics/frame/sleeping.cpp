@@ -139,7 +139,8 @@ bool Sleeping::met_by_collider(const Block& block, double time) const {
     const Vec3 way = minus(position_at(c.keys, later), position_at(c.keys, time));
     const double path = std::sqrt(dot(way, way));
     if (path == 0) continue;
-    if (signed_distance(c, later, middle) < std::sqrt(square) + c.offset + path) return true;
+    const double reach = c.offset + (c.friction.damps() ? c.friction.bias : 0);
+    if (signed_distance(c, later, middle) < std::sqrt(square) + reach + path) return true;
   }
   return false;
 }

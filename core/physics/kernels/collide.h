@@ -178,6 +178,29 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
   return {least(clearance), __builtin_sqrtf(greatest(fastest))};
 }
 
+// Within a layer about the surface velocities along it are damped; positions before the substep stay.
+template <class Shape>
+WEFT_INLINE RowReach damp_sliding_row(const CollideRow& r) {
+  const Shape shape(r.shape);
+  const Wide3 place = wide3(r.cx, r.cy, r.cz), u = wide3(r.ux, r.uy, r.uz);
+  Wide clearance = wide(kFar), fastest{};
+  for (int i = 0; i < padded(r.columns); i += kLanes) {
+    const WideInt free = free_lanes(r, i);
+    const Wide3 x = load3(r.x, i), v = load3(r.v, i);
+    const Surface s = shape.at(x - place);
+    const Wide left = s.distance - (r.offset + r.bias);
+    const Wide3 relative = v - u;
+    clearance = min(clearance, select(free, left, wide(kFar)));
+    fastest = max(fastest, select(free, dot(relative, relative), Wide{}));
+    const WideInt within = free & (left < 0.0f);
+    if (!any(within)) continue;
+    const Wide3 lost = (relative - s.normal * dot(relative, s.normal)) * wide(r.damped);
+    store3(r.v, i, select(within, v - lost, v));
+    store3(r.x, i, select(within, x - lost * wide(r.dt), x));
+  }
+  return {least(clearance), __builtin_sqrtf(greatest(fastest))};
+}
+
 // A convex shape's distance is never below its tangents: d(y) >= d(p) + n(p)·(y - p). On a triangle
 // the tangent at any point p is least at a vertex, so that
 //   d >= d(p) + min over vertices W of n(p)·(W - p).
@@ -328,18 +351,21 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
 }
 
 // Defines the kernels of a shape under `name`.
-#define WEFT_COLLIDER(name, Shape)          \
-  namespace {                               \
-  RowReach coulomb(const CollideRow& r) {   \
-    return collide_row<Shape, false>(r);    \
-  }                                         \
-  RowReach course(const CollideRow& r) {    \
-    return collide_row<Shape, true>(r);     \
-  }                                         \
-  RowReach below_faces(const FacesRow& f) { \
-    return below_faces_row<Shape>(f);       \
-  }                                         \
-  }                                         \
-  const physics::ColliderKernels name = {{coulomb, course}, below_faces};
+#define WEFT_COLLIDER(name, Shape)             \
+  namespace {                                  \
+  RowReach coulomb(const CollideRow& r) {      \
+    return collide_row<Shape, false>(r);       \
+  }                                            \
+  RowReach course(const CollideRow& r) {       \
+    return collide_row<Shape, true>(r);        \
+  }                                            \
+  RowReach below_faces(const FacesRow& f) {    \
+    return below_faces_row<Shape>(f);          \
+  }                                            \
+  RowReach damp_sliding(const CollideRow& r) { \
+    return damp_sliding_row<Shape>(r);         \
+  }                                            \
+  }                                            \
+  const physics::ColliderKernels name = {{coulomb, course}, below_faces, damp_sliding};
 
 }  // namespace weft::WEFT_KERNELS

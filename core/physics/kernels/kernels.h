@@ -248,6 +248,8 @@ struct CollideRow {
   float offset;      // kept off the surface [m]
   bool resolved;     // the mesh is fine enough for its features
   float friction_static, friction_dynamic;
+  float bias;    // m, off the offset surface: within it sliding is damped
+  float damped;  // by this share
   ShapeConstants shape;
 };
 
@@ -275,6 +277,7 @@ inline constexpr int kShapes = std::variant_size_v<Shape>, kFrictionModels = 2;
 struct ColliderKernels {
   RowReach (*collide[kFrictionModels])(const CollideRow&);
   RowReach (*below_faces)(const FacesRow&);
+  RowReach (*damp_sliding)(const CollideRow&);  // clearance from the layer of the bias
 };
 
 // A run of particles that follow each other.

@@ -23,6 +23,9 @@ RowReach coulomb(const CollideRow& r) {
 RowReach below_faces(const FacesRow& f) {
   return below_faces_row<PlaneSurface>(f);
 }
+RowReach damp_sliding(const CollideRow& r) {
+  return damp_sliding_row<PlaneSurface>(r);
+}
 
 // One that something else pushed below goes straight back up.
 RowReach course(const CollideRow& r) {
@@ -49,7 +52,7 @@ RowReach course(const CollideRow& r) {
 }
 
 }  // namespace
-const physics::ColliderKernels kPlane = {{coulomb, course}, below_faces};
+const physics::ColliderKernels kPlane = {{coulomb, course}, below_faces, damp_sliding};
 }  // namespace weft::WEFT_KERNELS
 
 #else
