@@ -119,7 +119,8 @@ struct Bending {
 enum class SelfCollisionMode { off, particles, surface };
 
 // How a pair closer than the thickness is pushed apart: `stiff` separates it at once with
-// friction, `course` averages the corrections and divides them by the substeps (seed 001).
+// friction, `course` averages the corrections and divides them by the substeps, and neighbours on the grid,
+// which do not touch otherwise, are pairs as well unless they are that near at rest (seeds 001 and 004).
 enum class SelfCollisionResponse { stiff, course };
 
 struct SelfCollision {

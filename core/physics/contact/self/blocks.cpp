@@ -59,8 +59,8 @@ std::size_t count_particles(const std::vector<Sheet>& sheets) {
   return n;
 }
 
-Blocks::Blocks(const std::vector<Sheet>& sheets, float neighbour, const KernelTable& kernels)
-    : sheets_(sheets), neighbour_(neighbour), kernels_(kernels) {
+Blocks::Blocks(const std::vector<Sheet>& sheets, const KernelTable& kernels)
+    : sheets_(sheets), kernels_(kernels) {
   cut(sheets);
   bounds_.resize(blocks_.size());
   flat_.resize(blocks_.size());
@@ -172,7 +172,7 @@ Blocks::Flat Blocks::flat(std::size_t b) const {
   Flat f;
   f.ratio = std::sqrt(std::max(0.0f, 1 - askew)) * std::min(lu / ru, lv / rv) -
             root2 * std::max(u.within / ru, v.within / rv);
-  f.needed = sheet.thickness / std::max(neighbour_ * sheet.thickness, std::min(ru, rv));
+  f.needed = sheet.thickness / std::max(sheet.neighbour() * sheet.thickness, std::min(ru, rv));
   f.rate = root2 * std::max(std::sqrt(all.change_along) / ru, std::sqrt(all.change_across) / rv);
   return f;
 }

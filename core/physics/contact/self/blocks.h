@@ -28,6 +28,9 @@ struct Sheet {
   float thickness, friction;
   float uu, uv, vv;  // rest metric: |di u + dj v|² [m²]
   bool course;
+  // Thicknesses at rest: pairs nearer than that are none. In the course neighbours push, too, once they are
+  // pressed together; only what is that near at rest does not.
+  float neighbour() const { return course ? 1 : 1.3f; }
 };
 // Of all sheets together.
 std::size_t count_particles(const std::vector<Sheet>& sheets);
@@ -52,8 +55,7 @@ inline Row3 first_of(const Block& block, Rows& rows) {
 
 class Blocks {
  public:
-  // `neighbour`: pairs closer than so many thicknesses at rest are none.
-  Blocks(const std::vector<Sheet>& sheets, float neighbour, const KernelTable& kernels);
+  Blocks(const std::vector<Sheet>& sheets, const KernelTable& kernels);
 
   const std::vector<Block>& all() const { return blocks_; }
   // Where the particles of a sheet were when last remembered.
@@ -101,7 +103,6 @@ class Blocks {
   void remember();
 
   const std::vector<Sheet>& sheets_;
-  const float neighbour_;
   const KernelTable& kernels_;
   std::vector<Block> blocks_;
   struct Extent {

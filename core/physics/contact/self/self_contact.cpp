@@ -13,8 +13,8 @@
 namespace weft::physics {
 namespace {
 
-// Thicknesses at rest: pairs nearer than that are none; others, nearer than that, are beside each other.
-constexpr double kNeighbour = 1.3, kBeside = 2.6;
+// Thicknesses at rest: pairs nearer than that that are no neighbours are beside each other.
+constexpr double kBeside = 2.6;
 // Of the thickness: wider where the list of pairs was good for a few runs only, narrower where it was
 // for many.
 constexpr float kLeastSkin = 0.45f, kMostSkin = 1.4f;
@@ -75,7 +75,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
       sheets_(std::move(sheets)),
       kernels_(kernels),
       particles_(count_particles(sheets_)),
-      blocks_(sheets_, float(kNeighbour), kernels),
+      blocks_(sheets_, kernels),
       named_(named(sheets_)),
       bodies_(give_names(named_)),
       search_(particles_, named_, kernels) {
@@ -84,7 +84,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
     course_ |= s.course;
   }
   for (std::size_t n = 0; n < sheets_.size(); ++n) {
-    const float range = sheets_[n].thickness * float(kNeighbour);
+    const float range = sheets_[n].thickness * sheets_[n].neighbour();
     steps_.push_back(steps_beyond(named_[n], range * range));
   }
   beside_.resize(blocks_.all().size());
