@@ -232,6 +232,9 @@ class Together {
     const Membrane& membrane = cloth.membrane;
     if (!sound({place + "/membrane", place + "/stiffness"})) return;
     if (membrane.given()) membrane_fits(cloth, place);
+    if (!membrane.given() && membrane.coupling != 0)
+      fault(place + "/membrane/coupling", "coupling is given, and warp, weft and shear are 0",
+            "0 without moduli");
     if (!membrane.given() && membrane.damping > 0)
       fault(place + "/membrane/damping", "damping is given, and warp, weft and shear are 0",
             "0 without moduli");
