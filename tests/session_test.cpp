@@ -30,7 +30,7 @@ class Person {
   }
 
   // What hands do to what is shown.
-  Input input(const Snapshot& shown) {
+  Input input(const FrameData& shown) {
     Input input;
     input.kind = static_cast<Input::Kind>(one_of(static_cast<int>(Input::Kind::set_scene)));
     input.cloth = one_of(static_cast<int>(shown.cloths.size()));
@@ -93,8 +93,8 @@ class Person {
 };
 
 void expect_whole(const Shown& shown) {
-  const Snapshot& s = shown.snapshot;
-  ASSERT_TRUE(shown.vitals.status.ok) << shown.vitals.status.text;
+  const FrameData& s = shown.frame_data;
+  ASSERT_TRUE(shown.telemetry.status.ok) << shown.telemetry.status.text;
   ASSERT_TRUE(s.scene);
   ASSERT_EQ(s.cloths.size(), s.scene->cloths.size());
   for (const ClothCopy& cloth : s.cloths) {
@@ -123,12 +123,12 @@ class Sessions : public testing::TestWithParam<const char*> {
 
   // Waits for a frame computed from now on, on a machine however slow.
   static void await_frame(Session& session) {
-    const std::int64_t before = session.shown().vitals.frames;
-    for (int n = 0; n < 6000 && session.shown().vitals.frames == before; ++n) {
+    const std::int64_t before = session.shown().telemetry.frames;
+    for (int n = 0; n < 6000 && session.shown().telemetry.frames == before; ++n) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       if (session.refresh()) expect_whole(session.shown());
     }
-    EXPECT_GT(session.shown().vitals.frames, before) << "none came";
+    EXPECT_GT(session.shown().telemetry.frames, before) << "none came";
   }
   // Waits a little, as a person does, and looks at what has come.
   static void look(Session& session, Person& person) {
@@ -148,7 +148,7 @@ TEST_P(Sessions, StayWholeWhateverIsAsked) {
     Scene scene = first;
     for (int n = 0; n < kWishes; ++n) {
       look(session, person);
-      const Snapshot& shown = session.shown().snapshot;
+      const FrameData& shown = session.shown().frame_data;
       switch (person.one_of(12)) {
         case 0:
           session.post([](Player& player) { player.step(); });
@@ -198,10 +198,10 @@ TEST_P(Sessions, RecordingsReplay) {
       look(session, person);
       if (n % 8 == 7) {
         await_frame(session);
-        scene = person.edited(scene, session.shown().snapshot.time);
+        scene = person.edited(scene, session.shown().frame_data.time);
         session.post([scene](Player& player) { player.change(scene); });
       } else {
-        session.post([input = person.input(session.shown().snapshot)](Player& player) {
+        session.post([input = person.input(session.shown().frame_data)](Player& player) {
           player.hand(input);
         });
       }

@@ -41,26 +41,27 @@ void render_picture(const Arguments& arguments) {
   options.seed = arguments.seed;
   Simulation simulation(file.scene, options);
 
-  Snapshot snapshot;
-  copy_view(simulation.view(), simulation.scene(), snapshot);
-  const Vec3& origin = snapshot.origin;
-  snapshot.scene =
+  FrameData frame_data;
+  copy_view(simulation.view(), simulation.scene(), frame_data);
+  const Vec3& origin = frame_data.origin;
+  frame_data.scene =
       std::make_shared<const Scene>(moved(file.scene, {-origin[0], -origin[1], -origin[2]}));
-  const Setting setting = setting_of(snapshot);
+  const Setting setting = setting_of(frame_data);
   while (simulation.frame() < arguments.frames && simulation.status().ok && interrupted() == 0)
     simulation.advance_frame();
   if (interrupted() != 0) return;  // a picture of another frame is not what was asked for
-  copy_view(simulation.view(), simulation.scene(), snapshot);
-  snapshot.frame = simulation.frame();
+  copy_view(simulation.view(), simulation.scene(), frame_data);
+  frame_data.frame = simulation.frame();
 
   Renderer renderer(arguments.pictures);
   const RenderTarget target(arguments.width, arguments.height, 8);
   const float aspect = static_cast<float>(arguments.width) / static_cast<float>(arguments.height);
   Camera camera;
   aim(arguments, camera);
-  camera.frame(visible_bounds(snapshot), aspect);
+  camera.frame(visible_bounds(frame_data), aspect);
   camera.zoom(static_cast<float>(std::log(arguments.zoom) / -std::log(0.88)));
-  renderer.draw(snapshot, setting, *find_look(arguments.look), arguments.settings, camera, target);
+  renderer.draw(frame_data, setting, *find_look(arguments.look), arguments.settings, camera,
+                target);
   std::string problems;
   for (const std::string& problem : renderer.problems()) problems += problem + "\n";
   if (!problems.empty()) throw Failure(kNoGraphics, problems);

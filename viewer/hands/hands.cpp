@@ -35,7 +35,7 @@ void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer
     return;
   }
   drag_ = Drag::orbit;
-  const auto cloth = pick_cloth(workspace.snapshot(), ray);
+  const auto cloth = pick_cloth(workspace.frame_data(), ray);
   if (tool == Tool::pin || pointer.shift) {
     if (cloth) toggle_pin(workspace, *cloth);
     if (cloth) drag_ = Drag::none;
@@ -55,7 +55,7 @@ void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer
     drag_ = Drag::body;
     return;
   }
-  const auto body = pick_body(workspace.snapshot(), ray);
+  const auto body = pick_body(workspace.frame_data(), ray);
   const bool cloth_first = cloth && (!body || cloth->distance <= body->distance);
   if (cloth_first && tool == Tool::move) {
     pusher.choose(Pusher::kCloth);
@@ -76,7 +76,7 @@ void Hands::drag(Workspace& workspace, const Area& area, const Pointer& pointer)
   if (drag_ != Drag::cut) return;
   const StrokePoint& last = stroke_.back();
   if (std::hypot(pointer.x - last.x, pointer.y - last.y) < 6) return;
-  const auto hit = pick_cloth(workspace.snapshot(), ray);
+  const auto hit = pick_cloth(workspace.frame_data(), ray);
   stroke_.push_back({pointer.x, pointer.y, hit});
   cut(workspace);
 }
@@ -105,7 +105,7 @@ void Hands::cut(Workspace& workspace) {
   const auto& from = stroke_[stroke_.size() - 2].hit;
   const auto& to = stroke_.back().hit;
   if (!from || !to || from->cloth != to->cloth) return;
-  const auto& cloths = workspace.snapshot().scene->cloths;
+  const auto& cloths = workspace.frame_data().scene->cloths;
   Input input{.kind = Input::Kind::cut};
   input.a = workspace.in_scene(from->point);
   input.b = workspace.in_scene(to->point);
@@ -114,7 +114,7 @@ void Hands::cut(Workspace& workspace) {
 }
 
 void Hands::toggle_pin(Workspace& workspace, const ClothHit& hit) const {
-  const ClothCopy& cloth = workspace.snapshot().cloths[static_cast<std::size_t>(hit.cloth)];
+  const ClothCopy& cloth = workspace.frame_data().cloths[static_cast<std::size_t>(hit.cloth)];
   const bool held = cloth.inverse_mass[cloth.at(hit.particle)] == 0;
   Input input{.kind = held ? Input::Kind::unpin : Input::Kind::pin};
   input.cloth = hit.cloth, input.particle = hit.particle;
@@ -125,12 +125,12 @@ void Hands::toggle_pin(Workspace& workspace, const ClothHit& hit) const {
 void Hands::shoot(Workspace& workspace, const Ray& ray) const {
   constexpr double kSeconds = 2.5, kEvery = 1.0 / 30;
   const Setting& setting = workspace.setting();
-  const double radius = 0.06 * setting.size, start = workspace.snapshot().time;
+  const double radius = 0.06 * setting.size, start = workspace.frame_data().time;
   const Vec3 g = workspace.document().scene().gravity;
   const Vec3 from =
       workspace.in_scene(ray.origin + ray.direction * (0.3f * workspace.camera.distance()));
   const Vec3 velocity = to_double(ray.direction * (2.2f * setting.size));
-  const double lowest = workspace.snapshot().origin[1] + setting.ground + radius;
+  const double lowest = workspace.frame_data().origin[1] + setting.ground + radius;
   text::Json keys = text::Json::array();
   for (double t = 0; t <= kSeconds; t += kEvery) {
     Vec3 p{};
@@ -151,7 +151,7 @@ void Hands::shoot(Workspace& workspace, const Ray& ray) const {
 void Hands::draw(const Workspace& workspace, const Area& area, ImDrawList& list) const {
   const Projector project(workspace.camera, area);
   std::size_t marks = 0;
-  for (const ClothCopy& cloth : workspace.snapshot().cloths)
+  for (const ClothCopy& cloth : workspace.frame_data().cloths)
     for (int j = 0; j < cloth.rows; ++j)
       for (int i = 0; i < cloth.columns && marks < kMostMarks; ++i) {
         if (cloth.inverse_mass[cloth.at(i, j)] != 0) continue;
@@ -162,7 +162,7 @@ void Hands::draw(const Workspace& workspace, const Area& area, ImDrawList& list)
         list.AddCircleFilled({p.x, p.y}, 2.6f, IM_COL32(255, 209, 102, 255));
       }
   if (drag_ == Drag::cloth) {
-    const ClothCopy& cloth = workspace.snapshot().cloths[static_cast<std::size_t>(held_.cloth)];
+    const ClothCopy& cloth = workspace.frame_data().cloths[static_cast<std::size_t>(held_.cloth)];
     const ScreenPoint a = project(cloth.position(held_.particle)), b = project(target_);
     if (a.seen && b.seen) list.AddLine({a.x, a.y}, {b.x, b.y}, IM_COL32(255, 255, 255, 160), 1.5f);
     if (a.seen) list.AddCircle({a.x, a.y}, 7, IM_COL32(255, 255, 255, 220), 0, 2);

@@ -42,10 +42,10 @@ std::optional<TriangleHit> meet(const Ray& ray, Vec3f a, Vec3f b, Vec3f c) {
 
 class ClothPick {
  public:
-  ClothPick(const Snapshot& snapshot, const Ray& ray) : snapshot_(snapshot), ray_(ray) {}
+  ClothPick(const FrameData& frame_data, const Ray& ray) : frame_data_(frame_data), ray_(ray) {}
 
   void triangle(int cloth, std::size_t a, std::size_t b, std::size_t c) {
-    const ClothCopy& copy = snapshot_.cloths[std::size_t(cloth)];
+    const ClothCopy& copy = frame_data_.cloths[std::size_t(cloth)];
     const auto at = [&](std::size_t p) { return Vec3f{copy.x[p], copy.y[p], copy.z[p]}; };
     const auto hit = meet(ray_, at(a), at(b), at(c));
     if (!hit || (best && best->distance <= hit->distance)) return;
@@ -61,16 +61,16 @@ class ClothPick {
   std::optional<ClothHit> best;
 
  private:
-  const Snapshot& snapshot_;
+  const FrameData& frame_data_;
   const Ray& ray_;
 };
 
 }  // namespace
 
-std::optional<ClothHit> pick_cloth(const Snapshot& snapshot, const Ray& ray) {
-  ClothPick pick(snapshot, ray);
-  for (std::size_t n = 0; n < snapshot.cloths.size(); ++n) {
-    const ClothCopy& cloth = snapshot.cloths[n];
+std::optional<ClothHit> pick_cloth(const FrameData& frame_data, const Ray& ray) {
+  ClothPick pick(frame_data, ray);
+  for (std::size_t n = 0; n < frame_data.cloths.size(); ++n) {
+    const ClothCopy& cloth = frame_data.cloths[n];
     const int c = static_cast<int>(n);
     for (const auto& t : cloth.triangles) pick.triangle(c, t[0], t[1], t[2]);
     for (int j = 0; j + 1 < cloth.rows && !cloth.torn; ++j)
@@ -83,12 +83,12 @@ std::optional<ClothHit> pick_cloth(const Snapshot& snapshot, const Ray& ray) {
   return pick.best;
 }
 
-std::optional<BodyHit> pick_body(const Snapshot& snapshot, const Ray& ray) {
+std::optional<BodyHit> pick_body(const FrameData& frame_data, const Ray& ray) {
   constexpr int kMostSteps = 96;
   const float scene = 1e-4f * (1 + length(ray.origin));
   std::optional<BodyHit> best;
-  for (std::size_t n = 0; n < snapshot.bodies.size(); ++n) {
-    const Collider& body = snapshot.bodies[n];
+  for (std::size_t n = 0; n < frame_data.bodies.size(); ++n) {
+    const Collider& body = frame_data.bodies[n];
     if (std::holds_alternative<Plane>(body.shape)) continue;
     float t = 0;
     for (int k = 0; k < kMostSteps; ++k) {

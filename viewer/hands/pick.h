@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "picture/camera.h"
-#include "picture/snapshot.h"
+#include "picture/frame_data.h"
 
 namespace weft::viewer {
 
@@ -40,7 +40,7 @@ struct ClothHit {
   Vec3f point;
   float distance = 0;  // m along the ray
 };
-std::optional<ClothHit> pick_cloth(const Snapshot& snapshot, const Ray& ray);
+std::optional<ClothHit> pick_cloth(const FrameData& frame_data, const Ray& ray);
 
 struct BodyHit {
   int body = 0;  // number of the collider
@@ -48,7 +48,7 @@ struct BodyHit {
   float distance = 0;
 };
 // Planes are passed over.
-std::optional<BodyHit> pick_body(const Snapshot& snapshot, const Ray& ray);
+std::optional<BodyHit> pick_body(const FrameData& frame_data, const Ray& ray);
 
 // The point of the plane through `on`, facing the ray's camera, under the ray.
 Vec3f on_plane(const Ray& ray, Vec3f on, Vec3f normal);

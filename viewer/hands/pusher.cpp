@@ -48,11 +48,11 @@ void Pusher::follow_scene(const Workspace& workspace) {
 }
 
 bool Pusher::has_body(const Workspace& workspace) const {
-  return chosen_ < static_cast<int>(workspace.snapshot().bodies.size());
+  return chosen_ < static_cast<int>(workspace.frame_data().bodies.size());
 }
 
 Vec3f Pusher::place(const Workspace& workspace) const {
-  return to_float(place_of(workspace.snapshot().bodies[static_cast<std::size_t>(chosen_)].shape));
+  return to_float(place_of(workspace.frame_data().bodies[static_cast<std::size_t>(chosen_)].shape));
 }
 
 bool Pusher::take_arrow(const Workspace& workspace, const Area& area, float x, float y) {

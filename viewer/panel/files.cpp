@@ -5,7 +5,7 @@
 
 namespace weft::viewer {
 
-void draw_files(Workspace& workspace, Wishes& wishes, bool filming) {
+void draw_files(Workspace& workspace, Requests& requests, bool filming) {
   const Document& document = workspace.document();
   const auto button = [](const char* label, bool enabled, const std::string& about) {
     ImGui::BeginDisabled(!enabled);
@@ -24,7 +24,7 @@ void draw_files(Workspace& workspace, Wishes& wishes, bool filming) {
   if (button("Save", document.edited() || document.shipped(), "Saves to " + document.save_path()))
     workspace.save(document.save_path());
   ImGui::SameLine(0, 3 * ImGui::GetStyle().ItemSpacing.x);
-  if (button("Picture", true, "Saves a picture of the view as PNG")) wishes.screenshot = true;
+  if (button("Picture", true, "Saves a picture of the view as PNG")) requests.screenshot = true;
   ImGui::SameLine();
   // Red while it goes on.
   const auto lasting = [&](const char* label, bool on, const char* begin, const char* end) {
@@ -36,9 +36,9 @@ void draw_files(Workspace& workspace, Wishes& wishes, bool filming) {
   if (lasting("Film", filming,
               "Films the view to MP4 where ffmpeg is installed, else to numbered PNG files",
               "Ends the film"))
-    wishes.film = true;
+    requests.film = true;
   ImGui::SameLine();
-  if (lasting("Export", workspace.vitals().exporting,
+  if (lasting("Export", workspace.telemetry().exporting,
               "Exports the animation from here on as a PC2 point cache, as weft run --export does",
               "Ends the export"))
     workspace.start_or_end_export();

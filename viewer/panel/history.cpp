@@ -19,17 +19,17 @@ float Series::least() const {
   return count() > 0 ? *std::min_element(values_.begin(), values_.begin() + count()) : 0;
 }
 
-void History::add(const Vitals& vitals, std::uint64_t scene_serial, const Turn& turn) {
+void History::add(const Telemetry& telemetry, std::uint64_t scene_serial, const Turn& turn) {
   window_ms.add(static_cast<float>(turn.all_ms));
   panel_ms.add(static_cast<float>(turn.panel_ms));
   if (turn.surface_ms > 0) surface_ms.add(static_cast<float>(turn.surface_ms));
   smoothed_ms_ += 0.1 * (turn.all_ms - smoothed_ms_);
   turns_per_second = 1000 / std::max(smoothed_ms_, 1.0);
-  if (vitals.frames != frames_) frame_ms.add(static_cast<float>(vitals.frame_ms));
-  frames_ = vitals.frames;
-  if (vitals.measured == measured_) return;
-  measured_ = vitals.measured;
-  const Report& r = vitals.report;
+  if (telemetry.frames != frames_) frame_ms.add(static_cast<float>(telemetry.frame_ms));
+  frames_ = telemetry.frames;
+  if (telemetry.measured == measured_) return;
+  measured_ = telemetry.measured;
+  const Report& r = telemetry.report;
   if (serial_ != scene_serial || r.frames < frames_before_) {
     serial_ = scene_serial;
     before_.clear();

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "run/vitals.h"
+#include "run/telemetry.h"
 #include "window/figures.h"
 
 namespace weft::viewer {
@@ -31,7 +31,7 @@ class Series {
 class History {
  public:
   // Once a turn of the window.
-  void add(const Vitals& vitals, std::uint64_t scene_serial, const Turn& turn);
+  void add(const Telemetry& telemetry, std::uint64_t scene_serial, const Turn& turn);
 
   Series window_ms, surface_ms, panel_ms, frame_ms, kinetic, elastic, total, strain_max,
       strain_mean;

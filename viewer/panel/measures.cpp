@@ -34,7 +34,7 @@ void draw_stages(const History& history) {
   }
 }
 
-void draw_counts(const Vitals& v) {
+void draw_counts(const Telemetry& v) {
   const Report& r = v.report;
   ImGui::Text("%lld particles", static_cast<long long>(r.particles));
   ImGui::Text(
@@ -45,7 +45,7 @@ void draw_counts(const Vitals& v) {
               r.simd.c_str());
 }
 
-void draw_plan(const Vitals& v) {
+void draw_plan(const Telemetry& v) {
   if (!v.plan) return;
   ImGui::PushTextWrapPos(0);
   for (const std::string& note : v.plan->notes) ImGui::TextColored(kAccent, "%s", note.c_str());
@@ -60,7 +60,7 @@ void draw_plan(const Vitals& v) {
 }  // namespace
 
 void draw_measures(const Workspace& workspace, const History& history) {
-  const Vitals& v = workspace.vitals();
+  const Telemetry& v = workspace.telemetry();
   heading("Time");
   plot("simulated frame", history.frame_ms, "ms", true);
   plot("turn of the window", history.window_ms, "ms", true);

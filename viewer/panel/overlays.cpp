@@ -53,13 +53,13 @@ void draw_tools(Hands& hands, const Area& area, const Keys& keys) {
 namespace {
 
 void draw_past(Workspace& workspace, float width) {
-  const Vitals& v = workspace.vitals();
+  const Telemetry& v = workspace.telemetry();
   const int last = v.kept - 1;
   int at = last - v.back;
   ImGui::SetNextItemWidth(width);
   ImGui::BeginDisabled(last < 1);
   char text[32];
-  std::snprintf(text, sizeof text, "%.2f s", workspace.snapshot().time);
+  std::snprintf(text, sizeof text, "%.2f s", workspace.frame_data().time);
   if (ImGui::SliderInt("##past", &at, 0, std::max(last, 1), text, ImGuiSliderFlags_NoInput))
     workspace.go_back(last - at);
   ImGui::EndDisabled();
@@ -75,7 +75,7 @@ void draw_past(Workspace& workspace, float width) {
 }  // namespace
 
 void draw_transport(Workspace& workspace, const Area& area, const Keys& keys) {
-  const Vitals& v = workspace.vitals();
+  const Telemetry& v = workspace.telemetry();
   begin_overlay("transport", area.x + area.width / 2, area.y + area.height - kMargin, 0.5f, 1);
   if (ImGui::Button("Reset")) workspace.reset();
   mark("Reset");
@@ -109,7 +109,7 @@ void draw_transport(Workspace& workspace, const Area& area, const Keys& keys) {
 }
 
 void draw_corner(const Workspace& workspace, const History& history, const Area& area) {
-  const Vitals& v = workspace.vitals();
+  const Telemetry& v = workspace.telemetry();
   begin_overlay("corner", area.x + area.width - kMargin, area.y + kMargin, 1, 0);
   ImGui::Text("%.0f/s", history.turns_per_second);
   ImGui::SameLine();

@@ -33,7 +33,7 @@ bool begin_overlay(const char* name, float x, float y, float pivot_x, float pivo
                           ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
 }
 
-void Panel::draw_side(Workspace& workspace, Wishes& wishes) {
+void Panel::draw_side(Workspace& workspace, Requests& requests) {
   const Area area = picture_area();
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize({area.x, area.height});
@@ -42,7 +42,7 @@ void Panel::draw_side(Workspace& workspace, Wishes& wishes) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
   draw_scenes(workspace, path_);
-  draw_files(workspace, wishes, filming);
+  draw_files(workspace, requests, filming);
   ImGui::Dummy({0, 2});
   if (ImGui::BeginTabBar("tabs")) {
     const auto tab = [&](const char* name, auto&& content) {
@@ -68,8 +68,8 @@ void Panel::draw_side(Workspace& workspace, Wishes& wishes) {
   ImGui::PopStyleVar();
 }
 
-void Panel::draw(Workspace& workspace, Hands& hands, Wishes& wishes) {
-  if (has_side()) draw_side(workspace, wishes);
+void Panel::draw(Workspace& workspace, Hands& hands, Requests& requests) {
+  if (has_side()) draw_side(workspace, requests);
   const Area area = picture_area();
   if (visible) {
     draw_tools(hands, area, keys_);

@@ -10,7 +10,7 @@
 namespace weft::viewer {
 
 // What a person asks for that the window itself must do.
-struct Wishes {
+struct Requests {
   bool screenshot = false, film = false, quit = false;
 };
 
@@ -20,7 +20,7 @@ class Panel {
 
   // The room that is left for the picture, in the panel's units.
   Area picture_area() const;
-  void draw(Workspace& workspace, Hands& hands, Wishes& wishes);
+  void draw(Workspace& workspace, Hands& hands, Requests& requests);
 
   bool visible = true;
   bool help = false;
@@ -29,7 +29,7 @@ class Panel {
 
  private:
   bool has_side() const;
-  void draw_side(Workspace& workspace, Wishes& wishes);
+  void draw_side(Workspace& workspace, Requests& requests);
 
   const Keys& keys_;
   Parameters parameters_;
@@ -38,7 +38,7 @@ class Panel {
 
 // The parts.
 void draw_scenes(Workspace& workspace, std::string& path);
-void draw_files(Workspace& workspace, Wishes& wishes, bool filming);
+void draw_files(Workspace& workspace, Requests& requests, bool filming);
 void draw_fabrics(Workspace& workspace);
 void draw_spring_cloth(Workspace& workspace);
 void draw_looks(Workspace& workspace);

@@ -124,11 +124,11 @@ void Parameters::choice(const std::string& pointer, const std::string& label, co
 }
 
 void Parameters::collider_path(const std::string& pointer, const Json& value) {
-  const auto& bodies = workspace_->snapshot().bodies;
+  const auto& bodies = workspace_->frame_data().bodies;
   const std::size_t number = std::stoul(pointer.substr(std::string("/colliders/").size()));
   if (number >= bodies.size()) return;  // not simulated yet
   Json keys = value;
-  const Snapshot& now = workspace_->snapshot();
+  const FrameData& now = workspace_->frame_data();
   const Vec3 place = place_of(moved(bodies[number].shape, now.origin));
   if (draw_path("path", pointer, keys, now.time, place)) change(pointer, keys);
 }
@@ -136,7 +136,7 @@ void Parameters::collider_path(const std::string& pointer, const Json& value) {
 // A pin without a path is its [i, j] alone.
 void Parameters::pins(const std::string& pointer, const Json& value) {
   const std::size_t number = std::stoul(pointer.substr(std::string("/cloths/").size()));
-  const auto& cloths = workspace_->snapshot().cloths;
+  const auto& cloths = workspace_->frame_data().cloths;
   const std::string label = "pins: " + std::to_string(value.size()) + "###" + pointer;
   const bool open = ImGui::TreeNodeEx(label.c_str(), ImGuiTreeNodeFlags_NoTreePushOnOpen);
   mark(pointer);
@@ -150,7 +150,7 @@ void Parameters::pins(const std::string& pointer, const Json& value) {
     Json keys = value[p].is_object() ? value[p]["keys"] : Json::array();
     const std::string place = text::join(pointer, std::to_string(p));
     const std::string name = "pin " + std::to_string(i) + ", " + std::to_string(j);
-    if (draw_path(name, place, keys, workspace_->snapshot().time,
+    if (draw_path(name, place, keys, workspace_->frame_data().time,
                   workspace_->in_scene(cloth.position(j * cloth.columns + i))))
       change(place, keys.empty() ? at : Json{{"at", at}, {"keys", keys}});
   }
@@ -175,7 +175,7 @@ void Parameters::member(const std::string& pointer, const std::string& key, cons
     ImGui::SameLine();
     ImGui::BeginDisabled(automatic);
     ImGui::SetNextItemWidth(ImGui::CalcItemWidth() - ImGui::GetFontSize() * 4.6f);
-    const int used = workspace_->vitals().substeps;
+    const int used = workspace_->telemetry().substeps;
     number(pointer, label, (*options)[0], automatic ? Json(used) : value);
     ImGui::EndDisabled();
   } else if (options && value.is_number()) {

@@ -1,4 +1,4 @@
-// What the graphics card holds: the cloth's surface, streamed anew for every snapshot, and the
+// What the graphics card holds: the cloth's surface, streamed anew for every frame, and the
 // unchanging bodies of the colliders and the floor.
 #pragma once
 

@@ -87,13 +87,13 @@ std::vector<std::string> Renderer::problems() const {
   return all;
 }
 
-void Renderer::draw(const Snapshot& snapshot, const Setting& setting, const Look& look,
+void Renderer::draw(const FrameData& frame_data, const Setting& setting, const Look& look,
                     const LookSettings& settings, const Camera& camera,
                     const RenderTarget& target) {
   const float aspect = static_cast<float>(target.width()) / static_cast<float>(target.height());
-  update_meshes(snapshot, setting, look, settings);
-  update_bodies(snapshot, setting, settings);
-  draw_shadow_map(snapshot, setting, settings);
+  update_meshes(frame_data, setting, look, settings);
+  update_bodies(frame_data, setting, settings);
+  draw_shadow_map(frame_data, setting, settings);
   upload_frame(setting, settings, camera, aspect);
   const std::pair<GLenum, GLuint> textures[] = {
       {GL_TEXTURE_CUBE_MAP, sky_.id()},   {GL_TEXTURE_2D, shadow_map_.texture()},
@@ -118,30 +118,30 @@ void Renderer::draw(const Snapshot& snapshot, const Setting& setting, const Look
   target.resolve();
 }
 
-void Renderer::update_meshes(const Snapshot& snapshot, const Setting& setting, const Look& look,
+void Renderer::update_meshes(const FrameData& frame_data, const Setting& setting, const Look& look,
                              const LookSettings& settings) {
-  const bool shown = shown_scene_ == snapshot.scene_serial && shown_frame_ == snapshot.frame &&
-                     shown_change_ == snapshot.change && shown_look_ == &look &&
+  const bool shown = shown_scene_ == frame_data.scene_serial && shown_frame_ == frame_data.frame &&
+                     shown_change_ == frame_data.change && shown_look_ == &look &&
                      shown_refinement_ == settings.refinement && shown_detail_ == settings.detail;
   if (shown) return;
   const double start = cpu_ms();
-  cloths_.resize(snapshot.cloths.size());
+  cloths_.resize(frame_data.cloths.size());
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
-    const ClothCopy& cloth = snapshot.cloths[c];
+    const ClothCopy& cloth = frame_data.cloths[c];
     const Sampling sampling = settings.refinement > 0 ? Sampling{settings.refinement, 1}
                                                       : sampling_of(cloth, settings.detail);
-    cloths_[c].update(cloth, snapshot.scene_serial, snapshot.scene->cloths[c], look, sampling);
+    cloths_[c].update(cloth, frame_data.scene_serial, frame_data.scene->cloths[c], look, sampling);
   }
-  const Cloth& first = snapshot.scene->cloths.front();
+  const Cloth& first = frame_data.scene->cloths.front();
   const double mass = first.mesh.given()
                           ? first.density * spacing_of(first) * spacing_of(first)
                           : particle_mass(first, first.grid.nx / 2, first.grid.ny / 2);
-  const float weight = static_cast<float>(mass) * length(to_float(snapshot.scene->gravity));
+  const float weight = static_cast<float>(mass) * length(to_float(frame_data.scene->gravity));
   // Forces are drawn of one iteration, of which a substep may add several.
-  const Solver& solver = snapshot.scene->solver;
+  const Solver& solver = frame_data.scene->solver;
   const auto repeats = static_cast<float>(solver.iterate_springs ? solver.iterations : 1);
   particle_weight_ = std::max(weight / repeats, 1e-6f);
-  if (shown_scene_ != snapshot.scene_serial) {
+  if (shown_scene_ != frame_data.scene_serial) {
     floor_.clear();
     if (setting.has_ground) {
       floor_center_ = setting.room.center();
@@ -149,19 +149,19 @@ void Renderer::update_meshes(const Snapshot& snapshot, const Setting& setting, c
       floor_.push_back(make_floor(floor_center_, 6 * setting.size));
     }
   }
-  shown_scene_ = snapshot.scene_serial;
-  shown_frame_ = snapshot.frame;
-  shown_change_ = snapshot.change;
+  shown_scene_ = frame_data.scene_serial;
+  shown_frame_ = frame_data.frame;
+  shown_change_ = frame_data.change;
   shown_look_ = &look;
   shown_refinement_ = settings.refinement;
   shown_detail_ = settings.detail;
   upload_ms_ = cpu_ms() - start;
 }
 
-void Renderer::update_bodies(const Snapshot& snapshot, const Setting& setting,
+void Renderer::update_bodies(const FrameData& frame_data, const Setting& setting,
                              const LookSettings& settings) {
   double widest = 0;  // m, diagonal of a square of the grid
-  for (const Cloth& cloth : snapshot.scene->cloths)
+  for (const Cloth& cloth : frame_data.scene->cloths)
     widest = std::max(widest, cloth.mesh.given()
                                   ? spacing_of(cloth)
                                   : std::hypot(spacing_u(cloth.grid), spacing_v(cloth.grid)));
@@ -169,7 +169,7 @@ void Renderer::update_bodies(const Snapshot& snapshot, const Setting& setting,
   body_tessellation_ = settings.tessellation;
   body_size_ = setting.size;
   std::size_t count = 0;
-  for (Collider body : snapshot.bodies) {
+  for (Collider body : frame_data.bodies) {
     const Plane* plane = std::get_if<Plane>(&body.shape);
     if (plane && is_level(*plane)) continue;
     shrink(body, widest);
@@ -190,10 +190,10 @@ void Renderer::Body::draw(const Shader& shader) const {
   mesh.draw();
 }
 
-void Renderer::draw_shadow_map(const Snapshot& snapshot, const Setting& setting,
+void Renderer::draw_shadow_map(const FrameData& frame_data, const Setting& setting,
                                const LookSettings& settings) {
   if (!settings.shadows) return;
-  const Bounds bounds = visible_bounds(snapshot);
+  const Bounds bounds = visible_bounds(frame_data);
   const float r = 1.02f * bounds.radius();
   const Vec3f eye = bounds.center() + kLight * (1.5f * r);
   const Mat4 light = orthographic(r, r, 3 * r + 4 * setting.size) *

@@ -1,4 +1,4 @@
-// Draws a snapshot: shadow map, background, floor, colliders, cloth.
+// Draws a frame: shadow map, background, floor, colliders, cloth.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ class Renderer {
  public:
   explicit Renderer(const PictureFiles& files);
 
-  // Into the target, resolved. A new snapshot is uploaded, one drawn before is not.
-  void draw(const Snapshot& snapshot, const Setting& setting, const Look& look,
+  // Into the target, resolved. A new frame is uploaded, one drawn before is not.
+  void draw(const FrameData& frame_data, const Setting& setting, const Look& look,
             const LookSettings& settings, const Camera& camera, const RenderTarget& target);
 
   void set_pictures(const PictureFiles& files);
@@ -40,11 +40,11 @@ class Renderer {
 
  private:
   const Shader& shader(std::string_view name);
-  void update_meshes(const Snapshot& snapshot, const Setting& setting, const Look& look,
+  void update_meshes(const FrameData& frame_data, const Setting& setting, const Look& look,
                      const LookSettings& settings);
-  void update_bodies(const Snapshot& snapshot, const Setting& setting,
+  void update_bodies(const FrameData& frame_data, const Setting& setting,
                      const LookSettings& settings);
-  void draw_shadow_map(const Snapshot& snapshot, const Setting& setting,
+  void draw_shadow_map(const FrameData& frame_data, const Setting& setting,
                        const LookSettings& settings);
   void upload_frame(const Setting& setting, const LookSettings& settings, const Camera& camera,
                     float aspect);

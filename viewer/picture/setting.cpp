@@ -43,7 +43,7 @@ bool in_front_of(const Plane& plane, Vec3f point) {
   return dot(to_float(plane.normal), point - to_float(plane.point)) > 0;
 }
 
-Setting setting_of(const Snapshot& start) {
+Setting setting_of(const FrameData& start) {
   Setting setting;
   const Scene& scene = *start.scene;
   Bounds bodies;
@@ -70,9 +70,9 @@ Setting setting_of(const Snapshot& start) {
   return setting;
 }
 
-Bounds visible_bounds(const Snapshot& snapshot) {
-  Bounds bounds = cloth_bounds(snapshot);
-  bounds.add(collider_bounds(snapshot.bodies));
+Bounds visible_bounds(const FrameData& frame_data) {
+  Bounds bounds = cloth_bounds(frame_data);
+  bounds.add(collider_bounds(frame_data.bodies));
   return bounds;
 }
 

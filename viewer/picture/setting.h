@@ -1,7 +1,7 @@
 // Where the scene stands: its floor, its size, and what a camera should frame.
 #pragma once
 
-#include "picture/snapshot.h"
+#include "picture/frame_data.h"
 
 namespace weft::viewer {
 
@@ -14,10 +14,10 @@ struct Setting {
 
 // From the start of a scene. The floor is the scene's own level plane, or lies below the reach of
 // cloth that is held; cloth that nothing holds falls without a floor.
-Setting setting_of(const Snapshot& start);
+Setting setting_of(const FrameData& start);
 
 // The cloth and the colliders as they are now.
-Bounds visible_bounds(const Snapshot& snapshot);
+Bounds visible_bounds(const FrameData& frame_data);
 
 // Whether the plane is the floor, drawn as such.
 bool is_level(const Plane& plane);

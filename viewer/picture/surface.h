@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "picture/snapshot.h"
+#include "picture/frame_data.h"
 
 namespace weft::viewer {
 

@@ -1,4 +1,4 @@
-// What each of a person's wishes does to the simulation.
+// What each request does to the simulation.
 #include "run/player.h"
 
 #include <algorithm>
@@ -24,12 +24,12 @@ Player::Player(Scene scene, const Options& options, bool hashes)
   start(std::move(scene));
 }
 
-// A failure of a person's wish is told and changes nothing else.
+// A request that fails is told and changes nothing else.
 template <class Do>
 void Player::attempt(Do&& action) {
   const auto tell = [&](const std::string& problem) {
-    vitals_.problem = problem;
-    ++vitals_.problems;
+    telemetry_.problem = problem;
+    ++telemetry_.problems;
   };
   try {
     action();
@@ -160,7 +160,7 @@ void Player::record(const std::string& path) {
     finish_recording();
     start(scene_);
     recorder_ = std::make_unique<Recorder>(path, *simulation_);
-    vitals_.recording = true;
+    telemetry_.recording = true;
   });
 }
 
@@ -168,9 +168,9 @@ void Player::finish_recording() {
   if (!recorder_) return;
   attempt([&] {
     const std::unique_ptr<Recorder> done = std::move(recorder_);
-    vitals_.recording = false;
+    telemetry_.recording = false;
     done->finish();
-    vitals_.recorded = printable(done->path());
+    telemetry_.recorded = printable(done->path());
   });
 }
 
@@ -178,7 +178,7 @@ void Player::export_to(const std::string& path) {
   attempt([&] {
     export_ = open_animation(path, simulation_->view());
     export_->append(simulation_->view());
-    vitals_.exporting = true;
+    telemetry_.exporting = true;
   });
 }
 
@@ -186,17 +186,17 @@ void Player::finish_export() {
   if (!export_) return;
   attempt([&] {
     const std::unique_ptr<Animation> done = std::move(export_);
-    vitals_.exporting = false;
+    telemetry_.exporting = false;
     done->finish();
-    vitals_.recorded = printable(done->written());
+    telemetry_.recorded = printable(done->written());
   });
 }
 
 int Player::due(double now) {
   if (now - pace_.since > 0.5) {
-    const auto frames = static_cast<double>(vitals_.frames - pace_.frames);
-    vitals_.pace = frames * scene_.time.frame / (now - pace_.since);
-    pace_ = {now, vitals_.frames};
+    const auto frames = static_cast<double>(telemetry_.frames - pace_.frames);
+    telemetry_.pace = frames * scene_.time.frame / (now - pace_.since);
+    pace_ = {now, telemetry_.frames};
   }
   // What is over stays due while nothing may begin, a single step too.
   constexpr double kRounding = 1e-9;  // s
@@ -215,8 +215,8 @@ void Player::advance() {
     }
     const double start = seconds_now();
     simulation_->advance_frame();
-    vitals_.frame_ms = 1e3 * (seconds_now() - start);
-    ++vitals_.frames;
+    telemetry_.frame_ms = 1e3 * (seconds_now() - start);
+    ++telemetry_.frames;
     if (!simulation_->status().ok) return;
     if (recorder_) recorder_->frame(*simulation_);
     if (export_) export_->append(simulation_->view());
@@ -237,32 +237,32 @@ void Player::keep_state() {
 void Player::measure_sometimes() {
   const double now = seconds_now();
   if (now < next_measure_) return;
-  vitals_.report = simulation_->report(false);
-  vitals_.plan = std::make_shared<const Plan>(simulation_->plan());
-  ++vitals_.measured;
+  telemetry_.report = simulation_->report(false);
+  telemetry_.plan = std::make_shared<const Plan>(simulation_->plan());
+  ++telemetry_.measured;
   const double took = seconds_now() - now;
   next_measure_ = now + std::max(0.1, 10 * took);
 }
 
 void Player::show(Shown& shown) {
   measure_sometimes();
-  Snapshot& snapshot = shown.snapshot;
-  snapshot.scene = shown_scene_;
-  snapshot.scene_serial = serial_;
-  snapshot.change = change_;
-  snapshot.frame = simulation_->frame();
-  copy_view(simulation_->view(), simulation_->scene(), snapshot);
-  vitals_.status = simulation_->status();
-  vitals_.substeps = simulation_->substeps();
-  vitals_.threads = simulation_->threads();
-  vitals_.dt = simulation_->dt();
-  vitals_.paused = clock_.paused();
-  vitals_.speed = clock_.speed();
-  vitals_.kept = rewind_.size();
-  vitals_.back = back_;
-  vitals_.kept_s = rewind_.seconds();
-  vitals_.hash = hashes_ ? simulation_->hash() : 0;
-  shown.vitals = vitals_;
+  FrameData& frame_data = shown.frame_data;
+  frame_data.scene = shown_scene_;
+  frame_data.scene_serial = serial_;
+  frame_data.change = change_;
+  frame_data.frame = simulation_->frame();
+  copy_view(simulation_->view(), simulation_->scene(), frame_data);
+  telemetry_.status = simulation_->status();
+  telemetry_.substeps = simulation_->substeps();
+  telemetry_.threads = simulation_->threads();
+  telemetry_.dt = simulation_->dt();
+  telemetry_.paused = clock_.paused();
+  telemetry_.speed = clock_.speed();
+  telemetry_.kept = rewind_.size();
+  telemetry_.back = back_;
+  telemetry_.kept_s = rewind_.seconds();
+  telemetry_.hash = hashes_ ? simulation_->hash() : 0;
+  shown.telemetry = telemetry_;
 }
 
 }  // namespace weft::viewer

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "run/rewind.h"
-#include "run/vitals.h"
+#include "run/telemetry.h"
 #include "weft/clock.h"
 #include "weft/recording.h"
 
@@ -49,7 +49,7 @@ class Player {
   // Frames due at `now` [s], and one of them.
   int due(double now);
   void advance();
-  const Vitals& vitals() const { return vitals_; }
+  const Telemetry& telemetry() const { return telemetry_; }
   bool idle() const { return clock_.paused(); }
 
   // Copies what is to be shown.
@@ -80,7 +80,7 @@ class Player {
 
   std::shared_ptr<const Scene> shown_scene_;
   std::uint64_t serial_ = 0, change_ = 0;
-  Vitals vitals_;
+  Telemetry telemetry_;
   double next_measure_ = 0;  // s
   struct {
     double since = 0;  // s

@@ -46,7 +46,7 @@ void Session::post(Command command) {
   wake_.notify_one();
 }
 
-bool Session::obey() {
+bool Session::dispatch() {
   std::vector<Command> commands;
   {
     const std::lock_guard lock(mutex_);
@@ -75,21 +75,21 @@ void Session::run() {
         wake_.wait_for(lock, std::chrono::milliseconds(1), ready);
       if (stopping_) break;
     }
-    bool news = obey();
+    bool news = dispatch();
     const double now = std::chrono::duration<double>(steady_clock::now() - origin).count();
-    // A command in between is obeyed at once, however slow the frames are.
+    // A command in between is dispatched at once, however slow the frames are.
     for (int due = player_.due(now); due > 0; --due) {
       player_.advance();
       publish();
-      news = obey();
+      news = dispatch();
       if (news) break;
     }
     if (news) publish();
   }
-  const std::int64_t problems = player_.vitals().problems;
+  const std::int64_t problems = player_.telemetry().problems;
   player_.finish_recording();
   player_.finish_export();
-  if (player_.vitals().problems > problems) problem_ = player_.vitals().problem;
+  if (player_.telemetry().problems > problems) problem_ = player_.telemetry().problem;
 }
 
 }  // namespace weft::viewer

@@ -35,7 +35,7 @@ class Session {
 
  private:
   void run();
-  bool obey();  // whether there were commands
+  bool dispatch();  // whether there were commands
   void publish();
 
   Player player_;

@@ -73,7 +73,7 @@ void App::run() {
     view_.took(1e3 * took);
     window_.poll(std::max(0.0, kTurn - took));
     turn_.all_ms = 1e3 * (seconds_now() - start);
-    panel_.history.add(workspace_.vitals(), workspace_.snapshot().scene_serial, turn_);
+    panel_.history.add(workspace_.telemetry(), workspace_.frame_data().scene_serial, turn_);
     if (measure_ > 0 && measured(begun)) window_.close();
     if (interrupted() != 0) window_.close();
   }
@@ -117,7 +117,7 @@ void App::turn() {
     if (action != Action::count && !typing &&
         (!press.again || action == Action::step || action == Action::back ||
          action == Action::forward))
-      obey(action);
+      dispatch(action);
   }
   push_bodies(std::min(now - last_turn_, 0.1));
   last_turn_ = now;
@@ -125,9 +125,9 @@ void App::turn() {
   workspace_.set_aspect(area.aspect());
   hands_.update(workspace_, area, pointer_now());
   hands_.draw(workspace_, area, *ImGui::GetBackgroundDrawList());
-  Wishes wishes;
+  Requests requests;
   panel_.filming = film_.has_value();
-  panel_.draw(workspace_, hands_, wishes);
+  panel_.draw(workspace_, hands_, requests);
   const double picture_start = cpu_ms();
   draw_picture();
   const double picture_end = cpu_ms();
@@ -136,7 +136,7 @@ void App::turn() {
   turn_.picture = view_.drawn();
   if (view_.drawn()) turn_.surface_ms = view_.own_ms();
   window_.swap();
-  grant(wishes);
+  apply(requests);
   film();
   log_.write(workspace_, view_, hands_, panel_.help, landmarks_);
 }
@@ -153,7 +153,7 @@ void App::draw_picture() {
   view_.draw(workspace_, window_.width() - width, 0, width, height);
 }
 
-void App::obey(Action action) {
+void App::dispatch(Action action) {
   if (action == Action::quit) leave();
   if (action == Action::help) panel_.help = !panel_.help;
   if (action == Action::panel) panel_.visible = !panel_.visible;
@@ -161,8 +161,8 @@ void App::obey(Action action) {
   if (action == Action::film) start_or_end_film();
   if (action >= Action::hand && action <= Action::ball)
     hands_.tool = static_cast<Tool>(static_cast<int>(action) - static_cast<int>(Action::hand));
-  obey_scene(action);
-  obey_view(action);
+  dispatch_scene(action);
+  dispatch_view(action);
 }
 
 // The list or the help that is open, else the program.
@@ -176,8 +176,8 @@ void App::leave() {
     window_.close();
 }
 
-void App::obey_scene(Action action) {
-  const Vitals& v = workspace_.vitals();
+void App::dispatch_scene(Action action) {
+  const Telemetry& v = workspace_.telemetry();
   if (action == Action::pause) workspace_.play(v.paused);
   if (action == Action::step) workspace_.step();
   if (action == Action::reset) workspace_.reset();
@@ -190,7 +190,7 @@ void App::obey_scene(Action action) {
   if (action == Action::forward) workspace_.go_back(std::max(0, v.back - 1));
 }
 
-void App::obey_view(Action action) {
+void App::dispatch_view(Action action) {
   if (action == Action::frame) workspace_.frame_cloth();
   if (action == Action::next_look) workspace_.next_look(1);
   if (action == Action::previous_look) workspace_.next_look(-1);
@@ -225,9 +225,9 @@ void App::take_dropped() {
   }
 }
 
-void App::grant(const Wishes& wishes) {
-  if (wishes.screenshot) take_screenshot();
-  if (wishes.film) start_or_end_film();
+void App::apply(const Requests& requests) {
+  if (requests.screenshot) take_screenshot();
+  if (requests.film) start_or_end_film();
 }
 
 void App::take_screenshot() {
@@ -249,7 +249,7 @@ void App::start_or_end_film() {
   const auto [width, height] = picture_size();
   try {
     film_.emplace(workspace_.document().name(), workspace_.record(), width & ~1, height & ~1,
-                  workspace_.snapshot().time);
+                  workspace_.frame_data().time);
     waits_at_ = film_->next();
     workspace_.wait_at(waits_at_);
     workspace_.messages.tell("The film goes to " + printable(film_->path()) + " until you end it",
@@ -271,7 +271,7 @@ void App::end_film() {
 
 void App::film() {
   if (film_) {
-    const int due = film_->due(workspace_.snapshot().time);
+    const int due = film_->due(workspace_.frame_data().time);
     try {
       if (due > 0) film_->add(view_.picture(workspace_, film_->width(), film_->height()), due);
     } catch (const Failure& failure) {

@@ -28,16 +28,16 @@ class App {
 
  private:
   void read_keys(const std::string& path);
-  void obey(Action action);
+  void dispatch(Action action);
   void leave();
-  void obey_scene(Action action);
-  void obey_view(Action action);
+  void dispatch_scene(Action action);
+  void dispatch_view(Action action);
   void push_bodies(double seconds);
   void take_dropped();
   bool measured(double begun);
   void turn();
   void draw_picture();
-  void grant(const Wishes& wishes);
+  void apply(const Requests& requests);
   void take_screenshot();
   void start_or_end_film();
   void end_film();

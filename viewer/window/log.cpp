@@ -20,8 +20,8 @@ Log::Log(const std::string& path) {
 void Log::write(const Workspace& workspace, const View& view, const Hands& hands, bool help,
                 const Landmarks& controls) {
   if (!file_.is_open()) return;
-  const Vitals& v = workspace.vitals();
-  const Snapshot& s = workspace.snapshot();
+  const Telemetry& v = workspace.telemetry();
+  const FrameData& s = workspace.frame_data();
   const auto held =
       std::accumulate(s.cloths.begin(), s.cloths.end(), 0L, [](long sum, const ClothCopy& cloth) {
         for (int j = 0; j < cloth.rows; ++j)

@@ -47,12 +47,12 @@ void View::reload(Workspace& workspace) {
 }
 
 void View::draw(Workspace& workspace, int x, int y, int width, int height) {
-  const Snapshot& snapshot = workspace.snapshot();
+  const FrameData& frame_data = workspace.frame_data();
   const Camera& camera = workspace.camera;
   const float aspect = static_cast<float>(width) / static_cast<float>(height);
-  const Seen now{snapshot.scene_serial,
-                 snapshot.change,
-                 snapshot.frame,
+  const Seen now{frame_data.scene_serial,
+                 frame_data.change,
+                 frame_data.frame,
                  workspace.look,
                  workspace.settings,
                  camera.view().m,
@@ -61,7 +61,7 @@ void View::draw(Workspace& workspace, int x, int y, int width, int height) {
                  height};
   const bool changed = stale_ || !(now == seen_);
   if (changed) last_change_ = workspace.now();
-  const bool rests = workspace.vitals().paused && workspace.now() - last_change_ > kRest;
+  const bool rests = workspace.telemetry().paused && workspace.now() - last_change_ > kRest;
   const int coarseness = rests ? 0 : coarseness_;
   drawn_ = changed || (rests && drawn_coarseness_ > 0);
   if (drawn_) {
@@ -75,7 +75,7 @@ void View::draw(Workspace& workspace, int x, int y, int width, int height) {
     settings.shadow_softness = quality.shadow_softness;
     settings.detail = quality.detail;
     if (coarseness > 0) settings.refinement = 0;
-    renderer_.draw(snapshot, workspace.setting(), *workspace.look, settings, camera, *target_);
+    renderer_.draw(frame_data, workspace.setting(), *workspace.look, settings, camera, *target_);
     seen_ = now;
     stale_ = false;
     drawn_coarseness_ = coarseness;
@@ -97,7 +97,7 @@ void View::took(double ms) {
 
 Picture View::picture(const Workspace& workspace, int width, int height) {
   const RenderTarget target(width, height, 8);
-  renderer_.draw(workspace.snapshot(), workspace.setting(), *workspace.look, workspace.settings,
+  renderer_.draw(workspace.frame_data(), workspace.setting(), *workspace.look, workspace.settings,
                  workspace.camera, target);
   return target.read();
 }

@@ -50,14 +50,14 @@ std::string Workspace::end() {
 }
 
 void Workspace::show_start() {
-  serial_ = snapshot().scene_serial;
-  setting_ = setting_of(snapshot());
+  serial_ = frame_data().scene_serial;
+  setting_ = setting_of(frame_data());
   frame_cloth();
 }
 
 void Workspace::frame_cloth() {
-  Bounds bounds = visible_bounds(snapshot());
-  if (snapshot().frame == 0) bounds.add(setting_.room);
+  Bounds bounds = visible_bounds(frame_data());
+  if (frame_data().frame == 0) bounds.add(setting_.room);
   camera.frame(bounds, aspect_);
 }
 
@@ -93,7 +93,7 @@ void Workspace::reset() {
 }
 
 void Workspace::save(const std::string& path) {
-  if (vitals().recording && same_file(path, record_)) {
+  if (telemetry().recording && same_file(path, record_)) {
     messages.warn("Not saved: the recording goes to " + printable(path), now_);
     return;
   }
@@ -150,7 +150,7 @@ void Workspace::go_back(int back) {
 }
 
 Vec3 Workspace::in_scene(Vec3f shown) const {
-  const Vec3& origin = snapshot().origin;
+  const Vec3& origin = frame_data().origin;
   return {origin[0] + shown.x, origin[1] + shown.y, origin[2] + shown.z};
 }
 
@@ -159,7 +159,7 @@ void Workspace::give(const Input& input) {
 }
 
 void Workspace::start_or_end_export() {
-  if (vitals().exporting) {
+  if (telemetry().exporting) {
     session_->post([](Player& player) { player.finish_export(); });
     return;
   }
@@ -211,18 +211,18 @@ void Workspace::refresh(double now) {
   now_ = now;
   messages.forget(now);
   const bool fresh = session_->refresh();
-  if (fresh && snapshot().scene_serial != serial_) {
+  if (fresh && frame_data().scene_serial != serial_) {
     telling_ = false;
     if (opening_) {
       opening_ = false;
       show_start();
     } else {
-      serial_ = snapshot().scene_serial;
-      const Setting now_set = setting_of(snapshot());
-      if (snapshot().frame == 0) setting_ = now_set;
+      serial_ = frame_data().scene_serial;
+      const Setting now_set = setting_of(frame_data());
+      if (frame_data().frame == 0) setting_ = now_set;
     }
   }
-  const Vitals& v = vitals();
+  const Telemetry& v = telemetry();
   if (v.problems != problems_) {
     problems_ = v.problems;
     telling_ = false;

@@ -51,10 +51,10 @@ class Workspace {
   const Document& document() const { return document_; }
   // Frames from this time of the simulation on [s] wait.
   void wait_at(double time);
-  const Snapshot& snapshot() const { return session_->shown().snapshot; }
+  const FrameData& frame_data() const { return session_->shown().frame_data; }
   // A point that is shown, where it stands in the scene [m].
   Vec3 in_scene(Vec3f shown) const;
-  const Vitals& vitals() const { return session_->shown().vitals; }
+  const Telemetry& telemetry() const { return session_->shown().telemetry; }
   const Setting& setting() const { return setting_; }
   const std::vector<ShippedScene>& scenes() const { return scenes_; }
   double now() const { return now_; }

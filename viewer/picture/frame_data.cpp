@@ -1,5 +1,5 @@
 // Copies of the simulation's arrays, and where its colliders are.
-#include "picture/snapshot.h"
+#include "picture/frame_data.h"
 
 namespace weft::viewer {
 
@@ -48,7 +48,7 @@ void add_bounds(const Box& b, Bounds& bounds) {
 
 }  // namespace
 
-void copy_view(const View& view, const Scene& scene, Snapshot& to) {
+void copy_view(const View& view, const Scene& scene, FrameData& to) {
   to.origin = view.origin;
   to.bodies.clear();
   for (const Collider& collider : scene.colliders) {
@@ -104,9 +104,9 @@ Bounds collider_bounds(const std::vector<Collider>& bodies) {
   return bounds;
 }
 
-Bounds cloth_bounds(const Snapshot& snapshot) {
+Bounds cloth_bounds(const FrameData& frame_data) {
   Bounds bounds;
-  for (const ClothCopy& cloth : snapshot.cloths) {
+  for (const ClothCopy& cloth : frame_data.cloths) {
     for (const auto& triangle : cloth.triangles)
       for (const std::uint32_t p : triangle) bounds.add(Vec3f{cloth.x[p], cloth.y[p], cloth.z[p]});
     for (int j = 0; j < cloth.rows && !cloth.torn; ++j)

@@ -42,7 +42,7 @@ struct ClothCopy {
 };
 
 // Everything is about the view's origin: the scene, the cloths and the bodies.
-struct Snapshot {
+struct FrameData {
   Vec3 origin{};  // m, where that is
   std::shared_ptr<const Scene> scene;
   std::uint64_t scene_serial = 0;  // rises with every scene or parameter that was set
@@ -55,7 +55,7 @@ struct Snapshot {
 
 // Copies the view and the colliders of the scene as simulated, where it stands; keeps the memory that
 // `to` has.
-void copy_view(const View& view, const Scene& scene, Snapshot& to);
+void copy_view(const View& view, const Scene& scene, FrameData& to);
 
 // The collider at `time` along its path, without keys.
 Collider collider_at(const Collider& collider, double time);
@@ -66,6 +66,6 @@ Shape about_its_place(const Shape& shape);
 // What of the colliders can be seen as a whole: all but planes.
 Bounds collider_bounds(const std::vector<Collider>& bodies);
 // Of all particles; of a torn cloth, those that still hold a triangle.
-Bounds cloth_bounds(const Snapshot& snapshot);
+Bounds cloth_bounds(const FrameData& frame_data);
 
 }  // namespace weft::viewer

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "picture/snapshot.h"
+#include "picture/frame_data.h"
 
 namespace weft::viewer {
 
-struct Vitals {
+struct Telemetry {
   Status status;
   std::shared_ptr<const Plan> plan;  // as it is now
   Report report;                     // without contacts; measured now and then
@@ -34,8 +34,8 @@ struct Vitals {
 };
 
 struct Shown {
-  Snapshot snapshot;
-  Vitals vitals;
+  FrameData frame_data;
+  Telemetry telemetry;
 };
 
 }  // namespace weft::viewer
