@@ -28,7 +28,7 @@ struct Sheet {
     if (!shear) cloth.stiffness.shear = 0;
     lattice = std::make_unique<Lattice>(make_lattice(cloth, 0, 0, false));
     stencils = stencils_of(cloth);
-    tearing = std::make_unique<LatticeTearing>(*lattice, stencils, false, Tears::split);
+    tearing = std::make_unique<LatticeTearing>(*lattice, stencils, cloth);
   }
   // Every constraint, and whether it is there.
   void each(const std::function<void(const Stencil&, Site, Site, bool)>& visit) const {

@@ -141,6 +141,15 @@ void Parts::limits(Cloth& c) {
   if (draw_.chance(0.3)) c.tears = draw_.of({Tears::holes, Tears::particles});
 }
 
+// Over the sheet and past its borders.
+std::vector<CutLine> Parts::cuts(const Grid& g) {
+  std::vector<CutLine> cuts(some(0.15) ? static_cast<std::size_t>(draw_.between(1, 3)) : 0);
+  for (CutLine& line : cuts)
+    for (int n = draw_.between(2, 5); n > 0; --n)
+      line.push_back({draw_.uniform(-2, g.nx + 1), draw_.uniform(-2, g.ny + 1)});
+  return cuts;
+}
+
 SelfCollision Parts::self_collision(const Grid& g) {
   SelfCollision s;
   if (!some(0.4)) return s;
@@ -255,6 +264,7 @@ Cloth Parts::cloth(const Solver& solver, const Time& time) {
   if (some(0.25)) c.bending = draw_.chance(0.9) ? draw_.decades(1e-7, 0.1) : stiffness() * 1e-3;
   if (some(0.2)) make_membrane(c, solver);
   limits(c);
+  c.cuts = cuts(c.grid);
   c.self_collision = self_collision(c.grid);
   c.pins = pins(c.grid, time);
   return c;

@@ -35,6 +35,7 @@ class Parts {
   void masses(weft::Cloth& cloth);
   void make_membrane(weft::Cloth& cloth, const weft::Solver& solver);
   void limits(weft::Cloth& cloth);
+  std::vector<weft::CutLine> cuts(const weft::Grid& grid);
   weft::SelfCollision self_collision(const weft::Grid& grid);
   weft::Shape shape(const weft::Vec3& at, double size);
   weft::Friction friction();

@@ -36,6 +36,10 @@ class FieldWriter {
     return Json::array({write(field[0]), write(field[1]), write(field[2])});
   }
 
+  static Json write(const std::array<double, 2>& field) {
+    return Json::array({write(field[0]), write(field[1])});
+  }
+
   static Json write(VectorInTime field) {
     if (field.keys.empty()) return write(field.value);
     Json object = Json::object();

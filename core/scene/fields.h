@@ -143,6 +143,7 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("tears", cloth.tears);
   walk("self_collision", cloth.self_collision);
   walk("pins", cloth.pins);
+  walk("cuts", cloth.cuts);
 }
 
 template <class Walk>

@@ -116,6 +116,10 @@ struct Bending {
   friend bool operator==(const Bending&, const Bending&) = default;
 };
 
+// A line over a flat sheet, from point to point [column, row] of the grid, whole numbers being particles. It
+// may leave the sheet: a cut from border to border begins and ends beside it.
+using CutLine = std::vector<std::array<double, 2>>;
+
 enum class SelfCollisionMode { off, particles, surface };
 
 // How a pair closer than the thickness is pushed apart: `stiff` separates it at once with
@@ -177,6 +181,8 @@ struct Cloth {
   Tears tears = Tears::split;
   SelfCollision self_collision;
   std::vector<Pin> pins;
+  // Along these lines the sheet is cut from the start: no constraint that crosses one is there.
+  std::vector<CutLine> cuts;
   friend bool operator==(const Cloth&, const Cloth&) = default;
 };
 

@@ -135,8 +135,8 @@ class Simulation {
   Snapshot snapshot() const;
   void restore(const Snapshot& snapshot);
   // Goes on with another scene: cloths whose grids have the same points, and meshes of as many vertices, keep
-  // their state, pins that
-  // differ between the scenes are set, colliders that differ take the new scene's place and keys; what
+  // their state, pins and cuts that differ between the scenes are set, colliders that differ take the new
+  // scene's place and keys; what
   // they meet there is moved out gently, as at a start.
   // Otherwise it starts anew. What is grabbed or carried is let go. Throws as the constructor does,
   // and then nothing has changed.

@@ -118,7 +118,7 @@ double bytes_of(const Cloth& cloth, const Solver& solver) {
   if (projects && solver.sweep == Sweep::jacobi) each += memory::kJacobi;
   if (solver.order == 2) each += memory::kOrder2;
   if (solver.tethers) each += memory::kTethers;
-  if (cloth.tear_strain > 0) each += memory::kTearing;
+  if (cloth.tear_strain > 0 || !cloth.cuts.empty()) each += memory::kTearing;
   if (!cloth.masses.empty()) each += memory::kMasses;
   if (cloth.self_collision.mode == SelfCollisionMode::particles) each += memory::kParticles;
   if (cloth.self_collision.mode == SelfCollisionMode::surface) each += memory::kSurface;
@@ -148,7 +148,7 @@ double constraint_cost(const Cloth& cloth, const Solver& solver) {
 double substep_cost(const Scene& scene, const Cloth& cloth, const Solver& solver) {
   double each = 0;
   if (cloth.strain_limit > 0) each += cost::kStrainLimit;
-  if (cloth.tear_strain > 0) each += cost::kTearing;
+  if (cloth.tear_strain > 0 || !cloth.cuts.empty()) each += cost::kTearing;
   if (scene.wind.drag > 0 || scene.wind.lift > 0) each += cost::kWind;
   for (const Collider& collider : scene.colliders)
     each += solver.collision_iterations *

@@ -1,6 +1,7 @@
 // What changes while a simulation runs, taken out and put back (Snapshot).
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "physics/frame/measure.h"
 #include "physics/frame/state.h"
@@ -173,6 +174,26 @@ void change_pins(const Cloth& before, const Cloth& after, Snapshot::ClothState& 
   }
 }
 
+using Torn = std::vector<std::array<int, 2>>;
+Torn sorted(Torn torn) {
+  std::sort(torn.begin(), torn.end());
+  return torn;
+}
+
+// What only the old scene's cuts took is whole again; what the new scene's take is gone.
+void change_cuts(const Torn& before, const Torn& after, Torn& torn) {
+  Torn kept, all;
+  const Torn now = sorted(std::move(torn)), old = sorted(before), next = sorted(after);
+  std::set_difference(now.begin(), now.end(), old.begin(), old.end(), std::back_inserter(kept));
+  std::set_union(kept.begin(), kept.end(), next.begin(), next.end(), std::back_inserter(all));
+  torn = std::move(all);
+}
+
+bool same_cuts(const Scene& a, const Scene& b) {
+  return std::equal(a.cloths.begin(), a.cloths.end(), b.cloths.begin(),
+                    [](const Cloth& c, const Cloth& d) { return c.cuts == d.cuts; });
+}
+
 }  // namespace
 
 void Simulation::set_scene(Scene scene) {
@@ -187,6 +208,11 @@ void Simulation::set_scene(Scene scene) {
     for (std::size_t n = 0; n < after.cloths.size(); ++n)
       if (before.cloths[n].pins != after.cloths[n].pins)
         change_pins(before.cloths[n], after.cloths[n], m.cloths[n]);
+    if (!same_cuts(before, after)) {
+      const Snapshot old = Simulation(before, state_->options).snapshot(), fresh = next.snapshot();
+      for (std::size_t n = 0; n < after.cloths.size(); ++n)
+        change_cuts(old.cloths[n].torn, fresh.cloths[n].torn, m.cloths[n].torn);
+    }
     m.paths.clear();
     for (const Collider& c : after.colliders) m.paths.push_back(c.keys);
     for (Snapshot::ClothState& c : m.cloths) c.inside.resize(after.colliders.size());

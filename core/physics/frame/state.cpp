@@ -9,6 +9,7 @@
 #include "physics/contact/contact_reaction.h"
 #include "physics/contact/start_inside.h"
 #include "physics/model/clamp_to_int.h"
+#include "physics/model/lattice/cuts.h"
 #include "physics/model/lattice/stability.h"
 #include "physics/model/path.h"
 
@@ -67,6 +68,14 @@ FarPins far_pins(const Cloth& cloth, double distance) {
     far.most = std::max(far.most, length);
   }
   return far;
+}
+
+// Whether a cut of the scene passes between two neighbours.
+bool crosses_sheet(const CutLine& cut, const Grid& grid) {
+  bool crosses = false;
+  for (const auto& [di, dj] : {std::pair(1, 0), {0, 1}})
+    for_each_cut({cut}, grid, di, dj, [&](int, int, double) { crosses = true; });
+  return crosses;
 }
 
 }  // namespace
@@ -182,6 +191,9 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
                       (far.count == 1 ? " pin starts " : " pins start up to ") + number(far.most) +
                       " m from where the sheet has " + (far.count == 1 ? "it" : "them") +
                       " (a pin with keys begins where they say); the sheet is stretched there");
+    for (std::size_t k = 0; k < cloth.cuts.size(); ++k)
+      if (!crosses_sheet(cloth.cuts[k], cloth.grid))
+        notes.push_back(which + ": cut " + std::to_string(k) + " passes between no two particles");
     if (cloth.self_collision.mode != SelfCollisionMode::off &&
         cloth.self_collision.thickness > spacing)
       notes.push_back(which + ": the thickness of " + number(cloth.self_collision.thickness) +

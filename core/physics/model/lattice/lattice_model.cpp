@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "physics/model/keyed_pins.h"
+#include "physics/model/lattice/cuts.h"
 #include "physics/model/lattice/plain_rows.h"
 #include "weft/shape.h"
 
@@ -34,13 +35,23 @@ LatticeModel::LatticeModel(const Scene& scene, int index, Method method, std::ui
   for (const Collider& c : scene.colliders) first_moves_.push_back(displacement(c, 0));
   const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                [](const Collider& c) { return c.cuts; });
-  if (cut || parts_.cloth.tear_strain > 0) allow_tearing();
+  if (cut || parts_.cloth.tear_strain > 0 || !parts_.cloth.cuts.empty()) allow_tearing();
+  if (!parts_.cloth.cuts.empty()) tearing_->end_all(cut_constraints());
+}
+
+std::vector<Joined> LatticeModel::cut_constraints() const {
+  const Grid& grid = parts_.cloth.grid;
+  std::vector<Joined> cut;
+  for (const Stencil& f : stencils_)
+    for_each_cut(parts_.cloth.cuts, grid, f.di, f.dj, [&](int i, int j, double) {
+      cut.push_back({particle_number(grid, i, j), particle_number(grid, i + f.di, j + f.dj)});
+    });
+  return cut;
 }
 
 void LatticeModel::allow_tearing() {
   if (tearing_) return;
-  tearing_ = std::make_unique<LatticeTearing>(lattice_, stencils_, parts_.cloth.bending.given(),
-                                              parts_.cloth.tears);
+  tearing_ = std::make_unique<LatticeTearing>(lattice_, stencils_, parts_.cloth);
   parts_.tearing = tearing_.get();
 }
 

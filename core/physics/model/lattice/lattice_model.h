@@ -47,6 +47,7 @@ class LatticeModel final : public ClothModel {
  private:
   void append_forces(StageList& list);
   void append_projections(StageList& list);
+  std::vector<Joined> cut_constraints() const;  // that the cloth's cuts cross
   SurfaceMesh whole_surface() const;
   const BendLinks* bend_links() const { return tearing_ ? tearing_->bend_links() : nullptr; }
   double stretch_energy(const Rows& x, double dt) const;

@@ -1,6 +1,8 @@
 // The tear boundary of a torn cloth (tear_boundary.h).
 #include "physics/model/lattice/tear_boundary.h"
 
+#include "physics/model/lattice/cuts.h"
+
 namespace weft::physics {
 namespace {
 
@@ -12,6 +14,21 @@ bool joined(const LatticeTearing& t, int i, int j, int di, int dj) {
 }
 
 }  // namespace
+
+TearBoundary::TearBoundary(const Cloth& cloth) {
+  for (const auto& [di, dj] : {std::pair(1, 0), {0, 1}, {-1, 1}})
+    for_each_cut(cloth.cuts, cloth.grid, di, dj,
+                 [&, i_step = di, j_step = dj](int i, int j, double share) {
+                   shares_[{i, j, i + i_step, j + j_step}] = float(share);
+                 });
+}
+
+float TearBoundary::share(Site from, Site to) const {
+  if (const auto known = shares_.find({from.i, from.j, to.i, to.j}); known != shares_.end())
+    return known->second;
+  const auto back = shares_.find({to.i, to.j, from.i, from.j});
+  return back != shares_.end() ? 1 - back->second : 0.5f;
+}
 
 void TearBoundary::update(const LatticeTearing& tearing, const Lattice& lattice) {
   if (version_ != tearing.version()) rebuild(tearing);
@@ -47,28 +64,28 @@ void TearBoundary::add_triangle(const LatticeTearing& t, const Site (&corner)[3]
     return std::pair(share * float(q.i - p.i), share * float(q.j - p.j));
   };
   const auto own = [&](const Site& p) { return point(t, p, 0, 0); };
-  // The middle of the edge to q, as seen from p.
-  const auto middle = [&](const Site& p, const Site& q) {
-    const auto [along, down] = far(p, q, 0.5f);
+  // Where the tear crosses the edge to q, as seen from p.
+  const auto end = [&](const Site& p, const Site& q) {
+    const auto [along, down] = far(p, q, share(p, q));
     return point(t, p, along, down);
   };
   for (int n = 0; n < 3; ++n) {
     const Site a = corner[n], b = corner[(n + 1) % 3], c = corner[(n + 2) % 3];
     const bool ab = gone >> n & 1, bc = gone >> (n + 1) % 3 & 1, ca = gone >> (n + 2) % 3 & 1;
     if (ab && !bc && !ca) {
-      add({own(a), middle(a, b), own(c)});
-      add({middle(b, a), own(b), own(c)});
+      add({own(a), end(a, b), own(c)});
+      add({end(b, a), own(b), own(c)});
     } else if (ab && ca && !bc) {
-      add({own(a), middle(a, b), middle(a, c)});
-      const auto near_b = middle(b, a);
+      add({own(a), end(a, b), end(a, c)});
+      const auto near_b = end(b, a);
       add({near_b, own(b), own(c)});
-      add({near_b, own(c), middle(c, a)});
+      add({near_b, own(c), end(c, a)});
     } else if (ab && bc && ca) {
       const auto [along_b, down_b] = far(a, b, 1 / 3.0f);
       const auto [along_c, down_c] = far(a, c, 1 / 3.0f);
       const auto center = point(t, a, along_b + along_c, down_b + down_c);
-      add({own(a), middle(a, b), center});
-      add({own(a), center, middle(a, c)});
+      add({own(a), end(a, b), center});
+      add({own(a), center, end(a, c)});
     }
   }
 }

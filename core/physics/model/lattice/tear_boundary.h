@@ -1,8 +1,9 @@
 // The seams of a torn cloth: what each side keeps of the triangles that a tear passes through.
 //
-// A tear crosses the edges whose constraints are gone in their middles. Each particle draws its own
-// share of such a triangle, up to where the middle of the edge would lie if the sheet on its side went
-// on as it is, so that a tear shows as a line that opens, not as a row of missing triangles:
+// A tear crosses the edges whose constraints are gone in their middles, a cut of the scene where its
+// line does. Each particle draws its own share of such a triangle, up to where that point of the edge
+// would lie if the sheet on its side went on as it is, so that a tear shows as a line that opens, not
+// as a row of missing triangles:
 //
 // Of a triangle a, b, c without edge ab each of a and b has a half, up to c; without ab and ca the
 // share of a is cut off from what b and c keep; without any edge each corner has its third.
@@ -12,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -21,6 +23,7 @@ namespace weft::physics {
 
 class TearBoundary {
  public:
+  explicit TearBoundary(const Cloth& cloth);
   // Follows the tearing, if its version has changed, and puts all points where they are now.
   void update(const LatticeTearing& tearing, const Lattice& lattice);
 
@@ -45,6 +48,7 @@ class TearBoundary {
   };
 
   void rebuild(const LatticeTearing& tearing);
+  float share(Site from, Site to) const;  // of the way to a neighbour, at which the tear crosses
   void add_triangle(const LatticeTearing& tearing, const Site (&corner)[3], unsigned gone);
   // A point `along` and `down` steps from a particle, as the sheet lies on its side; none where it has
   // no constraint to tell.
@@ -52,6 +56,8 @@ class TearBoundary {
                                      float down);
   void add(const std::array<std::optional<std::uint32_t>, 3>& corners);
 
+  // Of edges that cuts cross, from [column, row] to [column, row].
+  std::map<std::array<int, 4>, float> shares_;
   std::uint64_t version_ = 0;
   std::vector<Point> points_;
   std::vector<std::uint32_t> owners_;

@@ -9,19 +9,18 @@
 
 namespace weft::physics {
 
-LatticeTearing::LatticeTearing(const Lattice& l, std::vector<Stencil>& stencils, bool bends,
-                               Tears tears)
+LatticeTearing::LatticeTearing(const Lattice& l, std::vector<Stencil>& stencils, const Cloth& cloth)
     : lattice_(l),
       columns_(l.columns),
       rows_(l.rows),
       stride_(l.stride),
-      tears_(tears),
+      tears_(cloth.tears),
       stencils_(stencils),
-      bend_links_(bends ? std::make_unique<BendLinks>(l) : nullptr),
+      bend_links_(cloth.bending > 0 ? std::make_unique<BendLinks>(l) : nullptr),
       died_(static_cast<std::size_t>(l.rows)),
       followed_(died_),
       squares_(static_cast<std::size_t>(l.columns - 1) * (l.rows - 1)),
-      boundary_(tears == Tears::split ? std::make_unique<TearBoundary>() : nullptr) {
+      boundary_(tears_ == Tears::split ? std::make_unique<TearBoundary>(cloth) : nullptr) {
   for (Stencil& f : stencils_) {
     links_.push_back(std::make_unique<Links>(rows_, stride_, f.per_row(columns_)));
     f.links = links_.back().get();

@@ -26,9 +26,8 @@ class TearBoundary;
 
 class LatticeTearing final : public Tearing {
  public:
-  // Gives every stencil of a whole cloth its links; `bends`: it has bending too. `tears`: whether the
-  // boundary of tears is shown.
-  LatticeTearing(const Lattice& lattice, std::vector<Stencil>& stencils, bool bends, Tears tears);
+  // Gives every stencil of a whole cloth its links.
+  LatticeTearing(const Lattice& lattice, std::vector<Stencil>& stencils, const Cloth& cloth);
   ~LatticeTearing() override;
 
   // Notes that constraints of row j died. Rows may be worked on side by side.
