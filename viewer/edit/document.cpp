@@ -1,6 +1,7 @@
 // Checked changes, history, files.
 #include "edit/document.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "scene/document.h"
@@ -24,7 +25,7 @@ fs::file_time_type time_of(const std::string& path) {
 }
 
 std::string line_of(const Fault& fault) {
-  return fault.place + ": " + fault.what +
+  return (fault.place.empty() ? "" : fault.place + ": ") + fault.what +
          (fault.allowed.empty() ? "" : " (" + fault.allowed + ")");
 }
 
@@ -33,7 +34,8 @@ std::string line_of(const Fault& fault) {
 std::string fault_lines(const std::string& file, const std::vector<Fault>& faults) {
   std::string lines;
   for (const Fault& fault : faults)
-    lines += (lines.empty() ? "" : "\n") + printable(file) + ":" + printable(line_of(fault));
+    lines += (lines.empty() ? "" : "\n") + printable(file) + (fault.place.empty() ? ": " : ":") +
+             printable(line_of(fault));
   return lines;
 }
 
@@ -60,12 +62,13 @@ std::vector<Fault> Document::open(const std::string& path_or_name,
   time_ = time_of(path_);
   revision_ = saved_revision_ = ++revisions_;
   history_.clear();
-  history_.push_back({json_, "", revision_});
+  history_.push_back({json_, "", "", revision_});
   position_ = 0;
   return {};
 }
 
-std::string Document::set(const std::vector<Change>& changes, bool joined) {
+std::string Document::set(const std::vector<Change>& changes, bool joined,
+                          const std::string& name) {
   Json next = json_;
   try {
     for (const Change& change : changes) next[Json::json_pointer(change.pointer)] = change.value;
@@ -84,13 +87,45 @@ std::string Document::set(const std::vector<Change>& changes, bool joined) {
   history_.resize(position_ + 1);
   const bool join = joined && position_ > 0 && history_.back().place == place;
   if (join) history_.pop_back();
-  history_.push_back({next, place, ++revisions_});
+  history_.push_back({next, place, name.empty() ? name_of(place) : name, ++revisions_});
   if (history_.size() > kMostStates) history_.erase(history_.begin());
   position_ = history_.size() - 1;
   json_ = std::move(next);
   scene_ = std::move(scene);
   revision_ = revisions_;
   return "";
+}
+
+// "/cloths/0/stiffness/shear" is the cloth's stiffness shear, "/colliders/2/sphere/radius" sphere 2's radius.
+std::string Document::name_of(const std::string& pointer) const {
+  std::string name;
+  const auto add = [&](std::string word) {
+    std::replace(word.begin(), word.end(), '_', ' ');
+    if (!word.empty()) name += (name.empty() ? "" : " ") + word;
+  };
+  std::vector<std::string> words;
+  for (std::size_t at = 1; at <= pointer.size();) {
+    const std::size_t end = std::min(pointer.find('/', at), pointer.size());
+    words.push_back(pointer.substr(at, end - at));
+    at = end + 1;
+  }
+  const bool listed = words.size() > 1 && (words[0] == "cloths" || words[0] == "colliders");
+  if (!listed) {
+    for (const std::string& word : words) add(word);
+    return name;
+  }
+  const bool cloth = words[0] == "cloths";
+  const bool only = json_[words[0]].size() == 1;
+  std::string kind = cloth ? "cloth" : "body";
+  for (const char* shape : kShapeNames)
+    if (!cloth && words[1] != "-" &&
+        json_[Json::json_pointer("/colliders/" + words[1])].contains(shape))
+      kind = shape;
+  add(kind);
+  if (!only && words[1] != "-") add(words[1]);
+  for (std::size_t k = 2; k < words.size(); ++k)
+    if (words[k] != kind) add(words[k]);
+  return name;
 }
 
 void Document::take(std::size_t position) {
@@ -122,7 +157,7 @@ void Document::redo() {
 }
 
 std::string Document::next_undo() const {
-  return can_undo() ? history_[position_].place : "";
+  return can_undo() ? history_[position_].name : "";
 }
 
 std::string Document::text_for(const std::string& path) const {

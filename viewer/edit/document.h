@@ -32,18 +32,20 @@ class Document {
   std::uint64_t revision() const { return revision_; }
 
   // Changes one value by JSON pointer, or several as one step; "" or what is wrong and allowed.
-  // `joined`: part of the same movement as the last change of the same place, undone together.
+  // `joined`: part of the same movement as the last change of the same place, undone together. `name`: what
+  // a person calls the change, "" for the name of its place.
   struct Change {
     std::string pointer;
     text::Json value;
   };
-  std::string set(const std::vector<Change>& changes, bool joined = false);
+  std::string set(const std::vector<Change>& changes, bool joined = false,
+                  const std::string& name = "");
 
   bool can_undo() const { return position_ > 0; }
   bool can_redo() const { return position_ + 1 < history_.size(); }
   void undo();
   void redo();
-  std::string next_undo() const;  // the place that undo would change
+  std::string next_undo() const;  // the name of what undo would take back
 
   // Throws WriteError.
   void save(const std::string& path);
@@ -62,7 +64,7 @@ class Document {
  private:
   struct State {
     text::Json json;
-    std::string place;
+    std::string place, name;
     std::uint64_t revision;
   };
   void take(std::size_t position);
@@ -70,6 +72,7 @@ class Document {
   std::vector<Fault> read_meshes(Scene& scene);
   // The scene as a file; meshes in its folder or below go by relative names, as they came.
   std::string text_for(const std::string& path) const;
+  std::string name_of(const std::string& pointer) const;
   std::string keep_path() const;
 
   text::Json json_;

@@ -3,6 +3,8 @@
 
 #include <imgui.h>
 
+#include <set>
+
 namespace weft::viewer {
 
 namespace {
@@ -10,6 +12,27 @@ namespace {
 constexpr double kPull = 2000;  // N/m, of the hand's spring
 constexpr float kTurn = 3.2f;   // rad, by a drag over the picture's height
 constexpr std::size_t kMostMarks = 400;
+constexpr float kStep = 4;   // pixels, of a stroke
+constexpr float kClick = 5;  // pixels: a lasso no larger is a click
+
+// Whether the point lies in the polygon (even-odd rule).
+bool inside(const std::vector<std::array<float, 2>>& polygon, float x, float y) {
+  bool in = false;
+  for (std::size_t k = 0, l = polygon.size() - 1; k < polygon.size(); l = k++) {
+    const auto [ax, ay] = polygon[k];
+    const auto [bx, by] = polygon[l];
+    if ((ay > y) != (by > y) && x < (bx - ax) * (y - ay) / (by - ay) + ax) in = !in;
+  }
+  return in;
+}
+
+void draw_path(ImDrawList& list, const std::vector<std::array<float, 2>>& points, ImU32 color,
+               bool closed) {
+  for (std::size_t k = 1; k < points.size(); ++k)
+    list.AddLine({points[k - 1][0], points[k - 1][1]}, {points[k][0], points[k][1]}, color, 2);
+  if (closed && points.size() > 2)
+    list.AddLine({points.back()[0], points.back()[1]}, {points[0][0], points[0][1]}, color, 1);
+}
 
 }  // namespace
 
@@ -25,7 +48,7 @@ void Hands::update(Workspace& workspace, const Area& area, const Pointer& pointe
     workspace.camera.orbit(kTurn * pointer.dx / area.height, kTurn * pointer.dy / area.height);
   if (!free) drag(workspace, area, pointer);
   if (pointer.released || (!pointer.left && !pointer.pressed && drag_ != Drag::none))
-    release(workspace);
+    release(workspace, area);
 }
 
 void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer) {
@@ -37,8 +60,8 @@ void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer
   drag_ = Drag::orbit;
   const auto cloth = pick_cloth(workspace.frame_data(), ray);
   if (tool == Tool::pin || pointer.shift) {
-    if (cloth) toggle_pin(workspace, *cloth);
-    if (cloth) drag_ = Drag::none;
+    drag_ = Drag::lasso;
+    lasso_ = {{pointer.x, pointer.y}};
     return;
   }
   if (tool == Tool::ball) {
@@ -48,7 +71,10 @@ void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer
   }
   if (tool == Tool::cut) {
     drag_ = Drag::cut;
-    stroke_ = {{pointer.x, pointer.y, cloth}};
+    stroke_.begin(pointer.x, pointer.y);
+    joined_ = false;
+    cuts_.clear();
+    for (const Cloth& c : workspace.document().scene().cloths) cuts_.push_back(c.cuts);
     return;
   }
   if (tool == Tool::move && pusher.take_arrow(workspace, area, pointer.x, pointer.y)) {
@@ -73,18 +99,21 @@ void Hands::drag(Workspace& workspace, const Area& area, const Pointer& pointer)
   const Ray ray = ray_through(workspace.camera, area, pointer.x, pointer.y);
   if (drag_ == Drag::cloth) grab(workspace, ray);
   if (drag_ == Drag::body) pusher.drag(workspace, ray);
-  if (drag_ != Drag::cut) return;
-  const StrokePoint& last = stroke_.back();
-  if (std::hypot(pointer.x - last.x, pointer.y - last.y) < 6) return;
-  const auto hit = pick_cloth(workspace.frame_data(), ray);
-  stroke_.push_back({pointer.x, pointer.y, hit});
-  cut(workspace);
+  const auto moved = [&](const std::array<float, 2>& from) {
+    return std::hypot(pointer.x - from[0], pointer.y - from[1]) >= kStep;
+  };
+  if (drag_ == Drag::lasso && moved(lasso_.back())) lasso_.push_back({pointer.x, pointer.y});
+  if (drag_ == Drag::cut && moved(stroke_.points().back()) &&
+      stroke_.go_on(workspace.frame_data(), workspace.camera, area, pointer.x, pointer.y))
+    cut(workspace);
 }
 
-void Hands::release(Workspace& workspace) {
+void Hands::release(Workspace& workspace, const Area& area) {
+  if (drag_ == Drag::lasso) take_lasso(workspace, area);
   if (drag_ == Drag::cloth) workspace.give(Input{.kind = Input::Kind::release});
   if (drag_ == Drag::body) pusher.let_go(workspace);
-  stroke_.clear();
+  stroke_.end();
+  lasso_.clear();
   drag_ = Drag::none;
 }
 
@@ -100,25 +129,68 @@ void Hands::grab(Workspace& workspace, const Ray& ray) {
   workspace.give(input);
 }
 
-// Between the last two points of the stroke that lie on the cloth.
+// The stroke so far, as one change of the scene.
 void Hands::cut(Workspace& workspace) {
-  const auto& from = stroke_[stroke_.size() - 2].hit;
-  const auto& to = stroke_.back().hit;
-  if (!from || !to || from->cloth != to->cloth) return;
-  const auto& cloths = workspace.frame_data().scene->cloths;
-  Input input{.kind = Input::Kind::cut};
-  input.a = workspace.in_scene(from->point);
-  input.b = workspace.in_scene(to->point);
-  input.amount = 0.2 * spacing_of(cloths[static_cast<std::size_t>(to->cloth)]);
-  workspace.give(input);
+  std::vector<Document::Change> changes;
+  for (std::size_t c = 0; c < cuts_.size(); ++c) {
+    std::vector<CutLine> all = cuts_[c];
+    all.insert(all.end(), stroke_.lines(c).begin(), stroke_.lines(c).end());
+    changes.push_back({"/cloths/" + std::to_string(c) + "/cuts", all});
+  }
+  joined_ = workspace.edit(changes, joined_, "cut") || joined_;
 }
 
-void Hands::toggle_pin(Workspace& workspace, const ClothHit& hit) const {
-  const ClothCopy& cloth = workspace.frame_data().cloths[static_cast<std::size_t>(hit.cloth)];
-  const bool held = cloth.inverse_mass[cloth.at(hit.particle)] == 0;
-  Input input{.kind = held ? Input::Kind::unpin : Input::Kind::pin};
-  input.cloth = hit.cloth, input.particle = hit.particle;
-  workspace.give(input);
+// A small one is a click on the nearest particle.
+void Hands::take_lasso(Workspace& workspace, const Area& area) const {
+  const FrameData& frame_data = workspace.frame_data();
+  std::vector<std::vector<int>> chosen(frame_data.cloths.size());
+  const float x = lasso_.front()[0], y = lasso_.front()[1];
+  const bool click = std::all_of(lasso_.begin(), lasso_.end(), [&](const auto& p) {
+    return std::hypot(p[0] - x, p[1] - y) <= kClick;
+  });
+  if (click) {
+    const auto hit = pick_cloth(frame_data, ray_through(workspace.camera, area, x, y));
+    if (hit) chosen[static_cast<std::size_t>(hit->cloth)] = {hit->particle};
+  } else {
+    const Projector project(workspace.camera, area);
+    for (std::size_t c = 0; c < chosen.size(); ++c)
+      for (int p = 0; p < frame_data.cloths[c].columns * frame_data.cloths[c].rows; ++p)
+        if (const ScreenPoint at = project(frame_data.cloths[c].position(p));
+            at.seen && inside(lasso_, at.x, at.y))
+          chosen[c].push_back(p);
+  }
+  toggle_pins(workspace, chosen);
+}
+
+void Hands::toggle_pins(Workspace& workspace,
+                        const std::vector<std::vector<int>>& particles) const {
+  const Scene& scene = workspace.document().scene();
+  std::vector<Document::Change> changes;
+  std::size_t pinned = 0, all = 0;
+  std::vector<std::set<int>> held(particles.size());
+  for (std::size_t c = 0; c < particles.size() && c < scene.cloths.size(); ++c) {
+    for (const Pin& pin : scene.cloths[c].pins)
+      held[c].insert(particle_number(scene.cloths[c].grid, pin.i, pin.j));
+    for (const int p : particles[c]) pinned += held[c].count(p);
+    all += particles[c].size();
+  }
+  const bool release = all > 0 && pinned == all;
+  for (std::size_t c = 0; c < particles.size() && c < scene.cloths.size(); ++c) {
+    const std::string place = "/cloths/" + std::to_string(c) + "/pins";
+    const Grid& grid = scene.cloths[c].grid;
+    const std::set<int> chosen(particles[c].begin(), particles[c].end());
+    text::Json pins = text::Json::array();
+    const text::Json& before = workspace.document().json()[text::Json::json_pointer(place)];
+    for (std::size_t k = 0; k < before.size(); ++k) {
+      const Pin& pin = scene.cloths[c].pins[k];
+      if (!release || !chosen.contains(particle_number(grid, pin.i, pin.j)))
+        pins.push_back(before[k]);
+    }
+    for (const int p : chosen)
+      if (!release && !held[c].contains(p)) pins.push_back({p % grid.nx, p / grid.nx});
+    if (!chosen.empty()) changes.push_back({place, pins});
+  }
+  if (!changes.empty()) workspace.edit(changes, false, release ? "unpin" : "pin");
 }
 
 // A ball on a path of free flight from the eye, p + v t + g t²/2, until it lies on the floor.
@@ -145,7 +217,7 @@ void Hands::shoot(Workspace& workspace, const Ray& ray) const {
                         {"friction", 0.3},
                         {"offset", 0.02 * radius},
                         {"keys", keys}};
-  workspace.edit({{"/colliders/-", ball}});
+  workspace.edit({{"/colliders/-", ball}}, false, "ball");
 }
 
 void Hands::draw(const Workspace& workspace, const Area& area, ImDrawList& list) const {
@@ -167,9 +239,8 @@ void Hands::draw(const Workspace& workspace, const Area& area, ImDrawList& list)
     if (a.seen && b.seen) list.AddLine({a.x, a.y}, {b.x, b.y}, IM_COL32(255, 255, 255, 160), 1.5f);
     if (a.seen) list.AddCircle({a.x, a.y}, 7, IM_COL32(255, 255, 255, 220), 0, 2);
   }
-  for (std::size_t k = 1; k < stroke_.size(); ++k)
-    list.AddLine({stroke_[k - 1].x, stroke_[k - 1].y}, {stroke_[k].x, stroke_[k].y},
-                 IM_COL32(255, 107, 107, 230), 2);
+  draw_path(list, stroke_.points(), IM_COL32(255, 107, 107, 230), false);
+  draw_path(list, lasso_, IM_COL32(255, 209, 102, 230), true);
   if (tool == Tool::move) pusher.draw(workspace, area, list);
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "hands/cut_stroke.h"
 #include "hands/pick.h"
 #include "hands/pusher.h"
 #include "window/workspace.h"
@@ -37,25 +38,26 @@ class Hands {
   Pusher pusher;  // moves what is chosen
 
  private:
-  enum class Drag { none, orbit, pan, cloth, body, cut };
+  enum class Drag { none, orbit, pan, cloth, body, cut, lasso };
 
   void press(Workspace& workspace, const Area& area, const Pointer& pointer);
   void drag(Workspace& workspace, const Area& area, const Pointer& pointer);
-  void release(Workspace& workspace);
+  void release(Workspace& workspace, const Area& area);
   void grab(Workspace& workspace, const Ray& ray);
   void cut(Workspace& workspace);
-  void toggle_pin(Workspace& workspace, const ClothHit& hit) const;
+  // Pins these particles of the cloths, or lets them go where all of them are pinned.
+  void toggle_pins(Workspace& workspace, const std::vector<std::vector<int>>& particles) const;
+  void take_lasso(Workspace& workspace, const Area& area) const;
   void shoot(Workspace& workspace, const Ray& ray) const;
 
   Drag drag_ = Drag::none;
   bool panning_ = false;
   ClothHit held_;
   Vec3f target_;
-  struct StrokePoint {
-    float x, y;
-    std::optional<ClothHit> hit;
-  };
-  std::vector<StrokePoint> stroke_;
+  CutStroke stroke_;
+  std::vector<std::vector<CutLine>> cuts_;  // of the cloths, before the stroke
+  bool joined_ = false;                     // the stroke has changed the scene already
+  std::vector<std::array<float, 2>> lasso_;
 };
 
 }  // namespace weft::viewer

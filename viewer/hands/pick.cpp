@@ -21,7 +21,7 @@ ScreenPoint Projector::operator()(Vec3f p) const {
   const float w = row(3);
   if (w <= 0) return {};
   return {area_.x + area_.width * 0.5f * (1 + row(0) / w),
-          area_.y + area_.height * 0.5f * (1 - row(1) / w), true};
+          area_.y + area_.height * 0.5f * (1 - row(1) / w), w, true};
 }
 
 namespace {

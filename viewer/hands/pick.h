@@ -20,9 +20,9 @@ struct Area {
 
 Ray ray_through(const Camera& camera, const Area& area, float x, float y);
 
-// The point in the window, and whether it lies before the eye.
+// The point in the window, how far it lies before the eye [m], and whether it lies there at all.
 struct ScreenPoint {
-  float x = 0, y = 0;
+  float x = 0, y = 0, depth = 0;
   bool seen = false;
 };
 class Projector {

@@ -119,7 +119,7 @@ void Pusher::let_go(Workspace& workspace) {
     changes.push_back({place + "/capsule/b", capsule->b});
   if (const Cylinder* cylinder = std::get_if<Cylinder>(&there))
     changes.push_back({place + "/cylinder/b", cylinder->b});
-  workspace.edit(changes);
+  workspace.edit(changes, false, std::string("move ") + kShapeNames[collider.shape.index()]);
 }
 
 void Pusher::carry(Workspace& workspace, Vec3f velocity) {

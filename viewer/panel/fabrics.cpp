@@ -19,7 +19,7 @@ void draw_fabrics(Workspace& workspace) {
       std::vector<Document::Change> changes;
       for (std::size_t c = 0; c < workspace.document().scene().cloths.size(); ++c)
         for (Document::Change& change : changes_to(fabric, c)) changes.push_back(std::move(change));
-      workspace.edit(changes);
+      workspace.edit(changes, false, std::string(fabric.name));
     }
     mark(std::string(fabric.name));
     char about[160];

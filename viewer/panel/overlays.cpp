@@ -34,8 +34,8 @@ void draw_tools(Hands& hands, const Area& area, const Keys& keys) {
   };
   static constexpr Entry kEntries[] = {
       {"Drag", Tool::hand, Action::hand, "Pull the cloth or a body with the left button"},
-      {"Pin", Tool::pin, Action::pin, "Click on the cloth: holds a point, or lets it go"},
-      {"Cut", Tool::cut, Action::cut, "Draw a stroke over the cloth"},
+      {"Pin", Tool::pin, Action::pin, "Click on the cloth: holds a point, or lets it go; drag: a lasso around several"},
+      {"Cut", Tool::cut, Action::cut, "Draw a stroke: severs all cloth that it passes over"},
       {"Move", Tool::move, Action::move,
        "Choose a body and move it by its arrows or the arrow keys; choose the cloth to carry it"},
       {"Ball", Tool::ball, Action::ball, "Click to shoot a ball into the scene"},

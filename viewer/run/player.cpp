@@ -16,6 +16,20 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// Whether every cut of the second scene is in the first, or the beginning of one there.
+bool contains_cuts(const Scene& scene, const Scene& other) {
+  if (scene.cloths.size() != other.cloths.size()) return true;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    for (const CutLine& cut : other.cloths[c].cuts) {
+      const auto goes_on = [&](const CutLine& line) {
+        return line.size() >= cut.size() && std::equal(cut.begin(), cut.end(), line.begin());
+      };
+      const auto& lines = scene.cloths[c].cuts;
+      if (std::none_of(lines.begin(), lines.end(), goes_on)) return false;
+    }
+  return true;
+}
+
 }  // namespace
 
 Player::Player(Scene scene, const Options& options, bool hashes)
@@ -81,9 +95,11 @@ void Player::change(Scene scene) {
       start(std::move(scene));
       return;
     }
+    const bool heals = !contains_cuts(scene, scene_);
     Input input{.kind = Input::Kind::set_scene};
     input.scene = std::make_shared<const Scene>(scene);
     give(input);
+    if (heals) lay_back();
     if (simulation_->frame() == 0) finish_export();  // another grid
     const bool same = scene.cloths.size() == scene_.cloths.size() &&
                       scene.colliders.size() == scene_.colliders.size();
@@ -95,6 +111,29 @@ void Player::change(Scene scene) {
     ++serial_;
     next_measure_ = 0;
   });
+}
+
+// A cut that is taken back: a cloth lies as it did before, where that is kept. Springs that join what has
+// fallen apart would throw it about.
+void Player::lay_back() {
+  weft::Snapshot now = simulation_->snapshot();
+  bool found = false;
+  for (std::size_t c = 0; c < now.cloths.size(); ++c)
+    for (int back = 0; back < rewind_.size(); ++back) {
+      const weft::Snapshot& then = rewind_.at(back);
+      if (then.cloths.size() != now.cloths.size() || then.origin != now.origin ||
+          then.cloths[c].positions.size() != now.cloths[c].positions.size() ||
+          then.cloths[c].torn.size() > now.cloths[c].torn.size())
+        continue;
+      now.cloths[c].positions = then.cloths[c].positions;
+      now.cloths[c].velocities = then.cloths[c].velocities;
+      found = found || back > 0;
+      break;
+    }
+  if (!found) return;
+  finish_recording();  // no input says this
+  simulation_->restore(now);
+  ++change_;
 }
 
 void Player::set_options(int threads, Simd simd) {

@@ -63,6 +63,7 @@ class Player {
   void show_scene();
   void restart_clock();
   void leave_past();
+  void lay_back();
   void measure_sometimes();
   void keep_state();
 

@@ -53,6 +53,7 @@ void Log::write(const Workspace& workspace, const View& view, const Hands& hands
                         {"torn", !s.cloths.empty() && s.cloths[0].torn},
                         {"triangles", s.cloths.empty() ? 0 : s.cloths[0].triangles.size()},
                         {"bodies", bodies},
+                        {"undo", workspace.document().next_undo()},
                         {"edited", workspace.document().edited()},
                         {"stiffness", s.scene->cloths[0].stiffness.structural},
                         {"eye", {eye.x, eye.y, eye.z}},

@@ -105,8 +105,9 @@ void Workspace::save(const std::string& path) {
   }
 }
 
-bool Workspace::edit(const std::vector<Document::Change>& changes, bool joined) {
-  const std::string wrong = document_.set(changes, joined);
+bool Workspace::edit(const std::vector<Document::Change>& changes, bool joined,
+                     const std::string& name) {
+  const std::string wrong = document_.set(changes, joined, name);
   if (!wrong.empty()) messages.warn("Not changed: " + wrong, now_);
   return wrong.empty();
 }

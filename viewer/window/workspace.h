@@ -29,7 +29,9 @@ class Workspace {
   void save(const std::string& path);
 
   // Changes values of the scene, checked; the simulation goes on with them. False when refused.
-  bool edit(const std::vector<Document::Change>& changes, bool joined = false);
+  // `name`: for undo (Document::set).
+  bool edit(const std::vector<Document::Change>& changes, bool joined = false,
+            const std::string& name = "");
   void undo();
   void redo();
   void set_options(int threads, Simd simd);
@@ -86,7 +88,7 @@ class Workspace {
   float aspect_ = 1.5f;
   int threads_ = 0;
   Simd simd_ = Simd::best;
-  bool opening_ = true;          // the next new scene is shown from its start
+  bool opening_ = false;         // the next new scene is shown from its start
   std::uint64_t serial_ = 0;     // of the scene that is shown
   std::uint64_t simulated_ = 0;  // revision that the simulation has, or was told of
   bool telling_ = false;         // a change is on its way
