@@ -19,6 +19,7 @@ uniform vec3 u_back_color;  // the other side
 uniform float u_roughness;
 uniform float u_metallic;
 uniform float u_translucency;  // share of light that shines through (cloth)
+uniform float u_two_sided;     // 1: cloth, whose back is seen as well, 0: a closed body
 uniform vec3 u_parts;          // ambient, diffuse, specular: 1 on, 0 off
 uniform float u_shininess;
 uniform float u_normal_scale;
@@ -94,8 +95,10 @@ Surface seen_surface() {
   s.position = v_position;
   s.view = normalize(u_eye.xyz - v_position);
   s.normal = normalize(v_normal);
-  s.back = dot(s.normal, s.view) < 0.0;
+  // The triangle tells the side: normals between vertices turn away before the surface does.
+  s.back = u_two_sided > 0.5 && !gl_FrontFacing;
   if (s.back) s.normal = -s.normal;
+  s.normal = normalize(s.normal + s.view * max(0.0, 0.02 - dot(s.normal, s.view)));
   return s;
 }
 

@@ -162,7 +162,7 @@ class Screen {
   }
   // Ends the viewer by its own key; its exit code, 128 + n for signal n.
   int quit() {
-    if (viewer_ > 0) key("Escape");
+    if (viewer_ > 0) key("ctrl+q");
     return finish();
   }
   pid_t viewer() const {

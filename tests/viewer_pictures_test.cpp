@@ -129,6 +129,20 @@ TEST(Pictures, EveryShippedSceneIsShown) {
   }
 }
 
+TEST(Pictures, FramesAreDecimal) {
+  const fs::path out = fs::temp_directory_path() / "weft_viewer_decimal.png";
+  const auto draw = [&](const char* frames) {
+    EXPECT_EQ(run("sphere --headless --size 64x64 --frames " + std::string(frames) + " --out " +
+                  out.string()),
+              0)
+        << frames;
+    return bytes_of(out);
+  };
+  EXPECT_EQ(draw("090"), draw("90"));
+  EXPECT_EQ(draw("000"), draw("0"));
+  fs::remove(out);
+}
+
 TEST(Pictures, WrongWordsAreRefused) {
   EXPECT_EQ(run("sphere --headless"), 2);
   EXPECT_EQ(run("sphere --headless --out a.png --shader plaid"), 2);

@@ -178,6 +178,141 @@ TEST_F(Window, ALassoPinsAndLetsGo) {
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 
+double apart(const Json& a, const Json& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) sum += std::pow(a[k].get<double>() - b[k].get<double>(), 2);
+  return std::sqrt(sum);
+}
+
+TEST_F(Window, TheCameraLooksFromEverySideAndComesHome) {
+  Screen screen(folder);
+  screen.open("hello --paused");
+  const Json home = screen.now();
+  const auto view = [&](const std::string& key,
+                        const std::function<bool(double, double, double)>& is) {
+    screen.key(key);
+    return screen.wait(key, [&](const Json& now) {
+      double from[3];
+      for (std::size_t k = 0; k < 3; ++k)
+        from[k] = (now["eye"][k].get<double>() - now["target"][k].get<double>()) /
+                  apart(now["eye"], now["target"]);
+      return is(from[0], from[1], from[2]);
+    });
+  };
+  view("alt+1", [](double, double, double z) { return z > 0.99; });
+  view("alt+2", [](double x, double, double) { return x > 0.99; });
+  const std::string side = screen.picture();
+  view("alt+3", [](double, double y, double) { return y > 0.99; });
+  screen.wait_picture("the cloth from above",
+                      [&](const std::string& now) { return difference(now, side) > 1; });
+
+  // Turned about what is clicked, nearer to what is under the pointer.
+  screen.key("Home");
+  screen.wait("home", [&](const Json& now) { return apart(now["eye"], home["eye"]) < 1e-4; });
+  screen.type("mousemove 1000 300 sleep 0.5 click --repeat 3 --delay 100 4");
+  const Json near = screen.wait("nearer", [&](const Json& now) {
+    return apart(now["eye"], now["target"]) < 0.75 * apart(home["eye"], home["target"]);
+  });
+  EXPECT_GT(apart(near["target"], home["target"]), 0.02);
+  // From below, and home again in the next scene.
+  screen.drag({{1150, 300}, {1150, 150}, {1150, 20}}, "a view from below",
+              [](const Json& now) { return now["eye"][1] < -0.1; });
+  screen.wait_picture("the cloth through the floor", [](const std::string& rgb) {
+    std::size_t red = 0;
+    for (std::size_t k = 0; k + 2 < rgb.size(); k += 3)
+      red += static_cast<unsigned char>(rgb[k]) > 1.3 * static_cast<unsigned char>(rgb[k + 2]);
+    return red > 10000;
+  });
+  screen.key("Next");
+  screen.wait("the next scene from above its floor", [](const Json& now) {
+    return now["scene"] != "hello" && now["eye"][1] > now["target"][1];
+  });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+// Cloth that has fallen out of the scene is not looked after.
+TEST_F(Window, FramingLeavesOutWhatHasFallenAway) {
+  folder.write("fall.json", R"({"weft": 1, "cloths": [
+      {"grid": {"points": [20, 20], "u": [1, 0, 0], "v": [0, -1, 0]}, "pins": [[0, 0], [19, 0]]},
+      {"grid": {"points": [4, 4], "origin": [0, 1.2, 0], "u": [0.2, 0, 0], "v": [0, 0, 0.2]},
+       "velocity": [0, 0, 9]}]})");
+  Screen screen(folder);
+  screen.open("fall.json --paused");
+  const Json start = screen.now();
+  EXPECT_EQ(start["floor"], false);
+  screen.key("space");
+  screen.wait("it to fall", [](const Json& now) { return now["frame"] > 120; });
+  screen.key("f");
+  screen.wait("a view", [&](const Json& now) { return now["eye"] != start["eye"]; });
+  EXPECT_LT(apart(screen.now()["eye"], screen.now()["target"]), 6);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+// Against gravity: without aim it would pass some 0.3 m below where it was shot at.
+TEST_F(Window, ABallMeetsWhatIsClicked) {
+  folder.write("sheet.json", R"({"weft": 1, "camera": {"azimuth": 0, "elevation": 0},
+      "cloths": [{"grid": {"points": [30, 30], "u": [1, 0, 0], "v": [0, -1, 0]},
+                  "pins": [[0, 0], [29, 0], [0, 29], [29, 29]]}]})");
+  Screen screen(folder);
+  screen.open("sheet.json");
+  screen.key("5");
+  screen.wait_for("tool", "ball");
+  const Json before = screen.now();
+  screen.click(808, 400);  // the middle of the picture: what the camera looks at
+  const Json shot =
+      screen.wait("a ball", [](const Json& now) { return now["bodies"].size() == 1; });
+  EXPECT_EQ(shot["undo"], "ball");
+  // It comes through the sheet's plane within 6 cm of there.
+  double nearest = 1e9, at_x = 0, at_y = 0;
+  screen.wait("the ball to have passed", [&](const Json& now) {
+    const Json& ball = now["bodies"][0];
+    if (std::abs(ball[2].get<double>()) < nearest)
+      nearest = std::abs(ball[2].get<double>()), at_x = ball[0], at_y = ball[1];
+    return ball[2].get<double>() < -0.1;
+  });
+  screen.key("ctrl+s");
+  screen.wait_for("edited", false);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+  const Json keys = Json::parse(folder.read("sheet.json"))["colliders"][0]["keys"];
+  for (std::size_t k = 1; k < keys.size(); ++k) {
+    const double z0 = keys[k - 1][3], z1 = keys[k][3];
+    if (z0 < 0 || z1 > 0) continue;
+    const double t = z0 / (z0 - z1);
+    const auto along = [&](std::size_t c) {
+      return keys[k - 1][c].get<double>() * (1 - t) + keys[k][c].get<double>() * t;
+    };
+    EXPECT_NEAR(along(1), before["target"][0].get<double>(), 0.06);
+    EXPECT_NEAR(along(2), before["target"][1].get<double>(), 0.06);
+  }
+  EXPECT_LT(nearest, 1);
+}
+
+TEST_F(Window, SearchShowsMatchesAloneAndEscapeDoesNotLeave) {
+  Screen screen(folder);
+  screen.open("sphere --paused");
+  const Json place = screen.now()["controls"]["filter"];
+  screen.click("filter");
+  screen.type("type radius");
+  screen.wait("the radius alone", [](const Json& now) {
+    return now["controls"].contains("/colliders/0/sphere/radius") &&
+           !now["controls"].contains("silk") && !now["controls"].contains("/solver/iterations");
+  });
+  EXPECT_EQ(screen.now()["controls"]["filter"], place);
+  screen.type("key ctrl+a type sphere");
+  screen.wait("all of the sphere", [](const Json& now) {
+    return now["controls"].contains("/colliders/0/sphere/radius") &&
+           now["controls"].contains("/colliders/0/sphere/center");
+  });
+  screen.key("Return");
+  screen.wait_for("typing", false);
+  screen.key("Escape");
+  screen.wait("how to leave", [](const Json& now) {
+    return now["news"].dump().find("Ctrl+Q") != std::string::npos;
+  });
+  EXPECT_TRUE(screen.runs());
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
 TEST_F(Window, WatchingChangesNoBit) {
   Screen screen(folder);
   screen.open("selfCollision --paused --threads 1");

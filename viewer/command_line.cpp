@@ -42,6 +42,12 @@ std::string fault_of_set(const std::string& text) {
   return good ? "" : "'" + text + "' is not POINTER=VALUE (such as /solver/iterations=20)";
 }
 
+// Leading zeros would make a number octal.
+std::string decimal(std::string& text) {
+  text.erase(0, std::min(text.find_first_not_of('0'), text.size() - 1));
+  return "";
+}
+
 void add_options(CLI::App& program, Arguments& a, std::string& size,
                  std::vector<std::string>& sets) {
   program.add_option("SCENE", a.scene, "A scene file, or the name of a shipped scene")
@@ -56,6 +62,7 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
   program.add_flag("--headless", a.headless, "Render one picture without any display");
   program.add_option("--frames", a.frames, "Frames to simulate before the picture")
       ->type_name("N")
+      ->transform(CLI::Validator(decimal, ""))
       ->check(CLI::Range(0, 1'000'000));
   program.add_option("--size", size, "Size of the picture in pixels (1280x720)")
       ->type_name("WxH")

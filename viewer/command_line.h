@@ -25,8 +25,7 @@ struct Arguments {
   std::string record;   // a recording of the session from its start
   int threads = 0;
   std::uint64_t seed = 1;
-  std::optional<double> azimuth, elevation;  // degrees
-  double zoom = 1;
+  std::optional<double> azimuth, elevation, zoom;  // in place of the scene's: degrees, > 1 nearer
   PictureFiles pictures;
   LookSettings settings;
 };

@@ -26,10 +26,18 @@ SceneFile load_scene(const Arguments& arguments) {
   throw Failure(kBadScene, fault_lines(file.path.empty() ? name : file.path, file.faults));
 }
 
-void aim(const Arguments& arguments, Camera& camera) {
+Sight sight_of(const Arguments& arguments, const Scene& scene) {
+  return {arguments.azimuth.value_or(scene.camera.azimuth),
+          arguments.elevation.value_or(scene.camera.elevation),
+          arguments.zoom.value_or(scene.camera.zoom)};
+}
+
+void aim(const Sight& sight, const Bounds& bounds, float aspect, float clear, Camera& camera) {
   constexpr double degree = std::numbers::pi / 180;
-  camera.turn_to(static_cast<float>(arguments.azimuth.value_or(30) * degree),
-                 static_cast<float>(arguments.elevation.value_or(17) * degree));
+  camera.turn_to(static_cast<float>(sight.azimuth * degree),
+                 static_cast<float>(sight.elevation * degree));
+  camera.frame(bounds, aspect, clear);
+  camera.zoom(static_cast<float>(std::log(sight.zoom) / -std::log(0.88)));
 }
 
 void render_picture(const Arguments& arguments) {
@@ -57,9 +65,7 @@ void render_picture(const Arguments& arguments) {
   const RenderTarget target(arguments.width, arguments.height, 8);
   const float aspect = static_cast<float>(arguments.width) / static_cast<float>(arguments.height);
   Camera camera;
-  aim(arguments, camera);
-  camera.frame(visible_bounds(frame_data), aspect);
-  camera.zoom(static_cast<float>(std::log(arguments.zoom) / -std::log(0.88)));
+  aim(sight_of(arguments, file.scene), seen_bounds(frame_data, setting), aspect, 1, camera);
   renderer.draw(frame_data, setting, *find_look(arguments.look), arguments.settings, camera,
                 target);
   std::string problems;

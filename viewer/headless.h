@@ -14,7 +14,9 @@ std::string scene_name(const Arguments& arguments);
 // The scene of the arguments; throws Failure that names every fault.
 SceneFile load_scene(const Arguments& arguments);
 
-// Turns the camera as the arguments ask.
-void aim(const Arguments& arguments, Camera& camera);
+// How the scene is seen, as the arguments ask, else as the scene says.
+Sight sight_of(const Arguments& arguments, const Scene& scene);
+// Turns the camera so, and frames the bounds.
+void aim(const Sight& sight, const Bounds& bounds, float aspect, float clear, Camera& camera);
 
 }  // namespace weft::viewer

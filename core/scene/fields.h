@@ -199,6 +199,13 @@ void fields(Walk& walk, Wind& wind) {
 }
 
 template <class Walk>
+void fields(Walk& walk, Sight& camera) {
+  walk("azimuth", camera.azimuth);
+  walk("elevation", camera.elevation);
+  walk("zoom", camera.zoom);
+}
+
+template <class Walk>
 void fields(Walk& walk, Scene& scene) {
   walk("name", scene.name);
   walk("about", scene.about);
@@ -208,6 +215,7 @@ void fields(Walk& walk, Scene& scene) {
   walk("cloths", scene.cloths);
   walk("colliders", scene.colliders);
   walk("wind", scene.wind);
+  walk("camera", scene.camera);
 }
 
 }  // namespace weft::text

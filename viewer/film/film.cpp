@@ -41,6 +41,12 @@ bool same_file(const std::string& a, const std::string& b) {
   return !a.empty() && !b.empty() && find_clash({{"a", a}, {"b", b}}, {}).has_value();
 }
 
+std::string full_path(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path full = std::filesystem::absolute(path, error);
+  return printable(error ? path : full.lexically_normal().string());
+}
+
 std::string free_name(const std::string& base, const std::string& extension,
                       const std::string& besides) {
   std::error_code error;

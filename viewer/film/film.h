@@ -52,6 +52,8 @@ class Film {
 // The first of base.ext, base-2.ext, … that is not there yet, and is not `besides` ("" = any).
 std::string free_name(const std::string& base, const std::string& extension,
                       const std::string& besides);
+// The path from the root on, for messages.
+std::string full_path(const std::string& path);
 // Whether two paths mean one file, be it there or not.
 bool same_file(const std::string& a, const std::string& b);
 

@@ -37,18 +37,33 @@ void draw_path(ImDrawList& list, const std::vector<std::array<float, 2>>& points
 }  // namespace
 
 void Hands::update(Workspace& workspace, const Area& area, const Pointer& pointer) {
-  if (pointer.inside && pointer.wheel != 0) workspace.camera.zoom(pointer.wheel);
+  if (pointer.inside && pointer.wheel != 0)
+    workspace.camera.zoom(pointer.wheel, 2 * (pointer.x - area.x) / area.width - 1,
+                          1 - 2 * (pointer.y - area.y) / area.height, area.aspect());
   if (pointer.inside && pointer.pressed) press(workspace, area, pointer);
   const bool free = drag_ == Drag::none;
   if (pointer.inside && pointer.right && free) panning_ = true;
   if (!pointer.right) panning_ = false;
   if (panning_ || drag_ == Drag::pan)
     workspace.camera.pan(pointer.dx / area.height, -pointer.dy / area.height);
-  if ((pointer.middle && pointer.inside && free) || drag_ == Drag::orbit)
-    workspace.camera.orbit(kTurn * pointer.dx / area.height, kTurn * pointer.dy / area.height);
+  const bool orbits = (pointer.middle && pointer.inside && free) || drag_ == Drag::orbit;
+  if (orbits && !pivot_) pivot_ = pivot(workspace, area, pointer);
+  if (!orbits) pivot_.reset();
+  if (orbits)
+    workspace.camera.orbit(kTurn * pointer.dx / area.height, kTurn * pointer.dy / area.height,
+                           *pivot_);
   if (!free) drag(workspace, area, pointer);
   if (pointer.released || (!pointer.left && !pointer.pressed && drag_ != Drag::none))
     release(workspace, area);
+}
+
+// What lies under the pointer, else what the camera looks at.
+Vec3f Hands::pivot(const Workspace& workspace, const Area& area, const Pointer& pointer) {
+  const Ray ray = ray_through(workspace.camera, area, pointer.x, pointer.y);
+  const auto cloth = pick_cloth(workspace.frame_data(), ray);
+  const auto body = pick_body(workspace.frame_data(), ray);
+  if (cloth && (!body || cloth->distance < body->distance)) return cloth->point;
+  return body ? body->point : workspace.camera.target();
 }
 
 void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer) {
@@ -193,22 +208,49 @@ void Hands::toggle_pins(Workspace& workspace,
   if (!changes.empty()) workspace.edit(changes, false, release ? "unpin" : "pin");
 }
 
-// A ball on a path of free flight from the eye, p + v t + g t²/2, until it lies on the floor.
+namespace {
+
+// What a ball is to meet: a point, and how fast it moves [m/s].
+struct Mark {
+  Vec3f point, velocity;
+};
+std::optional<Mark> mark_under(const FrameData& frame_data, const Ray& ray) {
+  const auto cloth = pick_cloth(frame_data, ray);
+  const auto body = pick_body(frame_data, ray);
+  if (cloth && (!body || cloth->distance <= body->distance)) {
+    const ClothCopy& copy = frame_data.cloths[static_cast<std::size_t>(cloth->cloth)];
+    const std::size_t p = copy.at(cloth->particle);
+    return Mark{cloth->point, {copy.vx[p], copy.vy[p], copy.vz[p]}};
+  }
+  if (body) return Mark{body->point, {}};
+  return std::nullopt;
+}
+
+}  // namespace
+
+// A ball on a path of free flight from the eye, p + v t + g t²/2, until it lies on the floor: such that it
+// meets what is clicked where that will be then.
 void Hands::shoot(Workspace& workspace, const Ray& ray) const {
   constexpr double kSeconds = 2.5, kEvery = 1.0 / 30;
   const Setting& setting = workspace.setting();
   const double radius = 0.06 * setting.size, start = workspace.frame_data().time;
   const Vec3 g = workspace.document().scene().gravity;
-  const Vec3 from =
-      workspace.in_scene(ray.origin + ray.direction * (0.3f * workspace.camera.distance()));
-  const Vec3 velocity = to_double(ray.direction * (2.2f * setting.size));
+  const Vec3f eye = ray.origin + ray.direction * (0.3f * workspace.camera.distance());
+  const Vec3 from = workspace.in_scene(eye);
+  const float speed = 2.2f * setting.size;
+  Vec3 velocity = to_double(ray.direction * speed);
+  if (const auto mark = mark_under(workspace.frame_data(), ray)) {
+    const float flight = std::max(length(mark->point - eye) / speed, 0.05f);
+    const Vec3f way = mark->point + mark->velocity * flight - eye;
+    velocity = to_double((way - to_float(g) * (0.5f * flight * flight)) * (1 / flight));
+  }
   const double lowest = workspace.frame_data().origin[1] + setting.ground + radius;
   text::Json keys = text::Json::array();
   for (double t = 0; t <= kSeconds; t += kEvery) {
     Vec3 p{};
     for (std::size_t k = 0; k < 3; ++k)
       p[k] = std::clamp(from[k] + velocity[k] * t + 0.5 * g[k] * t * t, -9999.0, 9999.0);
-    const bool landed = setting.has_ground && p[1] < lowest;
+    const bool landed = setting.solid && p[1] < lowest;
     if (landed) p[1] = lowest;
     keys.push_back({start + t, p[0], p[1], p[2]});
     if (landed) break;
@@ -222,14 +264,17 @@ void Hands::shoot(Workspace& workspace, const Ray& ray) const {
 
 void Hands::draw(const Workspace& workspace, const Area& area, ImDrawList& list) const {
   const Projector project(workspace.camera, area);
+  constexpr float kApart = 9;  // pixels between marks: many are a dotted line, not a bar
+  ScreenPoint last{-1e6f, -1e6f, 0, false};
   std::size_t marks = 0;
   for (const ClothCopy& cloth : workspace.frame_data().cloths)
     for (int j = 0; j < cloth.rows; ++j)
       for (int i = 0; i < cloth.columns && marks < kMostMarks; ++i) {
         if (cloth.inverse_mass[cloth.at(i, j)] != 0) continue;
-        ++marks;
         const ScreenPoint p = project(cloth.position(j * cloth.columns + i));
-        if (!p.seen) continue;
+        if (!p.seen || std::hypot(p.x - last.x, p.y - last.y) < kApart) continue;
+        last = p;
+        ++marks;
         list.AddCircleFilled({p.x, p.y}, 4, IM_COL32(20, 22, 28, 200));
         list.AddCircleFilled({p.x, p.y}, 2.6f, IM_COL32(255, 209, 102, 255));
       }

@@ -40,6 +40,7 @@ class Hands {
  private:
   enum class Drag { none, orbit, pan, cloth, body, cut, lasso };
 
+  static Vec3f pivot(const Workspace& workspace, const Area& area, const Pointer& pointer);
   void press(Workspace& workspace, const Area& area, const Pointer& pointer);
   void drag(Workspace& workspace, const Area& area, const Pointer& pointer);
   void release(Workspace& workspace, const Area& area);
@@ -52,6 +53,7 @@ class Hands {
 
   Drag drag_ = Drag::none;
   bool panning_ = false;
+  std::optional<Vec3f> pivot_;  // of the orbit that goes on
   ClothHit held_;
   Vec3f target_;
   CutStroke stroke_;

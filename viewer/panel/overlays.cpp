@@ -34,7 +34,8 @@ void draw_tools(Hands& hands, const Area& area, const Keys& keys) {
   };
   static constexpr Entry kEntries[] = {
       {"Drag", Tool::hand, Action::hand, "Pull the cloth or a body with the left button"},
-      {"Pin", Tool::pin, Action::pin, "Click on the cloth: holds a point, or lets it go; drag: a lasso around several"},
+      {"Pin", Tool::pin, Action::pin,
+       "Click on the cloth: holds a point, or lets it go; drag: a lasso around several"},
       {"Cut", Tool::cut, Action::cut, "Draw a stroke: severs all cloth that it passes over"},
       {"Move", Tool::move, Action::move,
        "Choose a body and move it by its arrows or the arrow keys; choose the cloth to carry it"},
@@ -127,10 +128,34 @@ void draw_corner(const Workspace& workspace, const History& history, const Area&
   ImGui::End();
 }
 
+namespace {
+
+// Which colour is which direction of the springs' force, and what the whole scale is worth.
+void draw_force_legend(const Workspace& workspace) {
+  ImGui::TextUnformatted("Force of the springs");
+  const std::pair<const char*, ImVec4> axes[] = {
+      {"x", {1, 0.35f, 0.3f, 1}}, {"y", {0.4f, 0.9f, 0.4f, 1}}, {"z", {0.45f, 0.6f, 1, 1}}};
+  for (const auto& [name, color] : axes) {
+    ImGui::TextColored(color, "%s", name);
+    ImGui::SameLine();
+  }
+  const Cloth& cloth = workspace.document().scene().cloths.front();
+  const double weight =
+      particle_mass(cloth, 0, 0) * length(to_float(workspace.document().scene().gravity));
+  const auto scale = static_cast<double>(workspace.settings.force_scale);
+  if (workspace.look->name == "phong_force")
+    ImGui::TextColored(kQuiet, "direction alone");
+  else
+    ImGui::TextColored(kQuiet, "full at %.3g N: %.3g weights of a particle", 4 * weight / scale,
+                       4 / scale);
+}
+
+}  // namespace
+
 void draw_legend(const Workspace& workspace, const Area& area) {
-  const bool strains = workspace.look->strains;
+  const bool strains = workspace.look->strains, forces = workspace.look->forces;
   const bool lines = workspace.look->draw == Look::Draw::lines;
-  if (!strains && !lines) return;
+  if (!strains && !lines && !forces) return;
   const float em = ImGui::GetFontSize();
   // The transport, where there is no room beside.
   const float above = area.width < 56 * em ? 4 * em : 0;
@@ -138,7 +163,9 @@ void draw_legend(const Workspace& workspace, const Area& area) {
                 1);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float size = ImGui::GetFontSize();
-  if (lines) {
+  if (forces) {
+    draw_force_legend(workspace);
+  } else if (lines) {
     const LookSettings& s = workspace.settings;
     const std::tuple<const char*, bool, ImU32> kinds[] = {
         {"structural", s.structural, IM_COL32(38, 63, 137, 255)},
@@ -172,6 +199,22 @@ void draw_legend(const Workspace& workspace, const Area& area) {
     ImGui::Text("%.3g %%", range);
   }
   ImGui::End();
+}
+
+// What to try first, fading after some seconds or once a hand has pulled.
+void draw_hints(const Area& area, double seconds) {
+  constexpr double kWhole = 9, kFade = 3;  // s
+  const auto alpha = static_cast<float>(std::clamp((kWhole + kFade - seconds) / kFade, 0.0, 1.0));
+  if (alpha <= 0 || area.width < 30 * ImGui::GetFontSize()) return;
+  ImGui::PushStyleVar(ImGuiStyleVar_Alpha, alpha);
+  begin_overlay("hints", area.x + area.width / 2,
+                area.y + area.height - 5.5f * ImGui::GetFontSize(), 0.5f, 1);
+  ImGui::TextUnformatted("Pull the cloth: left drag on it");
+  ImGui::TextUnformatted("Look around: left drag beside it, and the wheel");
+  ImGui::TextUnformatted("Cut, pin, throw a ball: 3, 2, 5    all keys: H");
+  mark("hints");
+  ImGui::End();
+  ImGui::PopStyleVar();
 }
 
 void draw_messages(Messages& messages, const Area& area) {

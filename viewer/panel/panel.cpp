@@ -1,6 +1,8 @@
 // The side with its tabs, and where everything goes.
 #include "panel/panel.h"
 
+#include <algorithm>
+
 #include "panel/theme.h"
 
 namespace weft::viewer {
@@ -22,6 +24,11 @@ Area Panel::picture_area() const {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float left = has_side() ? side_width() : 0;
   return {left, 0, std::max(size.x - left, 16.0f), std::max(size.y, 16.0f)};
+}
+
+float Panel::clear_share() const {
+  const float bar = 5 * ImGui::GetFontSize();
+  return visible ? std::clamp(1 - 2 * bar / picture_area().height, 0.3f, 1.0f) : 1;
 }
 
 bool begin_overlay(const char* name, float x, float y, float pivot_x, float pivot_y) {
@@ -55,10 +62,12 @@ void Panel::draw_side(Workspace& workspace, Requests& requests) {
       ImGui::EndTabItem();
     };
     tab("Scene", [&] {
-      draw_fabrics(workspace);
-      draw_spring_cloth(workspace);
+      parameters_.draw_search();
+      const bool all = !parameters_.searching();
+      if (all) draw_fabrics(workspace);
+      if (all) draw_spring_cloth(workspace);
       parameters_.draw(workspace);
-      draw_machine(workspace);
+      if (all) draw_machine(workspace);
     });
     tab("Look", [&] { draw_looks(workspace); });
     tab("Measures", [&] { draw_measures(workspace, history); });
@@ -77,6 +86,9 @@ void Panel::draw(Workspace& workspace, Hands& hands, Requests& requests) {
     if (area.width > 40 * ImGui::GetFontSize()) draw_corner(workspace, history, area);
   }
   draw_legend(workspace, area);
+  if (opened_ < 0) opened_ = workspace.now();
+  if (hands.busy()) played_ = true;
+  if (!played_) draw_hints(area, workspace.now() - opened_);
   draw_messages(workspace.messages, area);
   if (help) draw_help(help, keys_);
 }

@@ -11,7 +11,7 @@ namespace weft::viewer {
 
 // What a person asks for that the window itself must do.
 struct Requests {
-  bool screenshot = false, film = false, quit = false;
+  bool screenshot = false, film = false;
 };
 
 class Panel {
@@ -20,6 +20,8 @@ class Panel {
 
   // The room that is left for the picture, in the panel's units.
   Area picture_area() const;
+  // The share of its height, about the middle, that tools and transport leave free.
+  float clear_share() const;
   void draw(Workspace& workspace, Hands& hands, Requests& requests);
 
   bool visible = true;
@@ -33,7 +35,9 @@ class Panel {
 
   const Keys& keys_;
   Parameters parameters_;
-  std::string path_;  // as it is typed
+  std::string path_;     // as it is typed
+  double opened_ = -1;   // s
+  bool played_ = false;  // a hand has done something
 };
 
 // The parts.
@@ -52,6 +56,8 @@ void draw_transport(Workspace& workspace, const Area& area, const Keys& keys);
 void draw_tools(Hands& hands, const Area& area, const Keys& keys);
 void draw_corner(const Workspace& workspace, const History& history, const Area& area);
 void draw_legend(const Workspace& workspace, const Area& area);
+// `seconds`: since the window opened, or far more once somebody has pulled.
+void draw_hints(const Area& area, double seconds);
 void draw_messages(Messages& messages, const Area& area);
 void draw_help(bool& open, const Keys& keys);
 

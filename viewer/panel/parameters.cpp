@@ -5,6 +5,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "panel/panel.h"
 #include "panel/theme.h"
@@ -57,16 +58,17 @@ void Parameters::change(const std::string& pointer, const Json& value) {
   moved_ = ImGui::IsAnyItemActive() ? pointer : "";
 }
 
+bool Parameters::named(const std::string& key) const {
+  const std::string text = words_of(key);
+  return std::search(text.begin(), text.end(), filter_.begin(), filter_.end(), [](char a, char b) {
+           return std::tolower(static_cast<unsigned char>(a)) ==
+                  std::tolower(static_cast<unsigned char>(b));
+         }) != text.end();
+}
+
+// Whether a value, or one within, has what is looked for in its name; all within a group that has it do.
 bool Parameters::passes(const std::string& key, const Json& schema) const {
-  if (filter_.empty()) return true;
-  const auto found = [&](const std::string& text) {
-    return std::search(text.begin(), text.end(), filter_.begin(), filter_.end(),
-                       [](char a, char b) {
-                         return std::tolower(static_cast<unsigned char>(a)) ==
-                                std::tolower(static_cast<unsigned char>(b));
-                       }) != text.end();
-  };
-  if (found(words_of(key))) return true;
+  if (whole_ || filter_.empty() || named(key)) return true;
   const Json* properties = text::member(schema, "properties");
   if (!properties) return false;
   return std::any_of(properties->items().begin(), properties->items().end(),
@@ -233,17 +235,22 @@ void Parameters::group(const std::string& pointer, const std::string& title, con
   if (const Json* about = text::member(schema, "description"))
     tooltip(about->get_ref<const std::string&>().c_str());
   if (!shown) return;
+  const bool whole = std::exchange(whole_, whole_ || (searching() && named(title)));
   ImGui::Indent(6);
   members(pointer, schema, value);
   ImGui::Unindent(6);
+  whole_ = whole;
+}
+
+void Parameters::draw_search() {
+  ImGui::SetNextItemWidth(-1);
+  ImGui::InputTextWithHint("##filter", "find a parameter", &filter_);
+  mark("filter");
 }
 
 void Parameters::draw(Workspace& workspace) {
   workspace_ = &workspace;
   if (!moved_.empty() && !ImGui::IsAnyItemActive()) moved_.clear();
-  ImGui::SetNextItemWidth(-1);
-  ImGui::InputTextWithHint("##filter", "find a parameter", &filter_);
-  mark("filter");
   ImGui::PushItemWidth(ImGui::GetFontSize() * 9.5f);
   // The document may change under the controls: they look at a copy.
   const Json json = workspace.document().json();
@@ -263,6 +270,7 @@ void Parameters::draw(Workspace& workspace) {
     member("/gravity", "gravity", schema["properties"]["gravity"], json["gravity"]);
   top("wind", false);
   top("time", false);
+  top("camera", false);
   const Json& collider = schema["properties"]["colliders"]["items"];
   for (std::size_t n = 0; n < std::min<std::size_t>(json["colliders"].size(), 50); ++n) {
     std::string title = "collider " + std::to_string(n);

@@ -10,7 +10,10 @@ namespace weft::viewer {
 
 class Parameters {
  public:
+  void draw_search();
   void draw(Workspace& workspace);
+  // Whether a word is looked for: then nothing else is shown.
+  bool searching() const { return !filter_.empty(); }
 
  private:
   using Json = text::Json;
@@ -30,11 +33,13 @@ class Parameters {
   void pins(const std::string& pointer, const Json& value);
   void collider_path(const std::string& pointer, const Json& value);
   void change(const std::string& pointer, const Json& value);
+  bool named(const std::string& key) const;
   bool passes(const std::string& key, const Json& schema) const;
 
   Workspace* workspace_ = nullptr;  // while drawing
   std::string filter_;
-  std::string moved_;  // the place whose control is held
+  bool whole_ = false;  // within a group whose name is looked for
+  std::string moved_;   // the place whose control is held
 };
 
 }  // namespace weft::viewer

@@ -17,6 +17,7 @@ void draw_scenes(Workspace& workspace, std::string& path) {
                                  ImGuiInputTextFlags_EnterReturnsTrue) &&
         !path.empty()) {
       workspace.open(path);
+      path.clear();
       ImGui::CloseCurrentPopup();
     }
     for (const ShippedScene& scene : workspace.scenes()) {

@@ -11,11 +11,11 @@ void Camera::turn_to(float azimuth, float elevation) {
 }
 
 // The nearest distance from which all corners of the box are inside the view.
-void Camera::frame(const Bounds& bounds, float aspect) {
+void Camera::frame(const Bounds& bounds, float aspect, float clear) {
   if (bounds.empty()) return;
   target_ = bounds.center();
   const Vec3f f = forward(), r = right(), u = up();
-  const float tan_y = std::tan(kFov / 2), tan_x = tan_y * aspect;
+  const float tan_x = std::tan(kFov / 2) * aspect, tan_y = std::tan(kFov / 2) * clear;
   float needed = 0.05f;
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3f p = Vec3f{(corner & 1) != 0 ? bounds.high.x : bounds.low.x,
@@ -32,6 +32,13 @@ void Camera::orbit(float azimuth, float elevation) {
   turn_to(azimuth_ - azimuth, elevation_ + elevation);
 }
 
+void Camera::orbit(float azimuth, float elevation, Vec3f about) {
+  const Vec3f from = target_ - about;
+  const float across = dot(from, right()), high = dot(from, up()), deep = dot(from, forward());
+  orbit(azimuth, elevation);
+  target_ = about + right() * across + up() * high + forward() * deep;
+}
+
 void Camera::pan(float x, float y) {
   const float height = 2 * distance_ * std::tan(kFov / 2);
   target_ = target_ - right() * (x * height) + up() * (y * height);
@@ -39,6 +46,13 @@ void Camera::pan(float x, float y) {
 
 void Camera::zoom(float notches) {
   distance_ = std::clamp(distance_ * std::pow(0.88f, notches), 1e-3f, 1e5f);
+}
+
+void Camera::zoom(float notches, float x, float y, float aspect) {
+  const float before = distance_;
+  zoom(notches);
+  const float t = std::tan(kFov / 2) * (before - distance_);
+  target_ = target_ + right() * (x * t * aspect) + up() * (y * t);
 }
 
 Vec3f Camera::eye() const {

@@ -7,15 +7,19 @@ namespace weft::viewer {
 
 class Camera {
  public:
-  // Fits the box into the view, keeping the direction.
-  void frame(const Bounds& bounds, float aspect);
+  // Fits the box into the view, keeping the direction; `clear`: the share of the view's height, about its
+  // middle, that nothing covers.
+  void frame(const Bounds& bounds, float aspect, float clear = 1);
 
   // A turn by angles [rad]; right and up are positive.
   void orbit(float azimuth, float elevation);
   // A shift by fractions of the view's height, so that what is grabbed follows the pointer.
   void pan(float x, float y);
-  // One notch of the wheel is 1: nearer.
+  // The same about a point of the scene, which stays where it is in the picture.
+  void orbit(float azimuth, float elevation, Vec3f about);
+  // One notch of the wheel is 1: nearer. What is seen through (x, y), -1 … 1, stays there.
   void zoom(float notches);
+  void zoom(float notches, float x, float y, float aspect);
 
   Vec3f eye() const;
   Vec3f target() const { return target_; }

@@ -112,9 +112,9 @@ void Renderer::draw(const FrameData& frame_data, const Setting& setting, const L
   glBindVertexArray(nothing_.id());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_DEPTH_TEST);
-  if (settings.ground && setting.has_ground) draw_ground(setting);
   draw_bodies(look, settings, camera);
   draw_cloths(look, settings, target, setting);
+  if (settings.ground && setting.has_ground) draw_ground(setting);  // it may be seen through
   target.resolve();
 }
 
@@ -239,6 +239,7 @@ void Renderer::set_material(const Shader& shader, const LookSettings& settings, 
   shader.set("u_metallic", settings.metallic);
   shader.set("u_maps", settings.maps ? 1.0f : 0.0f);
   shader.set("u_translucency", cloth ? 0.22f : 0.0f);
+  shader.set("u_two_sided", cloth ? 1.0f : 0.0f);
   shader.set("u_parts", Vec3f{settings.ambient ? 1.0f : 0.0f, settings.diffuse ? 1.0f : 0.0f,
                               settings.specular ? 1.0f : 0.0f});
   shader.set("u_shininess", settings.shininess);
@@ -257,6 +258,7 @@ void Renderer::draw_ground(const Setting& setting) {
   const Shader& ground = shader("ground");
   ground.use();
   ground.set("u_ground", floor_center_, 4 * setting.size);
+  ground.set("u_solid", setting.solid ? 1.0f : 0.0f);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   floor_.front().draw();

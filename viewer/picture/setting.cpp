@@ -61,13 +61,27 @@ Setting setting_of(const FrameData& start) {
   setting.ground = lowest - 0.02f * setting.room.radius();
   for (const Collider& collider : scene.colliders)
     if (const Plane* plane = std::get_if<Plane>(&collider.shape); plane && is_level(*plane)) {
-      setting.has_ground = true;
+      setting.has_ground = setting.solid = true;
       setting.ground = static_cast<float>(plane->point[1]);
     }
   if (setting.has_ground)
     setting.room.add(Vec3f{setting.room.center().x, setting.ground, setting.room.center().z});
   setting.size = 2 * setting.room.radius();
   return setting;
+}
+
+Bounds seen_bounds(const FrameData& frame_data, const Setting& setting) {
+  constexpr float kGone = 1.5f;  // sizes of the scene
+  const Vec3f center = setting.room.center();
+  const auto stays = [&](Vec3f p) { return length(p - center) < kGone * setting.size; };
+  Bounds bounds;
+  for (const ClothCopy& cloth : frame_data.cloths)
+    for (int p = 0; p < cloth.columns * cloth.rows; ++p)
+      if (const Vec3f at = cloth.position(p); stays(at)) bounds.add(at);
+  for (const Collider& body : frame_data.bodies)
+    if (const Bounds one = collider_bounds({body}); !one.empty() && stays(one.center()))
+      bounds.add(one);
+  return bounds.empty() ? setting.room : bounds;
 }
 
 Bounds visible_bounds(const FrameData& frame_data) {

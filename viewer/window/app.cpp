@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <numbers>
 
 #include "failure.h"
 #include "output/interrupt.h"
@@ -122,7 +123,7 @@ void App::turn() {
   push_bodies(std::min(now - last_turn_, 0.1));
   last_turn_ = now;
   const Area area = panel_.picture_area();
-  workspace_.set_aspect(area.aspect());
+  workspace_.set_picture(area.aspect(), panel_.clear_share());
   hands_.update(workspace_, area, pointer_now());
   hands_.draw(workspace_, area, *ImGui::GetBackgroundDrawList());
   Requests requests;
@@ -154,7 +155,8 @@ void App::draw_picture() {
 }
 
 void App::dispatch(Action action) {
-  if (action == Action::quit) leave();
+  if (action == Action::quit) window_.close();
+  if (action == Action::close) close_top();
   if (action == Action::help) panel_.help = !panel_.help;
   if (action == Action::panel) panel_.visible = !panel_.visible;
   if (action == Action::screenshot) take_screenshot();
@@ -165,15 +167,15 @@ void App::dispatch(Action action) {
   dispatch_view(action);
 }
 
-// The list or the help that is open, else the program.
-void App::leave() {
+// The list or the help that is open; where nothing is, says how to leave.
+void App::close_top() {
   constexpr ImGuiPopupFlags any = ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel;
   if (ImGui::IsPopupOpen("", any))
     ImGui::ClosePopupsOverWindow(nullptr, false);
   else if (panel_.help)
     panel_.help = false;
   else
-    window_.close();
+    workspace_.messages.tell(keys_.names_of(Action::quit) + " leaves", workspace_.now());
 }
 
 void App::dispatch_scene(Action action) {
@@ -191,7 +193,12 @@ void App::dispatch_scene(Action action) {
 }
 
 void App::dispatch_view(Action action) {
+  constexpr float kQuarter = std::numbers::pi_v<float> / 2, kSteep = 1.5f;
   if (action == Action::frame) workspace_.frame_cloth();
+  if (action == Action::home) workspace_.show_home();
+  if (action == Action::front) workspace_.show_along(0, 0);
+  if (action == Action::side) workspace_.show_along(kQuarter, 0);
+  if (action == Action::top) workspace_.show_along(0, kSteep);
   if (action == Action::next_look) workspace_.next_look(1);
   if (action == Action::previous_look) workspace_.next_look(-1);
   if (action == Action::next_scene) workspace_.open_neighbour(1);
@@ -235,7 +242,7 @@ void App::take_screenshot() {
   const auto [width, height] = picture_size();
   try {
     write_png(path, view_.picture(workspace_, width, height));
-    workspace_.messages.tell("Picture saved to " + printable(path), workspace_.now());
+    workspace_.messages.tell("Picture saved to " + full_path(path), workspace_.now());
   } catch (const Failure& failure) {
     workspace_.messages.warn("No picture: " + std::string(failure.what()), workspace_.now());
   }
@@ -252,7 +259,7 @@ void App::start_or_end_film() {
                   workspace_.frame_data().time);
     waits_at_ = film_->next();
     workspace_.wait_at(waits_at_);
-    workspace_.messages.tell("The film goes to " + printable(film_->path()) + " until you end it",
+    workspace_.messages.tell("The film goes to " + full_path(film_->path()) + " until you end it",
                              workspace_.now());
   } catch (const Failure& failure) {
     workspace_.messages.warn("No film: " + std::string(failure.what()), workspace_.now());
@@ -262,7 +269,7 @@ void App::start_or_end_film() {
 void App::end_film() {
   try {
     film_->finish();
-    workspace_.messages.tell("Film saved to " + printable(film_->path()), workspace_.now());
+    workspace_.messages.tell("Film saved to " + full_path(film_->path()), workspace_.now());
   } catch (const Failure& failure) {
     workspace_.messages.warn("No film: " + std::string(failure.what()), workspace_.now());
   }

@@ -29,7 +29,7 @@ class App {
  private:
   void read_keys(const std::string& path);
   void dispatch(Action action);
-  void leave();
+  void close_top();
   void dispatch_scene(Action action);
   void dispatch_view(Action action);
   void push_bodies(double seconds);

@@ -13,11 +13,16 @@ namespace weft::viewer {
 
 // In the order of Action.
 const std::array<ActionText, kActions> kActionTexts{{
-    {"quit", "Esc", "Close a list or the help, or leave"},
+    {"quit", "Ctrl+Q", "Leave"},
+    {"close", "Esc", "Close a list or the help"},
     {"pause", "P, Space", "Pause or go on"},
     {"step", "N", "One frame"},
     {"reset", "R", "Start the scene anew"},
     {"frame", "F", "Show all of the cloth"},
+    {"home", "Home", "The view that the scene opened with"},
+    {"front", "Alt+1", "Look from the front"},
+    {"side", "Alt+2", "Look from the right"},
+    {"top", "Alt+3", "Look from above"},
     {"help", "H, F1", "These keys"},
     {"panel", "Tab", "Hide or show the panel"},
     {"undo", "Ctrl+Z", "Undo a change"},

@@ -12,10 +12,15 @@ namespace weft::viewer {
 
 enum class Action {
   quit,
+  close,
   pause,
   step,
   reset,
   frame,
+  home,
+  front,
+  side,
+  top,
   help,
   panel,
   undo,

@@ -37,7 +37,7 @@ void Log::write(const Workspace& workspace, const View& view, const Hands& hands
   for (const Collider& body : s.bodies) bodies.push_back(place_of(moved(body.shape, s.origin)));
   text::Json places = text::Json::object();
   for (const auto& [name, at] : controls) places[name] = {std::lround(at.x), std::lround(at.y)};
-  const Vec3f eye = workspace.camera.eye();
+  const Vec3f eye = workspace.camera.eye(), target = workspace.camera.target();
   const text::Json line{{"scene", workspace.document().name()},
                         {"frame", s.frame},
                         {"hash", hash},
@@ -57,6 +57,8 @@ void Log::write(const Workspace& workspace, const View& view, const Hands& hands
                         {"edited", workspace.document().edited()},
                         {"stiffness", s.scene->cloths[0].stiffness.structural},
                         {"eye", {eye.x, eye.y, eye.z}},
+                        {"target", {target.x, target.y, target.z}},
+                        {"floor", workspace.setting().solid},
                         {"help", help},
                         {"recording", v.recording},
                         {"faults", faults},

@@ -38,9 +38,8 @@ Workspace::Workspace(const Arguments& arguments)
   simulated_ = kept_ = document_.revision();
   tell_notes();
   tell_kept();
-  aim(arguments, camera);
+  sight_ = sight_of(arguments, document_.scene());
   show_start();
-  camera.zoom(static_cast<float>(std::log(arguments.zoom) / -std::log(0.88)));
   if (!arguments.record.empty())
     session_->post([path = arguments.record](Player& player) { player.record(path); });
 }
@@ -52,13 +51,33 @@ std::string Workspace::end() {
 void Workspace::show_start() {
   serial_ = frame_data().scene_serial;
   setting_ = setting_of(frame_data());
-  frame_cloth();
+  if (aspect_ > 0) show_home();
+}
+
+void Workspace::set_picture(float aspect, float clear) {
+  const bool first = aspect_ == 0;
+  aspect_ = aspect;
+  clear_ = clear;
+  if (first) show_home();
+}
+
+Bounds Workspace::to_frame() const {
+  Bounds bounds = seen_bounds(frame_data(), setting_);
+  if (frame_data().frame == 0) bounds.add(setting_.room);
+  return bounds;
 }
 
 void Workspace::frame_cloth() {
-  Bounds bounds = visible_bounds(frame_data());
-  if (frame_data().frame == 0) bounds.add(setting_.room);
-  camera.frame(bounds, aspect_);
+  camera.frame(to_frame(), aspect_, clear_);
+}
+
+void Workspace::show_home() {
+  aim(sight_, to_frame(), aspect_, clear_, camera);
+}
+
+void Workspace::show_along(float azimuth, float elevation) {
+  camera.turn_to(azimuth, elevation);
+  frame_cloth();
 }
 
 void Workspace::open(const std::string& path_or_name) {
@@ -99,7 +118,7 @@ void Workspace::save(const std::string& path) {
   }
   try {
     document_.save(path);
-    messages.tell("Saved " + printable(path), now_);
+    messages.tell("Saved " + full_path(path), now_);
   } catch (const WriteError& error) {
     messages.warn("Not saved: " + printable(error.path) + ": " + error.what(), now_);
   }
@@ -165,7 +184,7 @@ void Workspace::start_or_end_export() {
     return;
   }
   const std::string path = free_name(document_.name(), ".pc2", record_);
-  messages.tell("The animation goes to " + printable(path) + " until you end it", now_);
+  messages.tell("The animation goes to " + full_path(path) + " until you end it", now_);
   session_->post([path](Player& player) { player.export_to(path); });
 }
 
@@ -216,6 +235,7 @@ void Workspace::refresh(double now) {
     telling_ = false;
     if (opening_) {
       opening_ = false;
+      sight_ = document_.scene().camera;
       show_start();
     } else {
       serial_ = frame_data().scene_serial;
@@ -231,7 +251,7 @@ void Workspace::refresh(double now) {
   }
   if (v.recorded != recorded_) {
     recorded_ = v.recorded;
-    messages.tell("Written: " + recorded_, now_);
+    messages.tell("Written: " + full_path(recorded_), now_);
   }
   messages.fault("status", v.status.ok ? "" : "The simulation stopped itself: " + v.status.text);
   post_change();

@@ -46,6 +46,9 @@ class Workspace {
 
   void next_look(int step);
   void frame_cloth();
+  // The view that the scene opens with, and the cloth from a direction [rad].
+  void show_home();
+  void show_along(float azimuth, float elevation);
 
   // Once a frame: takes the newest state, posts what waits, looks after the scene's file.
   void refresh(double now);
@@ -63,7 +66,9 @@ class Workspace {
   int threads() const { return threads_; }
   Simd simd() const { return simd_; }
   float aspect() const { return aspect_; }
-  void set_aspect(float aspect) { aspect_ = aspect; }
+  // Of the picture: width over height, and the share of its height that no control covers.
+  // Known from the first turn on, which shows the scene as it opens.
+  void set_picture(float aspect, float clear);
 
   Camera camera;
   const Look* look;
@@ -73,6 +78,7 @@ class Workspace {
 
  private:
   void show_start();
+  Bounds to_frame() const;
   void post_change();
   void watch_file();
   void keep_edits();
@@ -85,7 +91,8 @@ class Workspace {
   std::optional<Session> session_;
   Setting setting_;
   double now_ = 0, next_watch_ = 0, next_keep_ = 0;
-  float aspect_ = 1.5f;
+  Sight sight_;
+  float aspect_ = 0, clear_ = 1;
   int threads_ = 0;
   Simd simd_ = Simd::best;
   bool opening_ = false;         // the next new scene is shown from its start

@@ -311,6 +311,14 @@ struct Time {
   friend bool operator==(const Time&, const Time&) = default;
 };
 
+// From where the scene is best seen; the simulation does not look at it.
+struct Sight {
+  double azimuth = 30;    // degrees about y from +z towards +x, -360 … 360
+  double elevation = 17;  // degrees above the level, -85 … 85
+  double zoom = 1;        // > 1: nearer than what shows all of the cloth, 0.01 … 100
+  friend bool operator==(const Sight&, const Sight&) = default;
+};
+
 struct Scene {
   std::string name;
   std::string about;                // one line for `weft scenes`
@@ -321,6 +329,7 @@ struct Scene {
   std::vector<Cloth> cloths;
   std::vector<Collider> colliders;
   Wind wind;
+  Sight camera;
   friend bool operator==(const Scene&, const Scene&) = default;
 };
 
