@@ -1,6 +1,7 @@
 // What a window leaves when it is ended from outside, and files that its command line names twice.
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <iterator>
 #include <vector>
 
@@ -43,6 +44,32 @@ TEST_F(WindowEnds, ASignalEndsItInOrder) {
     EXPECT_EQ(screen.finish(), 128 + signal) << screen.said();
     expect_recording();
     std::filesystem::remove(folder / "session");
+  }
+}
+
+// The frame in which it comes would take many minutes.
+TEST_F(WindowEnds, NothingWaitsForALongFrame) {
+  const auto scene = [](int substeps, int stiffness) {
+    return R"({"weft": 1, "time": {"substeps": )" + std::to_string(substeps) +
+           R"(}, "cloths": [{"grid": {"points": [300, 300]}, "stiffness": {"structural": )" +
+           std::to_string(stiffness) + "}}]}";
+  };
+  for (const int signal : {0, SIGINT, SIGTERM}) {
+    folder.write("long.json", scene(2, 50));
+    Screen screen(folder);
+    screen.open("long.json --record session --threads 1");
+    screen.click("Export");
+    screen.wait("frames", [](const Json& now) { return now["frame"] > 25; });
+    folder.write("long.json", scene(100000, 51));
+    screen.wait("the long frame", [](const Json& now) { return now["stiffness"] == 51; });
+    const auto begun = std::chrono::steady_clock::now();
+    if (signal != 0) screen.send(signal);
+    EXPECT_EQ(signal != 0 ? screen.finish() : screen.quit(), signal == 0 ? 0 : 128 + signal)
+        << screen.said();
+    EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(30));
+    expect_recording();
+    EXPECT_TRUE(folder.read("long.pc2").starts_with("POINTCACHE2"));
+    for (const char* file : {"session", "long.pc2"}) std::filesystem::remove(folder / file);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "edit/document.h"
 #include "failure.h"
 #include "output/interrupt.h"
+#include "output/takeover.h"
 #include "picture/surfaceless.h"
 
 namespace weft::viewer {
@@ -43,6 +44,7 @@ void aim(const Sight& sight, const Bounds& bounds, float aspect, float clear, Ca
 void render_picture(const Arguments& arguments) {
   const SceneFile file = load_scene(arguments);
   refuse_clashes(arguments, file.path);
+  Takeover takeover;
   const SurfacelessContext context;
   Options options;
   options.threads = arguments.threads;
@@ -57,6 +59,7 @@ void render_picture(const Arguments& arguments) {
   const Setting setting = setting_of(frame_data);
   while (simulation.frame() < arguments.frames && simulation.status().ok && interrupted() == 0)
     simulation.advance_frame();
+  takeover.stop();
   if (interrupted() != 0) return;  // a picture of another frame is not what was asked for
   copy_view(simulation.view(), simulation.scene(), frame_data);
   frame_data.frame = simulation.frame();

@@ -91,7 +91,7 @@ void Player::open(Scene scene) {
 void Player::change(Scene scene) {
   attempt([&] {
     leave_past();
-    if (simulation_->frame() == 0 && !recorder_) {
+    if (simulation_->frame() == 0 && !outputs_.recording()) {
       start(std::move(scene));
       return;
     }
@@ -176,7 +176,7 @@ void Player::hand(const Input& input) {
 void Player::give(const Input& input) {
   const std::int64_t frame = simulation_->frame();
   apply(input, *simulation_);
-  if (recorder_) recorder_->input(frame, input);
+  outputs_.input(frame, input);
 }
 
 void Player::go_back(int back) {
@@ -198,37 +198,24 @@ void Player::record(const std::string& path) {
   attempt([&] {
     finish_recording();
     start(scene_);
-    recorder_ = std::make_unique<Recorder>(path, *simulation_);
-    telemetry_.recording = true;
+    outputs_.record(path, *simulation_);
   });
 }
 
 void Player::finish_recording() {
-  if (!recorder_) return;
-  attempt([&] {
-    const std::unique_ptr<Recorder> done = std::move(recorder_);
-    telemetry_.recording = false;
-    done->finish();
-    telemetry_.recorded = printable(done->path());
-  });
+  attempt([&] { tell_written(outputs_.finish_recording()); });
 }
 
 void Player::export_to(const std::string& path) {
-  attempt([&] {
-    export_ = open_animation(path, simulation_->view());
-    export_->append(simulation_->view());
-    telemetry_.exporting = true;
-  });
+  attempt([&] { outputs_.export_to(path, *simulation_); });
 }
 
 void Player::finish_export() {
-  if (!export_) return;
-  attempt([&] {
-    const std::unique_ptr<Animation> done = std::move(export_);
-    telemetry_.exporting = false;
-    done->finish();
-    telemetry_.recorded = printable(done->written());
-  });
+  attempt([&] { tell_written(outputs_.finish_export()); });
+}
+
+void Player::tell_written(const std::string& path) {
+  if (!path.empty()) telemetry_.recorded = path;
 }
 
 int Player::due(double now) {
@@ -257,8 +244,7 @@ void Player::advance() {
     telemetry_.frame_ms = 1e3 * (seconds_now() - start);
     ++telemetry_.frames;
     if (!simulation_->status().ok) return;
-    if (recorder_) recorder_->frame(*simulation_);
-    if (export_) export_->append(simulation_->view());
+    outputs_.frame(*simulation_);
     keep_state();
   });
 }
@@ -300,6 +286,8 @@ void Player::show(Shown& shown) {
   telemetry_.kept = rewind_.size();
   telemetry_.back = back_;
   telemetry_.kept_s = rewind_.seconds();
+  telemetry_.recording = outputs_.recording();
+  telemetry_.exporting = outputs_.exporting();
   telemetry_.hash = hashes_ ? simulation_->hash() : 0;
   shown.telemetry = telemetry_;
 }

@@ -1,5 +1,5 @@
-// The simulation as a person plays it: its clock, the ring of past states, the recording. Lives on
-// the simulation's thread alone (session.h).
+// The simulation as a person plays it: its clock, the ring of past states, what is written. Lives on
+// the simulation's thread alone (session.h), except for its outputs.
 #pragma once
 
 #include <limits>
@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
+#include "run/outputs.h"
 #include "run/rewind.h"
 #include "run/telemetry.h"
 #include "weft/clock.h"
-#include "weft/recording.h"
 
 namespace weft::viewer {
 
@@ -51,6 +51,7 @@ class Player {
   void advance();
   const Telemetry& telemetry() const { return telemetry_; }
   bool idle() const { return clock_.paused(); }
+  Outputs& outputs() { return outputs_; }
 
   // Copies what is to be shown.
   void show(Shown& shown);
@@ -64,6 +65,7 @@ class Player {
   void restart_clock();
   void leave_past();
   void lay_back();
+  void tell_written(const std::string& path);
   void measure_sometimes();
   void keep_state();
 
@@ -76,8 +78,7 @@ class Player {
   int back_ = 0;
   int until_keep_ = 1;                                        // frames
   double wait_at_ = std::numeric_limits<double>::infinity();  // s
-  std::unique_ptr<Recorder> recorder_;
-  std::unique_ptr<Animation> export_;
+  Outputs outputs_;
 
   std::shared_ptr<const Scene> shown_scene_;
   std::uint64_t serial_ = 0, change_ = 0;

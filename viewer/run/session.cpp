@@ -6,6 +6,8 @@
 
 #include <chrono>
 
+#include "output/takeover.h"
+
 namespace weft::viewer {
 
 using std::chrono::steady_clock;
@@ -26,16 +28,19 @@ Session::Session(Scene scene, const Options& options, bool paused, bool hashes)
 
 Session::~Session() {
   end();
+  if (thread_.joinable()) thread_.join();
 }
 
 std::string Session::end() {
   {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
     stopping_ = true;
+    wake_.notify_one();
+    left_.wait_for(lock, kGrace, [this] { return over_; });
+    if (!over_) return player_.outputs().finish();
   }
-  wake_.notify_one();
   if (thread_.joinable()) thread_.join();
-  return problem_;
+  return player_.outputs().finish();
 }
 
 void Session::post(Command command) {
@@ -50,6 +55,7 @@ bool Session::dispatch() {
   std::vector<Command> commands;
   {
     const std::lock_guard lock(mutex_);
+    if (stopping_) return true;
     commands.swap(commands_);
   }
   for (const Command& command : commands) command(player_);
@@ -75,21 +81,20 @@ void Session::run() {
         wake_.wait_for(lock, std::chrono::milliseconds(1), ready);
       if (stopping_) break;
     }
-    bool news = dispatch();
+    if (dispatch()) publish();  // before a frame that may be long
     const double now = std::chrono::duration<double>(steady_clock::now() - origin).count();
     // A command in between is dispatched at once, however slow the frames are.
     for (int due = player_.due(now); due > 0; --due) {
       player_.advance();
       publish();
-      news = dispatch();
-      if (news) break;
+      if (!dispatch()) continue;
+      publish();
+      break;
     }
-    if (news) publish();
   }
-  const std::int64_t problems = player_.telemetry().problems;
-  player_.finish_recording();
-  player_.finish_export();
-  if (player_.telemetry().problems > problems) problem_ = player_.telemetry().problem;
+  const std::lock_guard lock(mutex_);
+  over_ = true;
+  left_.notify_one();
 }
 
 }  // namespace weft::viewer

@@ -25,9 +25,11 @@ class Session {
   using Command = std::function<void(Player&)>;
   void post(Command command);
 
-  // Ends after the present frame; what is recorded and exported is written. What went wrong with
-  // that, or "". The destructor does it, too.
+  // Ends after the present frame, or within it where that takes longer than kGrace (output/takeover.h): then
+  // ended() is false, and the process must end without the destructor, which waits for the frame. What is
+  // recorded and exported is written, up to the last frame. What went wrong with that, or "".
   std::string end();
+  bool ended() const { return !thread_.joinable(); }
 
   // Whether there is a newer state; shown() is it from then on.
   bool refresh() { return shown_.take(); }
@@ -35,16 +37,16 @@ class Session {
 
  private:
   void run();
-  bool dispatch();  // whether there were commands
+  bool dispatch();  // whether there was anything to do but frames
   void publish();
 
   Player player_;
   TripleBuffer<Shown> shown_;
   std::mutex mutex_;
-  std::condition_variable wake_;
+  std::condition_variable wake_, left_;
   std::vector<Command> commands_;
   bool stopping_ = false;
-  std::string problem_;
+  bool over_ = false;  // the thread has left its loop
   std::thread thread_;
 };
 

@@ -9,6 +9,7 @@
 #include <cctype>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <numbers>
@@ -17,6 +18,7 @@
 #include "output/interrupt.h"
 #include "panel/theme.h"
 #include "picture/cpu_time.h"
+#include "weft/output.h"
 #include "weft/printable.h"
 
 namespace weft::viewer {
@@ -24,6 +26,15 @@ namespace weft::viewer {
 namespace {
 
 constexpr double kTurn = 1.0 / 60;  // s, the shortest turn
+
+// What the simulation's thread still works on cannot be destroyed.
+[[noreturn]] void leave_within_frame(const std::string& problem) {
+  if (!problem.empty()) std::fprintf(stderr, "weft-viewer: error: %s\n", problem.c_str());
+  remove_temporaries();
+  std::fflush(stdout);
+  const int code = interrupted() == 0 ? kDone : 128 + interrupted();
+  std::_Exit(problem.empty() ? code : kCannotWrite);
+}
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -78,7 +89,10 @@ void App::run() {
     if (measure_ > 0 && measured(begun)) window_.close();
     if (interrupted() != 0) window_.close();
   }
-  if (const std::string problem = end(); !problem.empty()) throw Failure(kCannotWrite, problem);
+  window_.hide();
+  const std::string problem = end();
+  if (!workspace_.ended()) leave_within_frame(problem);
+  if (!problem.empty()) throw Failure(kCannotWrite, problem);
 }
 
 // All files that are not finished are; nobody looks at the window any more: what went wrong, or "".

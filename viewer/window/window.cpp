@@ -105,6 +105,11 @@ bool Window::closing() const {
 void Window::close() {
   glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
+
+void Window::hide() {
+  glfwHideWindow(window_);
+}
+
 void Window::set_title(const std::string& title) {
   glfwSetWindowTitle(window_, title.c_str());
 }

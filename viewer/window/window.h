@@ -28,6 +28,7 @@ class Window {
   void poll(double seconds);
   bool closing() const;
   void close();
+  void hide();
   void set_title(const std::string& title);
 
   int width() const { return width_; }  // pixels

@@ -17,8 +17,9 @@ class Workspace {
   // Opens the scene of the arguments. Throws Failure.
   explicit Workspace(const Arguments& arguments);
 
-  // Ends the simulation, with all files of it: what went wrong, or "".
+  // Ends the simulation, with all files of it: what went wrong, or "". ended(): see Session.
   std::string end();
+  bool ended() const { return session_->ended(); }
   // The file of the recording, "" where none was asked for.
   const std::string& record() const { return record_; }
 

@@ -1,19 +1,12 @@
 // The thread that waits for a signal.
-#include "takeover.h"
+#include "output/takeover.h"
 
-#include <chrono>
 #include <cstdlib>
 #include <system_error>
 
 #include "output/interrupt.h"
 
-namespace weft::cli {
-
-namespace {
-
-constexpr std::chrono::seconds kGrace{2};
-
-}  // namespace
+namespace weft {
 
 Takeover::Takeover() : end_([] { std::_Exit(128 + interrupted()); }) {
   try {
@@ -47,4 +40,4 @@ void Takeover::wait() {
   if (!wake_.wait_for(lock, kGrace, [this] { return over_; })) end_();
 }
 
-}  // namespace weft::cli
+}  // namespace weft

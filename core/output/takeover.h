@@ -1,17 +1,20 @@
 // An interrupt that a frame does not wait for.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
 #include <thread>
 
-namespace weft::cli {
+namespace weft {
 
-// A run stops between two frames. Where a frame is still going on two seconds after the signal, `end`
-// is called on a thread of its own and ends the process; the simulation is not to be touched. The thread
-// starts before those of the simulation, which take what is left of a limit on processes. Where it
-// cannot be had, an interrupt waits for the frame.
+// A run stops between two frames. Where a frame is still going on kGrace after the signal, `end` is called
+// on a thread of its own and ends the process; the simulation is not to be touched. The thread starts
+// before those of the simulation, which take what is left of a limit on processes. Where it cannot be had,
+// an interrupt waits for the frame.
+inline constexpr std::chrono::seconds kGrace{2};
+
 class Takeover {
  public:
   Takeover();
@@ -36,4 +39,4 @@ class Takeover {
   std::thread thread_;
 };
 
-}  // namespace weft::cli
+}  // namespace weft
