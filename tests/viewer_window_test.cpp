@@ -52,6 +52,9 @@ TEST_F(Window, EveryLookShowsAtItsKey) {
 TEST_F(Window, LooksHaveControlsOfTheirOwn) {
   Screen screen(folder);
   screen.open("sphere --paused");
+  screen.wait("hints", [](const Json& now) { return now["controls"].contains("hints"); });
+  screen.click(1200, 600);  // beside the cloth; hints go at the first touch
+  screen.wait("none", [](const Json& now) { return !now["controls"].contains("hints"); });
   screen.click("Look");
   screen.click("look pbr");
   screen.wait_for("look", "pbr");
@@ -408,6 +411,46 @@ TEST_F(Window, PathsAreEditedKeyByKey) {
     return !now["controls"].contains("/cloths/0/pins/0 remove 0");
   });
   EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+// Gravity and wind as vectors and along keys; a pin that turns keeps its axis when it gets a path.
+TEST_F(Window, ValuesOverTimeAreEditedToo) {
+  const char* keys = R"({"keys": [[0, 1, 0, 0], [1, 2, 0, 0]]})";
+  folder.write("over.json", std::string(R"({"weft": 1, "gravity": )") + keys +
+                                R"(, "wind": {"velocity": [3, 0, 0], "drag": 0.1}, "cloths": [
+          {"grid": {"points": [4, 4]}, "pins": [{"at": [0, 0], "rotate": {"axis": [0, 1, 0],
+           "keys": [[0, 0], [1, 90]]}}]}]})");
+  Screen screen(folder);
+  screen.open("over.json --paused");
+  const auto look_for = [&](const std::string& name, const std::string& control) {
+    screen.click("filter");
+    screen.type("key ctrl+a type " + name);
+    screen.wait(name, [&](const Json& now) { return now["controls"].contains(control); });
+    screen.key("Return");
+    screen.wait_for("typing", false);
+  };
+  look_for("wind", "/wind/velocity");
+  look_for("gravity", "/gravity/keys");
+  screen.click("/gravity/keys");
+  for (const char* remove : {"/gravity/keys remove 1", "/gravity/keys remove 0"})
+    screen.click(remove);
+  screen.wait("a plain vector",
+              [](const Json& now) { return now["controls"].contains("/gravity"); });
+  look_for("pins", "/cloths/0/pins");
+  screen.click("/cloths/0/pins");
+  screen.click("/cloths/0/pins/0");
+  screen.click("/cloths/0/pins/0 add");
+  screen.wait("a key", [](const Json& now) {
+    return now["controls"].contains("/cloths/0/pins/0 remove 0");
+  });
+  screen.key("ctrl+s");
+  screen.wait_for("edited", false);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+  const Json saved = Json::parse(folder.read("over.json"));
+  EXPECT_EQ(saved["gravity"], Json::parse("[1.0, 0.0, 0.0]"));
+  const Json& pin = saved["cloths"][0]["pins"][0];
+  EXPECT_EQ(pin["keys"].size(), 1u) << pin;
+  EXPECT_EQ(pin["rotate"]["keys"].size(), 2u) << pin;
 }
 
 TEST_F(Window, ScenesAreOpenedOneAfterTheOther) {

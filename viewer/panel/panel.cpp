@@ -56,7 +56,8 @@ void Panel::draw_side(Workspace& workspace, Requests& requests) {
       const bool open = ImGui::BeginTabItem(name);
       mark(name);
       if (!open) return;
-      ImGui::BeginChild(name, {0, 0}, false, ImGuiWindowFlags_NoNav);
+      ImGui::BeginChild(name, {0, 0}, false,
+                        ImGuiWindowFlags_NoNav | ImGuiWindowFlags_AlwaysVerticalScrollbar);
       content();
       ImGui::EndChild();
       ImGui::EndTabItem();

@@ -135,7 +135,18 @@ void Parameters::collider_path(const std::string& pointer, const Json& value) {
   if (draw_path("path", pointer, keys, now.time, place)) change(pointer, keys);
 }
 
-// A pin without a path is its [i, j] alone.
+// A vector over time; without keys it is what it was at the last one.
+void Parameters::vector_path(const std::string& pointer, const Json& value) {
+  Json keys = value;
+  if (!draw_path("over time", pointer, keys, workspace_->frame_data().time, {})) return;
+  const std::string vector = pointer.substr(0, pointer.rfind('/'));
+  if (keys.empty())
+    change(vector, Json{value[0][1], value[0][2], value[0][3]});
+  else
+    change(pointer, keys);
+}
+
+// A pin that has its [i, j] alone is that.
 void Parameters::pins(const std::string& pointer, const Json& value) {
   const std::size_t number = std::stoul(pointer.substr(std::string("/cloths/").size()));
   const auto& cloths = workspace_->frame_data().cloths;
@@ -149,12 +160,17 @@ void Parameters::pins(const std::string& pointer, const Json& value) {
     const Json& at = value[p].is_object() ? value[p]["at"] : value[p];
     const int i = at[0], j = at[1];
     if (i >= cloth.columns || j >= cloth.rows) continue;
-    Json keys = value[p].is_object() ? value[p]["keys"] : Json::array();
+    const Json* known = text::member(value[p], "keys");
+    Json keys = known ? *known : Json::array();
     const std::string place = text::join(pointer, std::to_string(p));
     const std::string name = "pin " + std::to_string(i) + ", " + std::to_string(j);
-    if (draw_path(name, place, keys, workspace_->frame_data().time,
-                  workspace_->in_scene(cloth.position(j * cloth.columns + i))))
-      change(place, keys.empty() ? at : Json{{"at", at}, {"keys", keys}});
+    if (!draw_path(name, place, keys, workspace_->frame_data().time,
+                   workspace_->in_scene(cloth.position(j * cloth.columns + i))))
+      continue;
+    Json pin = value[p].is_object() ? value[p] : Json{{"at", at}};
+    pin["keys"] = keys;
+    if (keys.empty()) pin.erase("keys");
+    change(place, pin.size() == 1 ? at : pin);
   }
   ImGui::Unindent(6);
 }
@@ -163,14 +179,11 @@ void Parameters::member(const std::string& pointer, const std::string& key, cons
                         const Json& value) {
   const std::string label = label_of(key, schema) + "##" + pointer;
   const Json* options = text::member(schema, "oneOf");
-  if (value.is_object()) {
-    const Json* chosen =
-        options && !schema.contains("type") ? text::alternative(schema, value) : &schema;
-    group(pointer, words_of(key), *chosen, value, false);
-    return;
-  }
+  const Json& chosen = *text::alternative(schema, value);
+  if (value.is_object()) return group(pointer, words_of(key), chosen, value, false);
   if (key == "pins" && !value.empty()) return pins(pointer, value);
-  if (key == "keys") return collider_path(pointer, value);
+  if (key == "keys" && pointer.starts_with("/colliders")) return collider_path(pointer, value);
+  if (key == "keys") return vector_path(pointer, value);
   if (options && key == "substeps") {  // a number, or auto
     bool automatic = value.is_string();
     if (ImGui::Checkbox("auto", &automatic)) change(pointer, automatic ? Json("auto") : Json(20));
@@ -193,7 +206,7 @@ void Parameters::member(const std::string& pointer, const std::string& key, cons
   } else if (value.is_number()) {
     number(pointer, label, schema, value);
   } else if (value.is_array() && !value.empty() && value.size() <= 3 && value[0].is_number()) {
-    numbers(pointer, label, schema, value);
+    numbers(pointer, label, chosen, value);
   } else if (value.is_array() && !value.empty()) {
     ImGui::Text("%s: %zu", words_of(key).c_str(), value.size());
   } else {

@@ -32,6 +32,7 @@ class Parameters {
   void area_density(const std::string& pointer);
   void pins(const std::string& pointer, const Json& value);
   void collider_path(const std::string& pointer, const Json& value);
+  void vector_path(const std::string& pointer, const Json& value);
   void change(const std::string& pointer, const Json& value);
   bool named(const std::string& key) const;
   bool passes(const std::string& key, const Json& schema) const;

@@ -1,4 +1,4 @@
-// The path of a pin or a collider: a line for each key, time and place.
+// The path of a pin or a collider, or a vector over time: a line for each key, time and place.
 #include <algorithm>
 
 #include "panel/panel.h"
@@ -28,7 +28,7 @@ bool draw_key(text::Json& keys, std::size_t k) {
   changed = ImGui::DragScalarN("##place", ImGuiDataType_Double, &value[1], 3, 0.005f, &low, &high,
                                "%.3g", ImGuiSliderFlags_AlwaysClamp) ||
             changed;
-  tooltip("Time [s], and where it is then: x, y, z [m]");
+  tooltip("Time [s], and x, y, z then");
   if (changed) key = value;
   return changed;
 }
