@@ -219,6 +219,44 @@ TEST_P(Sessions, RecordingsReplay) {
   }
 }
 
+void advance(Player& player, int frames) {
+  for (int n = 0; n < frames; ++n) player.advance();
+}
+
+TEST(Players, ACutTakenBackLaysTheClothBackOrTellsThatItCannot) {
+  const Scene whole = read_scene("pinned2").scene;
+  Scene cut = whole;
+  cut.cloths[0].cuts = {{{-1, 25.4}, {51, 25.4}}};
+  Shown before, apart, after;
+  Player player(whole, {}, false);
+  advance(player, 20);
+  player.show(before);
+  player.change(cut);
+  advance(player, 40);
+  player.show(apart);
+  player.change(whole);
+  player.show(after);
+  const auto farthest = [&](const Shown& shown) {
+    const ClothCopy &a = before.frame_data.cloths[0], &b = shown.frame_data.cloths[0];
+    float most = 0;
+    for (int p = 0; p < a.columns * a.rows; ++p)
+      most = std::max(most, length(a.position(p) - b.position(p)));
+    return most;
+  };
+  EXPECT_TRUE(apart.frame_data.cloths[0].torn);
+  EXPECT_GT(farthest(apart), 0.5f);
+  EXPECT_FALSE(after.frame_data.cloths[0].torn);
+  EXPECT_LT(farthest(after), 0.05f);  // a frame or two, where not every one is kept
+  EXPECT_EQ(after.telemetry.problems, 0);
+
+  Player torn(cut, {}, false);
+  advance(torn, 5);
+  torn.change(whole);
+  torn.show(after);
+  EXPECT_FALSE(after.frame_data.cloths[0].torn);
+  EXPECT_NE(after.telemetry.problem.find("no longer kept"), std::string::npos);
+}
+
 INSTANTIATE_TEST_SUITE_P(, Sessions,
                          testing::Values("seed1_friction", "hello", "far_cutter", "tug",
                                          "two_sheets"),

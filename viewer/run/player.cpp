@@ -41,10 +41,6 @@ Player::Player(Scene scene, const Options& options, bool hashes)
 // A request that fails is told and changes nothing else.
 template <class Do>
 void Player::attempt(Do&& action) {
-  const auto tell = [&](const std::string& problem) {
-    telemetry_.problem = problem;
-    ++telemetry_.problems;
-  };
   try {
     action();
   } catch (const WriteError& error) {
@@ -52,6 +48,11 @@ void Player::attempt(Do&& action) {
   } catch (const std::exception& error) {
     tell(error.what());
   }
+}
+
+void Player::tell(const std::string& problem) {
+  telemetry_.problem = problem;
+  ++telemetry_.problems;
 }
 
 void Player::start(Scene scene) {
@@ -118,8 +119,9 @@ void Player::change(Scene scene) {
 void Player::lay_back() {
   weft::Snapshot now = simulation_->snapshot();
   bool found = false;
-  for (std::size_t c = 0; c < now.cloths.size(); ++c)
-    for (int back = 0; back < rewind_.size(); ++back) {
+  for (std::size_t c = 0; c < now.cloths.size(); ++c) {
+    int back = 0;
+    for (; back < rewind_.size(); ++back) {
       const weft::Snapshot& then = rewind_.at(back);
       if (then.cloths.size() != now.cloths.size() || then.origin != now.origin ||
           then.cloths[c].positions.size() != now.cloths[c].positions.size() ||
@@ -130,6 +132,11 @@ void Player::lay_back() {
       found = found || back > 0;
       break;
     }
+    if (back == rewind_.size())
+      tell("How cloth " + std::to_string(c) +
+           " lay before it was cut is no longer kept: its parts are pulled together from where "
+           "they are");
+  }
   if (!found) return;
   finish_recording();  // no input says this
   simulation_->restore(now);

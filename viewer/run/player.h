@@ -65,6 +65,7 @@ class Player {
   void restart_clock();
   void leave_past();
   void lay_back();
+  void tell(const std::string& problem);
   void tell_written(const std::string& path);
   void measure_sometimes();
   void keep_state();
