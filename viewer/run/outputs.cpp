@@ -23,6 +23,19 @@ std::string finish(std::unique_ptr<Animation>& animation) {
 
 }  // namespace
 
+// What goes wrong with one of them, which then is no more.
+template <class Output, class Write>
+std::optional<WriteError> Outputs::attempt(std::unique_ptr<Output>& output, Write&& write) {
+  try {
+    if (output) write(*output);
+    return std::nullopt;
+  } catch (const WriteError& error) {
+    output.reset();
+    problem_ += (problem_.empty() ? "" : "\n") + printable(error.path) + ": " + error.what();
+    return error;
+  }
+}
+
 void Outputs::record(const std::string& path, const Simulation& simulation) {
   const std::lock_guard lock(mutex_);
   if (!finished_) recorder_ = std::make_unique<Recorder>(path, simulation);
@@ -35,7 +48,8 @@ bool Outputs::recording() const {
 
 void Outputs::input(std::int64_t frame, const Input& input) {
   const std::lock_guard lock(mutex_);
-  if (recorder_) recorder_->input(frame, input);
+  const auto failed = attempt(recorder_, [&](Recorder& to) { to.input(frame, input); });
+  if (failed) throw WriteError(*failed);
 }
 
 void Outputs::export_to(const std::string& path, const Simulation& simulation) {
@@ -52,8 +66,10 @@ bool Outputs::exporting() const {
 
 void Outputs::frame(const Simulation& simulation) {
   const std::lock_guard lock(mutex_);
-  if (recorder_) recorder_->frame(simulation);
-  if (export_) export_->append(simulation.view());
+  const auto no_recording = attempt(recorder_, [&](Recorder& to) { to.frame(simulation); });
+  const auto no_export = attempt(export_, [&](Animation& to) { to.append(simulation.view()); });
+  if (no_recording) throw WriteError(*no_recording);
+  if (no_export) throw WriteError(*no_export);
 }
 
 std::string Outputs::finish_recording() {
@@ -69,15 +85,10 @@ std::string Outputs::finish_export() {
 std::string Outputs::finish() {
   const std::lock_guard lock(mutex_);
   finished_ = true;
-  const auto attempt = [&](auto& output) {
-    try {
-      viewer::finish(output);
-    } catch (const WriteError& error) {
-      problem_ += (problem_.empty() ? "" : "\n") + printable(error.path) + ": " + error.what();
-    }
-  };
-  attempt(recorder_);
-  attempt(export_);
+  attempt(recorder_, [](Recorder& to) { to.finish(); });
+  attempt(export_, [](Animation& to) { to.finish(); });
+  recorder_.reset();
+  export_.reset();
   return problem_;
 }
 

@@ -1,9 +1,11 @@
-// What is written while a scene plays: a recording of the session, and an animation. Any thread may call, so
-// that a window that closes can finish both while a long frame is still going on.
+// What is written while a scene plays: a recording of the session, and an animation. One that cannot be written
+// is given up: no file has a hole. Any thread may call, so that a window that closes can finish both while a
+// long frame is still going on.
 #pragma once
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "weft/recording.h"
@@ -28,10 +30,13 @@ class Outputs {
   // Gives the file its name; where it was written, or "" where nothing is.
   std::string finish_recording();
   std::string finish_export();
-  // Finishes both, once; what went wrong with that, or "".
+  // Finishes both, once; what went wrong with that or while they were written, or "".
   std::string finish();
 
  private:
+  template <class Output, class Write>
+  std::optional<WriteError> attempt(std::unique_ptr<Output>& output, Write&& write);
+
   mutable std::mutex mutex_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<Animation> export_;

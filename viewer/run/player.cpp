@@ -183,7 +183,7 @@ void Player::hand(const Input& input) {
 void Player::give(const Input& input) {
   const std::int64_t frame = simulation_->frame();
   apply(input, *simulation_);
-  outputs_.input(frame, input);
+  attempt([&] { outputs_.input(frame, input); });
 }
 
 void Player::go_back(int back) {
