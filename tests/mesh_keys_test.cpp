@@ -79,6 +79,8 @@ const std::map<std::string, Key> kKeys = {
     {"/cloths/0/drag", {"1"}},
     {"/cloths/0/bending", {"0.01"}},
     {"/cloths/0/strain_limit", {"0.1"}},
+    {"/cloths/0/cuts", {"[[[0, 1], [3, 1]]]"}},
+    {"/cloths/0/strain_limit_order", {R"("course")"}},
     {"/cloths/0/tear_strain", {"0.5"}},
     {"/cloths/0/tears", {R"("holes")"}},
     {"/cloths/0/self_collision/mode", {R"("particles")"}},

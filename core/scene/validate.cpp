@@ -131,6 +131,9 @@ class Together {
     refuse(cloth.stiffness_gradient > 0, "/stiffness_gradient", "a mesh has a gradient",
            "0, with a mesh");
     refuse(cloth.strain_limit > 0, "/strain_limit", "a mesh has a strain limit", "0, with a mesh");
+    refuse(cloth.strain_limit_order != Cloth{}.strain_limit_order, "/strain_limit_order",
+           "a mesh has no strain limit", "colours, with a mesh");
+    refuse(!cloth.cuts.empty(), "/cuts", "a mesh is cut", "none, with a mesh");
     refuse(cloth.tear_strain > 0, "/tear_strain", "a mesh is to tear", "0, with a mesh");
     refuse(cloth.tears != Tears::split, "/tears", "a mesh does not tear", "split, with a mesh");
     refuse(cloth.self_collision.mode != SelfCollisionMode::off, "/self_collision/mode",

@@ -89,7 +89,10 @@ void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer
     stroke_.begin(pointer.x, pointer.y);
     joined_ = false;
     cuts_.clear();
-    for (const Cloth& c : workspace.document().scene().cloths) cuts_.push_back(c.cuts);
+    const std::vector<Cloth>& cloths = workspace.document().scene().cloths;
+    for (const Cloth& c : cloths) cuts_.push_back(c.cuts);
+    if (std::any_of(cloths.begin(), cloths.end(), [](const Cloth& c) { return c.mesh.given(); }))
+      workspace.messages.warn("Meshes are not cut, only grids are", workspace.now());
     return;
   }
   if (tool == Tool::move && pusher.take_arrow(workspace, area, pointer.x, pointer.y)) {
@@ -177,6 +180,17 @@ void Hands::take_lasso(Workspace& workspace, const Area& area) const {
   toggle_pins(workspace, chosen);
 }
 
+namespace {
+
+// A particle as scenes name it: [i, j] of a grid, its number of a mesh.
+text::Json pin_json(const Cloth& cloth, int particle) {
+  if (cloth.mesh.given()) return particle;
+  const int columns = cloth.grid.nx;
+  return text::Json::array({particle % columns, particle / columns});
+}
+
+}  // namespace
+
 void Hands::toggle_pins(Workspace& workspace,
                         const std::vector<std::vector<int>>& particles) const {
   const Scene& scene = workspace.document().scene();
@@ -185,24 +199,23 @@ void Hands::toggle_pins(Workspace& workspace,
   std::vector<std::set<int>> held(particles.size());
   for (std::size_t c = 0; c < particles.size() && c < scene.cloths.size(); ++c) {
     for (const Pin& pin : scene.cloths[c].pins)
-      held[c].insert(particle_number(scene.cloths[c].grid, pin.i, pin.j));
+      held[c].insert(particle_number(scene.cloths[c], pin));
     for (const int p : particles[c]) pinned += held[c].count(p);
     all += particles[c].size();
   }
   const bool release = all > 0 && pinned == all;
   for (std::size_t c = 0; c < particles.size() && c < scene.cloths.size(); ++c) {
     const std::string place = "/cloths/" + std::to_string(c) + "/pins";
-    const Grid& grid = scene.cloths[c].grid;
+    const Cloth& cloth = scene.cloths[c];
     const std::set<int> chosen(particles[c].begin(), particles[c].end());
     text::Json pins = text::Json::array();
     const text::Json& before = workspace.document().json()[text::Json::json_pointer(place)];
     for (std::size_t k = 0; k < before.size(); ++k) {
-      const Pin& pin = scene.cloths[c].pins[k];
-      if (!release || !chosen.contains(particle_number(grid, pin.i, pin.j)))
+      if (!release || !chosen.contains(particle_number(cloth, cloth.pins[k])))
         pins.push_back(before[k]);
     }
     for (const int p : chosen)
-      if (!release && !held[c].contains(p)) pins.push_back({p % grid.nx, p / grid.nx});
+      if (!release && !held[c].contains(p)) pins.push_back(pin_json(cloth, p));
     if (!chosen.empty()) changes.push_back({place, pins});
   }
   if (!changes.empty()) workspace.edit(changes, false, release ? "unpin" : "pin");
