@@ -19,6 +19,14 @@ weft::Collider sphere_at(double y) {
   return c;
 }
 
+// In place of the springs, and about as stiff.
+void use_membrane(weft::Scene& scene, double damping) {
+  weft::Cloth& cloth = scene.cloths[0];
+  const double k = cloth.stiffness.structural, s = cloth.stiffness.shear;
+  cloth.stiffness = weft::Cloth().stiffness;
+  cloth.membrane = {k + s, k + s, s, s, damping};
+}
+
 std::vector<Feature> features() {
   return {
       {"plain", "", [](weft::Scene&) {}},
@@ -45,6 +53,13 @@ std::vector<Feature> features() {
       {"tearing, whole", "tear", [](weft::Scene& s) { s.cloths[0].tear_strain = 5; }},
       {"tearing, shreds", "tear", [](weft::Scene& s) { s.cloths[0].tear_strain = 5; }},
       {"bending", "bending", [](weft::Scene& s) { s.cloths[0].bending = 1e-5; }},
+      {"membrane", "membrane", [](weft::Scene& s) { use_membrane(s, 0); }},
+      {"membrane, damped", "membrane", [](weft::Scene& s) { use_membrane(s, 1e-6); }},
+      {"membrane, bending", "membrane",
+       [](weft::Scene& s) {
+         use_membrane(s, 0);
+         s.cloths[0].bending = 1e-5;
+       }},
       {"wind", "wind",
        [](weft::Scene& s) {
          s.wind.velocity = {1, 0, 0};
