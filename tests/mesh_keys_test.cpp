@@ -89,8 +89,10 @@ const std::map<std::string, Key> kKeys = {
     {"/cloths/0/self_collision/response", {R"("course")"}},
     {"/cloths/0/pins", {"[1]"}},
 };
-// Words for people, and how long a run is.
-const std::set<std::string> kNotOfTheCloth = {"/weft", "/name", "/about", "/time/seconds"};
+// Words for people, how long a run is, and from where it is seen.
+const std::set<std::string> kNotOfTheCloth = {
+    "/weft",       "/name", "/about", "/time/seconds", "/camera/azimuth", "/camera/elevation",
+    "/camera/zoom"};
 
 // The places of all keys below an object of the schema.
 void collect(const Json& schema, const Json& object, const std::string& place,
