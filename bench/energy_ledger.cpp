@@ -6,6 +6,7 @@
 
 #include "physics/model/lattice/bending.h"
 #include "physics/model/lattice/energy.h"
+#include "physics/model/lattice/membrane.h"
 
 namespace bench {
 namespace {
@@ -53,7 +54,7 @@ Vec3 grid_point(const weft::Grid& g, double i, double j) {
 bool runs_springs(const weft::Simulation& simulation) {
   const auto& stages = simulation.plan().stages;
   return std::any_of(stages.begin(), stages.end(),
-                     [](const auto& s) { return s.name == "springs"; });
+                     [](const auto& s) { return s.name == "springs" || s.name == "membrane"; });
 }
 
 Ledger::Ledger(const weft::Scene& scene, bool springs, double dt)
@@ -78,7 +79,8 @@ double Ledger::share(const std::vector<Vec3>& x, const std::vector<Vec3>& v) {
   const double height = gravity(x);
   highest_ = std::max(highest_, height);
   released_ = std::max(released_, highest_ - height);
-  const double kept = cloth_.tear_strain > 0 ? 0 : bent(x) + elastic(x);
+  const bool whole = cloth_.tear_strain == 0 && cloth_.cuts.empty();
+  const double kept = whole ? bent(x) + elastic(x) : 0;
   const double held = kinetic(v) + kept;
   return held == 0 ? 0 : held / (put_in_ + released_ + noise(x));  // all of it may be pinned
 }
@@ -144,12 +146,21 @@ double Ledger::bent(const std::vector<Vec3>& x) const {
 
 double Ledger::elastic(const std::vector<Vec3>& x) const {
   const double limit = 1 + cloth_.strain_limit;
-  return sum_of([&](const weft::physics::Stencil& f, std::size_t a, std::size_t b, double k) {
-    const double length = distance(x[a], x[b]), c = length - f.rest;
-    const double over = length - limit * f.rest;
-    const bool limited = cloth_.strain_limit > 0 && over > 0 && f.kind != weft::physics::Kind::bend;
-    return 0.5 * (k * c * c + (limited ? rigid(a, b) * over * over : 0));
-  });
+  const bool membrane = springs_ && cloth_.membrane.given();
+  const double whole = membrane
+                           ? weft::physics::MembraneCells(
+                                 cloth_, stencils_, weft::physics::spring_repeats(scene_.solver))
+                                 .energy(x)
+                           : 0;
+  return whole +
+         sum_of([&](const weft::physics::Stencil& f, std::size_t a, std::size_t b, double k) {
+           if (membrane) k = 0;
+           const double length = distance(x[a], x[b]), c = length - f.rest;
+           const double over = length - limit * f.rest;
+           const bool limited =
+               cloth_.strain_limit > 0 && over > 0 && f.kind != weft::physics::Kind::bend;
+           return 0.5 * (k * c * c + (limited ? rigid(a, b) * over * over : 0));
+         });
 }
 
 // What the tethers take back at once.

@@ -15,7 +15,7 @@ using weft::Vec3;
 Vec3 grid_point(const weft::Grid& g, double i, double j);
 bool pinned(const weft::Cloth& cloth, int i, int j);
 
-// Whether springs run as forces, now.
+// Whether springs, or a membrane, run as forces, now.
 bool runs_springs(const weft::Simulation& simulation);
 
 // Energies of the first sheet of a scene as its bound counts them.
