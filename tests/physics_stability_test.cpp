@@ -113,11 +113,11 @@ TEST(StabilityLimit, EstimateIsCloseAndNeverAbove) {
     const Lattice l = lattice_of(c, cloth);
     const bool damped = c.damping > 0;
     const Spectrum estimate =
-        estimate_spectrum(cloth, stencils_of(cloth), nullptr, l, damped, kernel_table(Simd::best));
+        estimate_spectrum(cloth, stencils_of(cloth), l, damped, kernel_table(Simd::best));
     for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
       if (!simd_available(simd)) continue;
       const Spectrum same =
-          estimate_spectrum(cloth, stencils_of(cloth), nullptr, l, damped, kernel_table(simd));
+          estimate_spectrum(cloth, stencils_of(cloth), l, damped, kernel_table(simd));
       EXPECT_EQ(same.omega_squared, estimate.omega_squared) << c.name << ", " << simd_name(simd);
       EXPECT_EQ(same.damping, estimate.damping) << c.name << ", " << simd_name(simd);
     }

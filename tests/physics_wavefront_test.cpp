@@ -112,7 +112,7 @@ std::vector<std::uint64_t> one_after_the_other(const Layout& layout) {
     for (int s = 0; s < layout.substeps[frame]; ++s)
       for (std::size_t q = 0; q < layout.reaches.size(); ++q) {
         MixingStage stage(int(q), layout.reaches[q], rows);
-        stage.reserve_slots(1);
+        stage.reserve(1);
         for (int j = 0; j < layout.rows; ++j)
           stage.run(j, {0.125, double(frame) * 10 + (s + 1) * 0.125, s == 0 ? 0.1 : 0.125, 0});
       }

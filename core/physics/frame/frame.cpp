@@ -41,9 +41,6 @@ void Simulation::State::advance_frame() {
   } while (carry_out(verdict));
   if (verdict == Verdict::stop) {
     find_fault();
-    // Stages that ran alone have room for one substep at a time: those of the next frame are chosen anew.
-    for (auto& step : cloths) step->choose_anew(method);
-    plan_changed();
     restore();
     return;
   }

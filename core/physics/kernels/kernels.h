@@ -86,20 +86,6 @@ struct SpringRows : LeapfrogRows {
   std::uint8_t* overlong;
 };
 
-// A row's edges and the cells between it and the next row (kernels/membrane.cpp).
-struct MembraneConstants {
-  float warp, weft;     // stiffness of an edge along the row, and of one to the next row [N/m]
-  float along, across;  // coupling: what a cell's strains across and along add to them [N/m]
-  float shear;          // pull of a cell's diagonals, of their squared lengths' difference [N/m³]
-};
-
-struct MembraneRows : LeapfrogRows {
-  const MembraneConstants* constants;  // of each row; zero but for `warp` where no row follows
-  const float* share;                  // of `weft`, of each column: half at both sides
-  float half_u, half_v;                // 1/(2 h²) of the spacings along and across rows [1/m²]
-  float damping;                       // s
-};
-
 // One stencil's constraints of one row in a Jacobi sweep.
 struct JacobiConstants {
   float compliance = 0;  // 1/(k dt²) [1/kg], infinite where there is no constraint
@@ -285,48 +271,11 @@ struct Run {
   std::int32_t first, last;
 };
 
-// Gusts: each component of the wind gains three waves, of phase k·x + at.
-inline constexpr int kGusts = 9;  // 3 for each component
-struct Gust {
-  float kx, ky, kz;  // 1/m
-  float at;          // phase at x = 0, in turns
-};
-
-// What air does to each particle of a row, added up over its triangles: forces [N], and how they
-// resist, A/3 drag (u·n) and A/3 lift |u| [kg/s] (wind.cpp).
-struct AirRow {
-  Row3 f;
-  float *drag, *lift;
-};
-
-// The air at a time, and how it acts on cloth.
-struct Air {
-  float wx, wy, wz;  // m/s
-  float drag, lift;  // kg/m³
-  float gust_speed;  // m/s; 0: none
-  Gust gusts[kGusts];
-};
-
-// Air on the triangles between a row and the next.
-struct WindRow : Air {
-  int columns;
-  ConstRow3 x, x_next, v, v_next;
-  AirRow air, air_next;
-};
-
-// Moves a row by what air has done to it, and starts its sums anew.
-struct PushRow {
-  int columns;
-  Row3 x, v;
-  const float* w;
-  AirRow air;
-  float time;       // s, that the air pushes for
-  float dt;         // s; how far positions follow the velocity that is gained
-  bool velocities;  // gain at once, else they get it from positions
-};
-
-struct LineBatch;  // kernels/line.h
-struct BlockRows;  // kernels/contact.h
+struct WindRow;  // kernels/wind.h
+struct PushRow;
+struct MembraneRows;  // kernels/membrane.h
+struct LineBatch;     // kernels/line.h
+struct BlockRows;     // kernels/contact.h
 struct NearBoxes;
 struct CellKeys;
 struct NearSearch;

@@ -9,12 +9,13 @@
 // by those across of the cells at it; an edge of the sheet has one cell, and so counts half. The shear
 // pulls one diagonal of a cell and pushes the other. All of it is polynomial: no root, no division.
 // Damping puts e + damping de/dt in the place of e.
+#include "physics/kernels/membrane.h"
+
 #include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
 
-using physics::LeapfrogRows;
 using physics::MembraneConstants;
 using physics::MembraneRows;
 

@@ -14,7 +14,8 @@ using physics::MeshBatch;
 using physics::MeshForces;
 using physics::MeshRow;
 
-constexpr float kTinySquare = 1e-20f;
+constexpr float kTinySquare = 1e-20f;  // m²
+constexpr float kTinyArea = 1e-30f;    // m⁴, squared
 
 // Adds to the first three floats of the records that are told.
 WEFT_INLINE void add_records(float* records, const std::int32_t* number, Wide3 v) {
@@ -85,14 +86,25 @@ struct Triangles {
     }
   }
 
-  // x: of the triangle's corners and its neighbours', moved on where bending is damped.
-  WEFT_INLINE void bending(const Wide3 (&x)[6], Wide3 (&f)[3], Wide3 (&across)[3]) const {
-    Wide3 hinge[3];
+  // Jumps of slope: of the positions of a triangle's corners and its neighbours', or of velocities.
+  WEFT_INLINE void jumps(const Wide3 (&x)[6], Wide3 (&jump)[3]) const {
     for (int k = 0; k < 3; ++k) {
       const Wide3 a = x[k], side = x[(k + 1) % 3] - a;
-      hinge[k] = (x[3 + k] - a - side * load(b.away_at[k] + lane)) * load(b.away[k] + lane) +
-                 (x[(k + 2) % 3] - a - side * load(b.own_at[k] + lane)) * load(b.own[k] + lane);
+      jump[k] = (x[3 + k] - a - side * load(b.away_at[k] + lane)) * load(b.away[k] + lane) +
+                (x[(k + 2) % 3] - a - side * load(b.own_at[k] + lane)) * load(b.own[k] + lane);
     }
+  }
+
+  // What a jump becomes off the triangle is damped; that it turns with the triangle is not.
+  WEFT_INLINE void add_rates(const Wide3 (&x)[3], const Wide3 (&v)[6], Wide3 (&jump)[3]) const {
+    const Wide3 normal = cross(x[1] - x[0], x[2] - x[0]);
+    const Wide scale = m.bend_damping / max(dot(normal, normal), wide(kTinyArea));
+    Wide3 rate[3];
+    jumps(v, rate);
+    for (int k = 0; k < 3; ++k) jump[k] = jump[k] + normal * (dot(normal, rate[k]) * scale);
+  }
+
+  WEFT_INLINE void bending(const Wide3 (&hinge)[3], Wide3 (&f)[3], Wide3 (&across)[3]) const {
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3, last = (k + 2) % 3;
       const Wide3 moment = hinge[k] * load(b.moment[k] + lane) +
@@ -122,15 +134,14 @@ WEFT_INLINE void forces_of(const MeshForces& m) {
       else
         t.springs(x, v, f);
       if constexpr (kBends) {
-        Wide3 all[6], across[3];
-        for (int k = 0; k < 3; ++k) {
-          all[k] = x[k];
-          all[3 + k] = t.at(m.position, 3 + k);
-          if (!m.velocity) continue;
-          all[k] = all[k] + v[k] * wide(m.bend_damping);
-          all[3 + k] = all[3 + k] + t.at(m.velocity, 3 + k) * wide(m.bend_damping);
-        }
-        t.bending(all, f, across);
+        Wide3 jump[3], across[3];
+        t.jumps({x[0], x[1], x[2], t.at(m.position, 3), t.at(m.position, 4), t.at(m.position, 5)},
+                jump);
+        if (m.bend_damping > 0)
+          t.add_rates(
+              x, {v[0], v[1], v[2], t.at(m.velocity, 3), t.at(m.velocity, 4), t.at(m.velocity, 5)},
+              jump);
+        t.bending(jump, f, across);
         for (int k = 0; k < 3; ++k) add_records(m.force, t.b.corner[3 + k] + lane, across[k]);
       }
       for (int k = 0; k < 3; ++k) add_records(m.force, t.b.corner[k] + lane, f[k]);

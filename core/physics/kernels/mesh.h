@@ -3,7 +3,7 @@
 // is one load then.
 #pragma once
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/wind.h"
 
 namespace weft::physics {
 

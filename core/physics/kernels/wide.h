@@ -376,6 +376,10 @@ WEFT_INLINE Wide3 select(WideInt m, Wide3 a, Wide3 b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }
 
+WEFT_INLINE Wide3 cross(Wide3 a, Wide3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 template <int N>
 class Delay3 {
  public:

@@ -21,10 +21,6 @@ using physics::WindRow;
 
 constexpr float kTinySquare = 1e-20f;
 
-WEFT_INLINE Wide3 cross(Wide3 a, Wide3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 // A wave of period 1 and height 1 of two parabolas a period: smooth, near to a sine, and exact.
 WEFT_INLINE Wide wave(Wide phase) {
   const Wide part = phase - __builtin_convertvector(whole(phase), Wide);  // -1 … 1

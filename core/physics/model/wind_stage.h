@@ -5,6 +5,7 @@
 // of substeps, with the impulse of all of them (multiple time steps: Tuckerman, Berne, Martyna 1992).
 #pragma once
 
+#include "physics/kernels/wind.h"
 #include "physics/model/cloth_model.h"
 
 namespace weft::physics {

@@ -126,16 +126,27 @@ class RowStage : public Stage {
   // Called before a row that does not follow on from the row before it, where rows are passed over:
   // what is carried from row to row starts anew.
   virtual void start(const Substep& substep) { (void)substep; }
-  // Makes room for substeps of slots 0 … slots-1.
-  virtual void reserve_slots(int slots) { (void)slots; }
+  // Sees to room for substeps of slots 0 … slots-1.
+  void reserve(int slots) {
+    if (slots <= slots_) return;
+    reserve_slots(slots);
+    slots_ = slots;
+  }
 
   void run_alone(int rows, const Substep& substep, Threads&) final {
-    reserve_slots(1);
+    reserve(1);
     prepare(substep.dt);
     run(0, rows, substep);
   }
 
   const int reach;
+
+ protected:
+  // Makes room for so many slots in place of what there was.
+  virtual void reserve_slots(int slots) { (void)slots; }
+
+ private:
+  int slots_ = 0;  // that there is room for
 };
 
 // Works on the whole lattice at once, after all that comes before it in the substep and before all

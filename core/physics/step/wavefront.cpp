@@ -149,10 +149,7 @@ void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const 
     for (RowStage* s : stages_) s->prepare(substeps.dt);
   prepared_dt_ = substeps.dt;
   const Run r{substeps, awake, observer};
-  if (const int slots = chunk_substeps_ * ring_; slots > slots_) {
-    for (RowStage* s : stages_) s->reserve_slots(slots);
-    slots_ = slots;
-  }
+  for (RowStage* s : stages_) s->reserve(chunk_substeps_ * ring_);
   if (apart) {
     const Chunk only = chunk(0, 0, 1);
     return threads.share(std::size_t(only.tiles),

@@ -65,7 +65,7 @@ class Wavefront {
 
   double prepared_dt_ = 0;
   int chunk_substeps_ = 1;  // at most
-  int height_ = 1, ring_ = 1, slots_ = 0;
+  int height_ = 1, ring_ = 1;
   bool tall_ = false;        // threads wait for each other but briefly
   std::vector<int> offset_;  // of every stage of every substep of a chunk
   std::vector<Chunk> chunks_;

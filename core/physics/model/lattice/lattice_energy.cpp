@@ -194,12 +194,9 @@ float LatticeModel::greatest_stretch(const Rows& x) const {
 Spectrum LatticeModel::spectrum(std::span<const float> inverse_masses) const {
   Lattice start = make_lattice(parts_.cloth, index_, seed_, false);
   std::copy(inverse_masses.begin(), inverse_masses.end(), start.inverse_mass.data());
-  if (is_membrane()) {
-    const MembraneCells cells = membrane();
-    return estimate_spectrum(parts_.cloth, {}, &cells, start, cells.damping(), parts_.kernels);
-  }
-  return estimate_spectrum(parts_.cloth, stencils_, nullptr, start,
-                           method_ == Method::spring_friction, parts_.kernels);
+  if (is_membrane()) return membrane_spectrum(parts_.cloth, membrane(), start);
+  return estimate_spectrum(parts_.cloth, stencils_, start, method_ == Method::spring_friction,
+                           parts_.kernels);
 }
 
 double LatticeModel::stiffening(double stretch) const {

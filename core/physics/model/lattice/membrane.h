@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "physics/kernels/membrane.h"
 #include "physics/model/lattice/lattice.h"
 #include "physics/model/lattice/stencil.h"
 

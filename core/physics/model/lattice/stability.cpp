@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "physics/model/largest_eigenvalue.h"
 #include "physics/model/lattice/bending.h"
 #include "physics/model/path.h"
 #include "physics/model/random.h"
@@ -33,23 +34,19 @@ void for_each_component(Visit&& visit, Fields&... fields) {
 struct Operator {
   const Cloth& cloth;
   const std::vector<Stencil>& stencils;
-  const MembraneCells* membrane;
   const Lattice& l;
   const KernelTable& kernels;
   bool damping;  // in place of the stiffness
-  std::vector<Vec3> rest;
   AlignedArray<float> root_w;
   Rows scaled;
 
-  Operator(const Cloth& c, const std::vector<Stencil>& f, const MembraneCells* cells,
-           const Lattice& lattice, const KernelTable& k, bool of_damping)
+  Operator(const Cloth& c, const std::vector<Stencil>& f, const Lattice& lattice,
+           const KernelTable& k, bool of_damping)
       : cloth(c),
         stencils(f),
-        membrane(cells),
         l(lattice),
         kernels(k),
         damping(of_damping),
-        rest(cells ? lattice.gather(lattice.x) : std::vector<Vec3>()),
         root_w(lattice.inverse_mass.size()),
         scaled(lattice.rows, lattice.stride) {
     for (std::size_t p = 0; p < size(); ++p) root_w[p] = std::sqrt(l.inverse_mass[p]);
@@ -66,7 +63,6 @@ struct Operator {
     y.clear();
     for (const Stencil& f : stencils)
       for (int j = 0; j + f.dj < l.rows; ++j) apply_row(f, j, y);
-    if (membrane) apply_membrane(y);
     if (cloth.bending.given() && !damping) apply_bending(y);
     for_each_component(
         [&](float* to) {
@@ -88,16 +84,6 @@ struct Operator {
     r.factor = column_factors(l, f);
     r.sideways = !damping;
     kernels.tangent(r);
-  }
-
-  void apply_membrane(Rows& y) {
-    const std::vector<Vec3> u = l.gather(scaled);
-    std::vector<Vec3> force(u.size(), Vec3{});
-    membrane->add_forces(rest, &u, 0, 1, force);
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i)
-        for (int c = 0; c < 3; ++c)
-          y.at(c, j, i) -= float(force[std::size_t(j) * l.columns + i][c]);
   }
 
   void apply_bending(Rows& y) {
@@ -164,10 +150,9 @@ double largest_eigenvalue(Operator& op) {
   return solver.eigenvalues().maxCoeff();
 }
 
-double largest(const Cloth& cloth, const std::vector<Stencil>& stencils,
-               const MembraneCells* membrane, const Lattice& l, const KernelTable& kernels,
-               bool damping) {
-  Operator op(cloth, stencils, membrane, l, kernels, damping);
+double largest(const Cloth& cloth, const std::vector<Stencil>& stencils, const Lattice& l,
+               const KernelTable& kernels, bool damping) {
+  Operator op(cloth, stencils, l, kernels, damping);
   return std::max(0.0, largest_eigenvalue(op)) * kMargin;
 }
 
@@ -180,11 +165,34 @@ double Spectrum::largest_substep() const {
 }
 
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Stencil>& stencils,
-                           const MembraneCells* membrane, const Lattice& l, double damped,
-                           const KernelTable& kernels) {
+                           const Lattice& l, bool damped, const KernelTable& kernels) {
   Spectrum spectrum;
-  spectrum.omega_squared = largest(cloth, stencils, membrane, l, kernels, false);
-  if (damped > 0) spectrum.damping = damped * largest(cloth, stencils, membrane, l, kernels, true);
+  spectrum.omega_squared = largest(cloth, stencils, l, kernels, false);
+  if (damped) spectrum.damping = largest(cloth, stencils, l, kernels, true);
+  return spectrum;
+}
+
+Spectrum membrane_spectrum(const Cloth& cloth, const MembraneCells& cells, const Lattice& l) {
+  const std::vector<Vec3> rest = l.gather(l.x);
+  std::vector<double> root;  // of inverse masses
+  for (int p = 0; p < l.count(); ++p) root.push_back(std::sqrt(double(l.inverse_mass[l.lane(p)])));
+  // M^-1/2 K M^-1/2: pulls by displacements are those by velocities of a membrane without stress.
+  std::vector<Vec3> moved(rest.size()), pull(rest.size());
+  const auto apply = [&](bool bends, const std::vector<double>& u, std::vector<double>& y) {
+    for (std::size_t n = 0; n < u.size(); ++n) moved[n / 3][n % 3] = root[n / 3] * u[n];
+    std::fill(pull.begin(), pull.end(), Vec3{});
+    cells.add_forces(rest, &moved, 0, 1, pull);
+    if (bends)
+      add_bending_forces(
+          cloth, [&](int p, int c) { return moved[std::size_t(p)][std::size_t(c)]; }, pull);
+    for (std::size_t n = 0; n < u.size(); ++n) y[n] = -root[n / 3] * pull[n / 3][n % 3];
+  };
+  const auto largest = [&](bool bends) {
+    return largest_eigenvalue(3 * rest.size(), [&](const auto& u, auto& y) { apply(bends, u, y); });
+  };
+  Spectrum spectrum;
+  spectrum.omega_squared = largest(cloth.bending.given());
+  if (cells.damping() > 0) spectrum.damping = cells.damping() * largest(false);
   return spectrum;
 }
 

@@ -16,12 +16,12 @@
 namespace weft::physics {
 
 // Estimates the spectrum of the lattice as it lies now by a Lanczos iteration, from above: the
-// substep it allows is never larger than the true limit, and at most about 3 % smaller. Of springs, or of
-// a membrane without stress in their place; `damped`: whether springs have damping, or the time by which a
-// membrane's damping is proportional to its stiffness [s].
+// substep it allows is never larger than the true limit, and at most about 3 % smaller.
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Stencil>& stencils,
-                           const MembraneCells* membrane, const Lattice& lattice, double damped,
-                           const KernelTable& kernels);
+                           const Lattice& lattice, bool damped, const KernelTable& kernels);
+
+// The same of a membrane without stress, with its bending.
+Spectrum membrane_spectrum(const Cloth& cloth, const MembraneCells& cells, const Lattice& lattice);
 
 // kg; of the lightest particle where masses are given one by one, else of an inner one: what lies on the
 // border may weigh less, and is held by as much less.

@@ -141,7 +141,7 @@ void stretch_springs(const RestTriangle& r, const MeshMaterial& m, const Corners
 }
 
 void bend(const RestTriangle& r, const MeshMaterial& m, const Corners& c, Pulled& p) {
-  // Jumps of slope of the positions, and of the velocities times the damping.
+  // Jumps of slope of the positions, and how fast they change off the triangle.
   const auto jump = [&](const std::array<Vec3, 6>& y, std::size_t k) {
     const Vec3 side = minus(y[(k + 1) % 3], y[k]);
     const auto off = [&](std::size_t corner, double at, double weight) {
@@ -149,10 +149,12 @@ void bend(const RestTriangle& r, const MeshMaterial& m, const Corners& c, Pulled
     };
     return plus(off(3 + k, r.away_at[k], r.away[k]), off((k + 2) % 3, r.own_at[k], r.own[k]));
   };
+  const Vec3 normal = cross(minus(c.x[1], c.x[0]), minus(c.x[2], c.x[0]));
+  const double scale = m.bend_damping / std::max(dot(normal, normal), 1e-30);
   std::array<Vec3, 3> h, felt;
   for (std::size_t k = 0; k < 3; ++k) {
     h[k] = jump(c.x, k);
-    felt[k] = plus(h[k], times(jump(c.v, k), m.bend_damping));
+    felt[k] = plus(h[k], times(normal, scale * dot(normal, jump(c.v, k))));
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;

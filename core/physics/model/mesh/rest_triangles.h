@@ -5,7 +5,8 @@
 // one degree of freedom per node"): k = Σ w n nᵀ h over its sides, h the jump of slope, n the side's normal
 // in the triangle, w = l share / area. Held as vectors in space, jumps are linear in the positions, and the
 // energy is a quadratic form of them. Regular meshes converge with the square of the edge, whichever way
-// their diagonals go; on meshes that are wild plates are about a tenth too stiff.
+// their diagonals go; on meshes that are wild plates are about a tenth too stiff. Damping acts on what jumps become along the
+// triangle's normal: cloth that turns as a whole is not braked.
 #pragma once
 
 #include "physics/model/cloth_model.h"

@@ -1,0 +1,72 @@
+// Damping of a mesh's bending: it takes what flaps, and leaves alone what turns as a whole.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "made_up_mesh.h"
+#include "weft/simulation.h"
+
+namespace weft {
+namespace {
+
+constexpr double kRadius = 0.2;  // m, of the roll
+
+// A sheet rolled about the z axis, without stretch.
+std::vector<double> rolled(const TriangleMesh& mesh) {
+  std::vector<double> x;
+  for (const Vec3& p : mesh.vertices) {
+    const double turn = p[0] / kRadius;
+    x.insert(x.end(), {kRadius * std::sin(turn), kRadius * std::cos(turn), p[2]});
+  }
+  return x;
+}
+
+Scene scene_of(std::shared_ptr<const TriangleMesh> mesh, double damping) {
+  Scene scene;
+  scene.gravity = {};
+  Cloth& cloth = scene.cloths.emplace_back();
+  cloth.mesh.shape = std::move(mesh);
+  cloth.density = 0.3;
+  cloth.membrane = {3000, 2000, 200, 80, 0};
+  cloth.bending = 1e-4;
+  cloth.bending.damping = damping;
+  return scene;
+}
+
+TEST(MeshDamping, BrakesNoTurnOfCurvedCloth) {
+  const auto mesh = made_up({.nx = 15, .ny = 13, .width = 0.6, .height = 0.5, .shift = 0.3});
+  const Vec3 spin{2, -3, 5};
+  Simulation run(scene_of(mesh, 0.2), {.threads = 1});
+  const std::vector<double> x = rolled(*mesh);
+  std::vector<double> v;
+  for (std::size_t n = 0; n < x.size(); n += 3)
+    v.insert(v.end(), {spin[1] * x[n + 2] - spin[2] * x[n + 1], spin[2] * x[n] - spin[0] * x[n + 2],
+                       spin[0] * x[n + 1] - spin[1] * x[n]});
+  run.set_state(x, v);
+  const Report before = run.report();
+  for (int n = 0; n < 30; ++n) run.advance_frame();
+  const Report after = run.report();
+  ASSERT_TRUE(run.status().ok);
+  double all = 0;
+  for (const double l : before.angular_momentum) all = std::max(all, std::abs(l));
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(after.angular_momentum[k], before.angular_momentum[k], 1e-3 * all) << k;
+}
+
+// A rolled sheet that is let go flaps; damped, it loses more than half of that in a second.
+TEST(MeshDamping, TakesWhatFlaps) {
+  const auto mesh = made_up({.nx = 15, .ny = 13, .width = 0.6, .height = 0.5, .shift = 0.2});
+  double left[2];
+  for (const bool damped : {false, true}) {
+    Simulation run(scene_of(mesh, damped ? 0.05 : 0), {.threads = 1});
+    const std::vector<double> x = rolled(*mesh);
+    run.set_state(x, std::vector<double>(x.size()));
+    for (int n = 0; n < 60; ++n) run.advance_frame();
+    left[damped] = run.report().energy.total;
+  }
+  EXPECT_LT(left[1], 0.5 * left[0]);
+  EXPECT_GT(left[1], -1e-6);
+}
+
+}  // namespace
+}  // namespace weft
