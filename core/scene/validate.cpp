@@ -10,7 +10,9 @@
 
 #include "scene/document.h"
 #include "scene/fields.h"
+#include "scene/material.h"
 #include "scene/mesh/faces.h"
+#include "scene/mesh/refused.h"
 #include "weft/mesh.h"
 
 namespace weft {
@@ -29,10 +31,6 @@ double length(const Vec3& a) {
 
 Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-std::string number_words(double x) {
-  return brief(Json(x));
 }
 
 std::string at(int i, int j) {
@@ -96,7 +94,7 @@ class Together {
       mesh(cloth, place);
     else
       sheet(cloth, place);
-    material(cloth, place);
+    check_material(scene_, cloth, place, result_);
     const bool timed = sound({"/time", place + "/drag"}) && scene_.time.substeps > 0;
     const double loss = cloth.drag * scene_.time.frame / std::max(scene_.time.substeps, 1);
     if (timed && loss > 1 + 1e-9)
@@ -104,59 +102,12 @@ class Together {
             "0 to 1: less drag or more substeps");
   }
 
-  // What meshes do not have, or not yet.
   void mesh(const Cloth& cloth, const std::string& place) {
     if (!sound({place})) return;
     if (cloth.mesh.shape)
       if (const auto wrong = fault_of(cloth.mesh, place + "/mesh"))
         return fault(wrong->place, wrong->what, wrong->allowed);
-    const auto refuse = [&](bool given, const char* key, const char* what, const char* allowed) {
-      if (given) fault(place + key, what, allowed);
-    };
-    refuse(cloth.grid != Grid{}, "/mesh", "both grid and mesh are given", "one of the two");
-    refuse(cloth.particle_mass > 0 || !cloth.masses.empty(), "/mesh",
-           "masses are given with a mesh", "density");
-    refuse(cloth.lumping == Lumping::equal, "/lumping", "the vertices of a mesh are to be alike",
-           "auto or area, with a mesh: a vertex weighs what its triangles do");
-    const Kinds plain = Cloth{}.stiffness;
-    refuse(cloth.stiffness.shear != plain.shear || cloth.stiffness.bend != plain.bend, "/stiffness",
-           "shear or bend is given with a mesh", "structural, for all edges alike");
-    refuse(cloth.spring_damping.shear > 0 || cloth.spring_damping.bend > 0, "/spring_damping",
-           "shear or bend is given with a mesh", "structural, for all edges alike");
-    refuse(cloth.level > 0, "/level", "a mesh has a level", "0, with a mesh");
-    refuse(cloth.level_diagonals != LevelDiagonals::both, "/level_diagonals",
-           "a mesh has no levels", "both, with a mesh");
-    refuse(cloth.positional_k != Cloth{}.positional_k, "/positional_k", "a mesh is not projected",
-           "0.5, with a mesh");
-    refuse(cloth.stiffness_gradient > 0, "/stiffness_gradient", "a mesh has a gradient",
-           "0, with a mesh");
-    refuse(cloth.strain_limit > 0, "/strain_limit", "a mesh has a strain limit", "0, with a mesh");
-    refuse(cloth.strain_limit_order != Cloth{}.strain_limit_order, "/strain_limit_order",
-           "a mesh has no strain limit", "colours, with a mesh");
-    refuse(!cloth.cuts.empty(), "/cuts", "a mesh is cut", "none, with a mesh");
-    refuse(cloth.tear_strain > 0, "/tear_strain", "a mesh is to tear", "0, with a mesh");
-    refuse(cloth.tears != Tears::split, "/tears", "a mesh does not tear", "split, with a mesh");
-    refuse(cloth.self_collision.mode != SelfCollisionMode::off, "/self_collision/mode",
-           "a mesh is to meet itself", "off, with a mesh");
-    SelfCollision off = cloth.self_collision;
-    off.mode = SelfCollisionMode::off;
-    refuse(off != SelfCollision{}, "/self_collision", "a mesh does not meet itself",
-           "nothing, with a mesh");
-    const Method method = scene_.solver.method;
-    const bool springs = method == Method::spring || method == Method::spring_friction;
-    refuse(!springs && sound({"/solver/method"}), "/mesh",
-           "a mesh is to be projected by the scene's method",
-           "method spring or spring_friction, with a mesh");
-    for (const Collider& collider : scene_.colliders)
-      if (collider.cuts)
-        return fault(place + "/mesh", "a collider cuts a mesh", "grids alone are cut");
-    for (std::size_t c = 0; c < scene_.cloths.size(); ++c) {
-      const Cloth& other = scene_.cloths[c];
-      if (!other.mesh.given() && other.self_collision.mode != SelfCollisionMode::off)
-        return fault("/cloths/" + std::to_string(c) + "/self_collision/mode",
-                     "cloth is to meet cloth beside a mesh, which meets none",
-                     "off, beside a mesh");
-    }
+    check_mesh(scene_, cloth, place, result_);
     mesh_pins(cloth, place + "/pins");
   }
 
@@ -229,62 +180,6 @@ class Together {
                            : "a particle") +
                 std::string(" weighs ") + number_words(light ? least : most) + " kg",
             range_words(one));
-  }
-
-  void material(const Cloth& cloth, const std::string& place) {
-    const Membrane& membrane = cloth.membrane;
-    if (!sound({place + "/membrane", place + "/stiffness"})) return;
-    if (membrane.given()) membrane_fits(cloth, place);
-    if (!membrane.given() && membrane.coupling != 0)
-      fault(place + "/membrane/coupling", "coupling is given, and warp, weft and shear are 0",
-            "0 without moduli");
-    if (!membrane.given() && membrane.damping > 0)
-      fault(place + "/membrane/damping", "damping is given, and warp, weft and shear are 0",
-            "0 without moduli");
-    const Bending& bending = cloth.bending;
-    if (sound({place + "/bending"}) && !bending.given() && bending.damping > 0)
-      fault(place + "/bending/damping", "damping is given, and warp, weft and twist are 0",
-            "0 without rigidity");
-    else if (sound({place + "/bending"}) && !cloth.mesh.given() && bending.damping > 0)
-      fault(place + "/bending/damping", "damping is " + number_words(bending.damping),
-            "0 s, on a grid");
-  }
-
-  // The energy of any strain is above 0, and the shear softer than the threads.
-  void positive(const Membrane& m, const std::string& place) {
-    const std::pair<const char*, double> moduli[] = {
-        {"warp", m.warp}, {"weft", m.weft}, {"shear", m.shear}};
-    for (const auto& [name, modulus] : moduli)
-      if (!(modulus > 0)) return fault(place + "/" + name, std::string(name) + " is 0", "above 0");
-    const double most = std::sqrt(m.warp * m.weft), softer = std::min(m.warp, m.weft);
-    if (m.coupling >= most || m.coupling <= -most)
-      fault(place + "/coupling", "coupling is " + number_words(m.coupling),
-            "between " + number_words(-most) + " and " + number_words(most) +
-                " N/m, the root of warp times weft");
-    if (m.shear >= softer)
-      fault(place + "/shear", "shear is " + number_words(m.shear),
-            "below " + number_words(softer) + " N/m, warp or weft");
-  }
-
-  // What a membrane cannot go with.
-  void membrane_fits(const Cloth& cloth, const std::string& place) {
-    constexpr double kRight = 1e-6;  // cosine of the angle between u and v
-    positive(cloth.membrane, place + "/membrane");
-    const Vec3 &u = cloth.grid.u, &v = cloth.grid.v;
-    const auto product = [](const Vec3& a, const Vec3& b) {
-      return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    };
-    if (!cloth.mesh.given() && sound({place + "/grid"}) &&
-        std::abs(product(u, v)) > kRight * std::sqrt(product(u, u) * product(v, v)))
-      fault(place + "/membrane", "u and v of the grid are not at right angles",
-            "a membrane's warp and weft are");
-    if (cloth.stiffness != Kinds{1000, 1000, 200} || cloth.spring_damping != Kinds{})
-      fault(place + "/membrane", "both membrane and stiffness or spring_damping are given",
-            "one of the two");
-    if (sound({"/solver/method"}) && scene_.solver.method == Method::positional)
-      fault(place + "/membrane", "a membrane is given", "not with method positional");
-    if (sound({place + "/level"}) && cloth.level > 0)
-      fault(place + "/membrane", "a membrane is given beside a level", "level 0");
   }
 
   void self_collision(const Cloth& cloth, const std::string& place) {

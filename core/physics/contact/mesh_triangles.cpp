@@ -1,0 +1,78 @@
+// The triangles of a mesh against a collider.
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "physics/contact/collider_triangles.h"
+
+namespace weft::physics {
+namespace {
+
+// Of a mesh: each belongs to the first row that it reaches.
+class MeshTriangles final : public ColliderTriangles {
+ public:
+  MeshTriangles(const ClothParts& parts, const Collider& collider, const StartInside& start,
+                const SpeculativeCulling& particles)
+      : ColliderTriangles(parts, collider, start, particles,
+                          std::int64_t(parts.model.surface().triangles.size())),
+        parts_(parts),
+        rows_(std::size_t(parts.particles.rows)) {
+    for (const auto& corners : parts.model.surface().triangles) {
+      Placed t;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [j, i] = parts.particles.place(corners[k]);
+        t.j[k] = j, t.i[k] = i;
+      }
+      const auto [first, last] = std::minmax_element(t.j.begin(), t.j.end());
+      assert(*last - *first <= reach);
+      rows_[std::size_t(*first)].push_back(t);
+    }
+  }
+
+  std::size_t bytes() const override { return std::size_t(items) * sizeof(Placed); }
+
+ private:
+  struct Placed {
+    std::array<int, 3> j, i;  // row and lane of the corners
+  };
+
+  int last_row() const override { return parts_.particles.rows; }
+  double greatest(const Rows& values, int j) const override {
+    double square = 0;
+    for (const Placed& t : rows_[std::size_t(j)])
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t next = (k + 1) % 3;
+        Vec3 e{};
+        for (int m = 0; m < 3; ++m)
+          e[std::size_t(m)] =
+              double(values.at(m, t.j[next], t.i[next])) - values.at(m, t.j[k], t.i[k]);
+        square = std::max(square, dot(e, e));
+      }
+    return std::sqrt(square);
+  }
+
+  RowReach look(int j, const Substep& s, double longest) override {
+    const RowReach near = reach_of_particles(j, s);
+    const CollideRow row = collider().row(parts_, j, s);
+    // No point of a triangle is further from a corner than its longest side.
+    const double way = near.speed * s.dt + longest;
+    if (near.clearance > way) return near;
+    for (int pass = 0; pass < passes(longest); ++pass)
+      for (const Placed& t : rows_[std::size_t(j)]) lift(row, t.j, t.i);
+    return near;
+  }
+
+  ClothParts parts_;
+  std::vector<std::vector<Placed>> rows_;
+};
+
+}  // namespace
+
+std::unique_ptr<RowStage> make_collider_triangles(const ClothParts& parts, const Collider& collider,
+                                                  const StartInside& start,
+                                                  const SpeculativeCulling& particles) {
+  if (!caught_by_triangles(collider) || parts.model.surface().triangles.empty()) return nullptr;
+  return std::make_unique<MeshTriangles>(parts, collider, start, particles);
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,64 @@
+// What meshes do not have (refused.h), key by key.
+#include "scene/mesh/refused.h"
+
+namespace weft::text {
+namespace {
+
+// Of the cloth itself.
+void check_keys(const Cloth& cloth, const std::string& place, Check& result) {
+  const auto refuse = [&](bool given, const char* key, const char* what, const char* allowed) {
+    if (given) result.fault(place + key, what, allowed);
+  };
+  refuse(cloth.grid != Grid{}, "/mesh", "both grid and mesh are given", "one of the two");
+  refuse(cloth.particle_mass > 0 || !cloth.masses.empty(), "/mesh", "masses are given with a mesh",
+         "density");
+  refuse(cloth.lumping == Lumping::equal, "/lumping", "the vertices of a mesh are to be alike",
+         "auto or area, with a mesh: a vertex weighs what its triangles do");
+  const Kinds plain = Cloth{}.stiffness;
+  refuse(cloth.stiffness.shear != plain.shear || cloth.stiffness.bend != plain.bend, "/stiffness",
+         "shear or bend is given with a mesh", "structural, for all edges alike");
+  refuse(cloth.spring_damping.shear > 0 || cloth.spring_damping.bend > 0, "/spring_damping",
+         "shear or bend is given with a mesh", "structural, for all edges alike");
+  refuse(cloth.level > 0, "/level", "a mesh has a level", "0, with a mesh");
+  refuse(cloth.level_diagonals != LevelDiagonals::both, "/level_diagonals", "a mesh has no levels",
+         "both, with a mesh");
+  refuse(cloth.positional_k != Cloth{}.positional_k, "/positional_k", "a mesh is not projected",
+         "0.5, with a mesh");
+  refuse(cloth.stiffness_gradient > 0, "/stiffness_gradient", "a mesh has a gradient",
+         "0, with a mesh");
+  refuse(cloth.strain_limit > 0, "/strain_limit", "a mesh has a strain limit", "0, with a mesh");
+  refuse(cloth.strain_limit_order != Cloth{}.strain_limit_order, "/strain_limit_order",
+         "a mesh has no strain limit", "colours, with a mesh");
+  refuse(!cloth.cuts.empty(), "/cuts", "a mesh is cut", "none, with a mesh");
+  refuse(cloth.tear_strain > 0, "/tear_strain", "a mesh is to tear", "0, with a mesh");
+  refuse(cloth.tears != Tears::split, "/tears", "a mesh does not tear", "split, with a mesh");
+  refuse(cloth.self_collision.mode != SelfCollisionMode::off, "/self_collision/mode",
+         "a mesh is to meet itself", "off, with a mesh");
+  SelfCollision off = cloth.self_collision;
+  off.mode = SelfCollisionMode::off;
+  refuse(off != SelfCollision{}, "/self_collision", "a mesh does not meet itself",
+         "nothing, with a mesh");
+}
+
+}  // namespace
+
+void check_mesh(const Scene& scene, const Cloth& cloth, const std::string& place, Check& result) {
+  check_keys(cloth, place, result);
+  const Method method = scene.solver.method;
+  const bool springs = method == Method::spring || method == Method::spring_friction;
+  if (!springs && result.sound("/solver/method"))
+    result.fault(place + "/mesh", "a mesh is to be projected by the scene's method",
+                 "method spring or spring_friction, with a mesh");
+  for (const Collider& collider : scene.colliders)
+    if (collider.cuts)
+      return result.fault(place + "/mesh", "a collider cuts a mesh", "grids alone are cut");
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const Cloth& other = scene.cloths[c];
+    if (!other.mesh.given() && other.self_collision.mode != SelfCollisionMode::off)
+      return result.fault("/cloths/" + std::to_string(c) + "/self_collision/mode",
+                          "cloth is to meet cloth beside a mesh, which meets none",
+                          "off, beside a mesh");
+  }
+}
+
+}  // namespace weft::text
