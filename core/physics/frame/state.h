@@ -15,17 +15,11 @@
 #include "physics/frame/rollback_buffer.h"
 #include "physics/frame/sleeping.h"
 #include "physics/frame/step_guard.h"
+#include "physics/model/number.h"
 #include "physics/step/threads.h"
 #include "weft/simulation.h"
 
 namespace weft {
-
-// A number as notes give it.
-inline std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", v);
-  return text;
-}
 
 struct Simulation::State {
   // `about`: what positions are counted from; `make`: makes the model of each cloth.
@@ -150,7 +144,7 @@ struct Simulation::State {
   physics::FrameRun frame_run();
   bool carry_out(physics::Verdict verdict);
   void change_method(const std::string& which, int count);
-  void note_membranes(std::vector<std::string>& notes) const;
+  void note_models(std::vector<std::string>& notes) const;
   void begin_again();
   void go_on_as(Method as, const Solver& solver);
   bool nothing_else_acts() const;

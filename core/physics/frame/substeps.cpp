@@ -76,7 +76,7 @@ void Simulation::State::choose_method_and_substeps() {
       notes.push_back("substeps of " + number(scene.time.frame / count) +
                       " s, so that sweeps hold up a sheet that hangs by an edge");
   }
-  note_membranes(notes);
+  note_models(notes);
   plan = describe_stages();
   plan.dt_limit = std::isfinite(limit) ? limit : 0;
   limit_ = limit;
@@ -156,24 +156,17 @@ void Simulation::State::change_method(const std::string& which, int count) {
       (springs ? "the compliant method runs" : "gauss_seidel sweeps run") + " in their place");
   plan.fallback = true;
   go_on_as(springs ? Method::compliant : method, steady);
-  if (springs) note_membranes(plan.notes);
+  note_models(plan.notes);
   take_substeps(springs ? projection_substeps() : count);
   save();
 }
 
-// Methods that project know springs alone.
-void Simulation::State::note_membranes(std::vector<std::string>& notes) const {
-  for (std::size_t c = 0; c < scene.cloths.size() && !is_explicit(method); ++c) {
-    const Membrane& m = scene.cloths[c].membrane;
-    if (!m.given()) continue;
-    std::string note = "cloth " + std::to_string(c) +
-                       ": springs of the membrane's warp, weft and shear run in its place, without "
-                       "its damping";
-    if (m.coupling != m.shear)
-      note += "; they couple warp and weft by " + number(m.shear) + " N/m, not by " +
-              number(m.coupling);
-    notes.push_back(note);
-  }
+void Simulation::State::note_models(std::vector<std::string>& notes) const {
+  for (std::size_t c = 0; c < cloths.size(); ++c)
+    for (const std::string& note : cloths[c]->model().notes()) {
+      const std::string told = "cloth " + std::to_string(c) + ": " + note;
+      if (std::find(notes.begin(), notes.end(), told) == notes.end()) notes.push_back(told);
+    }
 }
 
 // As the run began, from the state as it is.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "physics/model/particles.h"
@@ -102,6 +103,9 @@ class ClothModel {
   virtual bool folds_freely() const = 0;
   // By how much ω² grows at most where constraints are `stretch` times as long as at rest.
   virtual double stiffening(double stretch) const = 0;
+
+  // What the cloth is not as the scene asks, by the method that runs: a sentence each.
+  virtual std::vector<std::string> notes() const { return {}; }
 
   // Null while the cloth cannot tear; after allow_tearing() it can, where the model knows how, and its
   // stages are to be chosen anew. And the constraints that come within a distance [m] of a segment from a

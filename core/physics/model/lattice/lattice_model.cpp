@@ -6,6 +6,7 @@
 #include "physics/model/keyed_pins.h"
 #include "physics/model/lattice/cuts.h"
 #include "physics/model/lattice/plain_rows.h"
+#include "physics/model/number.h"
 #include "weft/shape.h"
 
 namespace weft::physics {
@@ -135,6 +136,18 @@ void LatticeModel::append_limits(StageList& list) {
   SweepOptions limit;
   limit.limit = parts_.cloth.strain_limit;
   append_gauss_seidel(parts_, limit, list.stages);
+}
+
+// Methods that project know springs alone.
+std::vector<std::string> LatticeModel::notes() const {
+  const Membrane& m = parts_.cloth.membrane;
+  if (!m.given() || is_membrane()) return {};
+  std::string note =
+      "springs of the membrane's warp, weft and shear run in its place, without its damping";
+  if (m.coupling != m.shear)
+    note +=
+        "; they couple warp and weft by " + number(m.shear) + " N/m, not by " + number(m.coupling);
+  return {note};
 }
 
 std::size_t LatticeModel::bytes() const {

@@ -36,6 +36,7 @@ class LatticeModel final : public ClothModel {
   Spectrum spectrum(std::span<const float> inverse_masses) const override;
   double stiffening(double stretch) const override;
   bool folds_freely() const override;
+  std::vector<std::string> notes() const override;
 
   Tearing* tearing() override { return tearing_.get(); }
   const Tearing* tearing() const override { return tearing_.get(); }

@@ -5,6 +5,7 @@
 
 #include "physics/model/keyed_pins.h"
 #include "physics/model/largest_eigenvalue.h"
+#include "physics/model/number.h"
 #include "physics/model/path.h"
 #include "physics/model/push.h"
 #include "physics/model/segment_distance.h"
@@ -222,6 +223,16 @@ double MeshModel::stiffening(double stretch) const {
 
 bool MeshModel::folds_freely() const {
   return material_.membrane && (material_.c66 == 0 || material_.c11 == 0 || material_.c22 == 0);
+}
+
+// As read nothing is stretched: what it holds is bending, in proportion to rigidity times squared angles.
+std::vector<std::string> MeshModel::notes() const {
+  constexpr double kCurved = 1e-3;
+  const Bending& bending = parts_.cloth.bending;
+  const double held = mesh_energy(triangles_, material_, start_);
+  if (held <= kCurved * std::max({bending.warp, bending.weft, bending.twist})) return {};
+  return {"bending draws the mesh flat: curved as its file has it, it holds " + number(held) +
+          " J"};
 }
 
 std::vector<Joined> MeshModel::constraints_near(const Vec3& a, const Vec3& way,

@@ -33,6 +33,7 @@ class MeshModel final : public ClothModel {
   Spectrum spectrum(std::span<const float> inverse_masses) const override;
   double stiffening(double stretch) const override;
   bool folds_freely() const override;
+  std::vector<std::string> notes() const override;
   std::vector<Joined> constraints_near(const Vec3& a, const Vec3& way,
                                        double distance) const override;
   std::size_t bytes() const override;

@@ -1,6 +1,7 @@
-// Damping of a mesh's bending: it takes what flaps, and leaves alone what turns as a whole.
+// Bending of a mesh: its damping takes what flaps and leaves alone what turns as a whole; it is flat at rest.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "made_up_mesh.h"
@@ -33,7 +34,7 @@ Scene scene_of(std::shared_ptr<const TriangleMesh> mesh, double damping) {
   return scene;
 }
 
-TEST(MeshDamping, BrakesNoTurnOfCurvedCloth) {
+TEST(MeshBending, BrakesNoTurnOfCurvedCloth) {
   const auto mesh = made_up({.nx = 15, .ny = 13, .width = 0.6, .height = 0.5, .shift = 0.3});
   const Vec3 spin{2, -3, 5};
   Simulation run(scene_of(mesh, 0.2), {.threads = 1});
@@ -54,7 +55,7 @@ TEST(MeshDamping, BrakesNoTurnOfCurvedCloth) {
 }
 
 // A rolled sheet that is let go flaps; damped, it loses more than half of that in a second.
-TEST(MeshDamping, TakesWhatFlaps) {
+TEST(MeshBending, TakesWhatFlaps) {
   const auto mesh = made_up({.nx = 15, .ny = 13, .width = 0.6, .height = 0.5, .shift = 0.2});
   double left[2];
   for (const bool damped : {false, true}) {
@@ -66,6 +67,24 @@ TEST(MeshDamping, TakesWhatFlaps) {
   }
   EXPECT_LT(left[1], 0.5 * left[0]);
   EXPECT_GT(left[1], -1e-6);
+}
+
+// Bending knows no curve at rest: a mesh that is read curved is told of, a flat one is not.
+TEST(MeshBending, ANoteTellsThatBendingFlattens) {
+  const auto flat = made_up({.nx = 15, .ny = 13, .width = 0.6, .height = 0.5, .shift = 0.3});
+  auto curved = std::make_shared<TriangleMesh>(*flat);
+  const std::vector<double> x = rolled(*flat);
+  for (std::size_t n = 0; n < curved->vertices.size(); ++n)
+    curved->vertices[n] = {x[3 * n], x[3 * n + 1], x[3 * n + 2]};
+  const auto told = [](std::shared_ptr<const TriangleMesh> mesh) {
+    const Simulation run(scene_of(std::move(mesh), 0), {.threads = 1});
+    const std::vector<std::string>& notes = run.plan().notes;
+    return std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+      return note.find("cloth 0: bending draws the mesh flat") == 0;
+    });
+  };
+  EXPECT_TRUE(told(curved));
+  EXPECT_FALSE(told(flat));
 }
 
 }  // namespace
