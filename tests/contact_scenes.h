@@ -46,4 +46,32 @@ inline void advance(Simulation& simulation, double seconds) {
   }
 }
 
+// The name of a method in rows of the accuracy page.
+inline const char* name_of(Method method) {
+  switch (method) {
+    case Method::positional:
+      return "positional";
+    case Method::spring:
+      return "spring";
+    case Method::spring_friction:
+      return "spring and friction";
+    case Method::compliant:
+      return "compliant";
+  }
+  return "";
+}
+
+// Loose particles on the ground under gravity that is tilted by `degrees`.
+inline Scene incline(double degrees, double statik, double dynamic, Method method) {
+  Scene scene;
+  const double a = degrees * M_PI / 180;
+  scene.gravity = {9.81 * std::sin(a), -9.81 * std::cos(a), 0};
+  scene.time.substeps = 20;
+  scene.solver.method = method;
+  scene.cloths.push_back(loose_particles({0, 0, 0}));
+  scene.colliders.push_back(collider_of(Plane{}));
+  scene.colliders[0].friction = {FrictionModel::coulomb, statik, dynamic};
+  return scene;
+}
+
 }  // namespace weft
