@@ -22,7 +22,7 @@ struct Bench {
                                        weft::physics::kernel_table(simd));
     for (const auto& stage : step->stages()) {
       stage->prepare(scene.time.frame / scene.time.substeps);
-      if (auto* rows = stage->as_row_stage()) rows->reserve_slots(1);
+      if (auto* rows = stage->as_row_stage()) rows->reserve(1);
     }
   }
 };

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "made_up_mesh.h"
-#include "weft/simulation.h"
+#include "mesh_scenes.h"
 
 namespace weft {
 namespace {
@@ -22,22 +21,20 @@ std::vector<double> rolled(const TriangleMesh& mesh) {
   return x;
 }
 
-Scene scene_of(std::shared_ptr<const TriangleMesh> mesh, double damping) {
-  Scene scene;
+// In free flight; `damping` of bending [s].
+Scene free_scene(std::shared_ptr<const TriangleMesh> mesh, double damping) {
+  Scene scene = scene_of(std::move(mesh));
   scene.gravity = {};
-  Cloth& cloth = scene.cloths.emplace_back();
-  cloth.mesh.shape = std::move(mesh);
-  cloth.density = 0.3;
-  cloth.membrane = {3000, 2000, 200, 80, 0};
-  cloth.bending = 1e-4;
-  cloth.bending.damping = damping;
+  scene.cloths[0].membrane = kCanvas;
+  scene.cloths[0].bending = 1e-4;
+  scene.cloths[0].bending.damping = damping;
   return scene;
 }
 
 TEST(MeshBending, BrakesNoTurnOfCurvedCloth) {
   const auto mesh = made_up({.nx = 15, .ny = 13, .width = 0.6, .height = 0.5, .shift = 0.3});
   const Vec3 spin{2, -3, 5};
-  Simulation run(scene_of(mesh, 0.2), {.threads = 1});
+  Simulation run(free_scene(mesh, 0.2), {.threads = 1});
   const std::vector<double> x = rolled(*mesh);
   std::vector<double> v;
   for (std::size_t n = 0; n < x.size(); n += 3)
@@ -59,7 +56,7 @@ TEST(MeshBending, TakesWhatFlaps) {
   const auto mesh = made_up({.nx = 15, .ny = 13, .width = 0.6, .height = 0.5, .shift = 0.2});
   double left[2];
   for (const bool damped : {false, true}) {
-    Simulation run(scene_of(mesh, damped ? 0.05 : 0), {.threads = 1});
+    Simulation run(free_scene(mesh, damped ? 0.05 : 0), {.threads = 1});
     const std::vector<double> x = rolled(*mesh);
     run.set_state(x, std::vector<double>(x.size()));
     for (int n = 0; n < 60; ++n) run.advance_frame();
@@ -77,7 +74,7 @@ TEST(MeshBending, ANoteTellsThatBendingFlattens) {
   for (std::size_t n = 0; n < curved->vertices.size(); ++n)
     curved->vertices[n] = {x[3 * n], x[3 * n + 1], x[3 * n + 2]};
   const auto told = [](std::shared_ptr<const TriangleMesh> mesh) {
-    const Simulation run(scene_of(std::move(mesh), 0), {.threads = 1});
+    const Simulation run(free_scene(std::move(mesh), 0), {.threads = 1});
     const std::vector<std::string>& notes = run.plan().notes;
     return std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
       return note.find("cloth 0: bending draws the mesh flat") == 0;
