@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "output/hex.h"
 #include "output/input_names.h"
 #include "scene/json_text.h"
+#include "weft/mesh.h"
 #include "weft/read_scene.h"
 #include "weft/recording.h"
 
@@ -64,20 +66,58 @@ struct Value {
     if (!value) fail(place, text::brief(*json) + " is no hash", "16 hexadecimal digits");
     return *value;
   }
-  Scene scene() const {
-    if (!json->is_object()) fail(place, text::brief(*json) + " is out of place", "a scene");
-    SceneFile file = read_scene_text(json->dump());
-    if (!file.faults.empty())
-      fail(place + file.faults[0].place, file.faults[0].what, file.faults[0].allowed);
-    return std::move(file.scene);
-  }
 };
+
+// Meshes by the names of their files.
+using Meshes = std::map<std::string, std::shared_ptr<const TriangleMesh>>;
 
 // What a line is read with: the file's version, and the scene that runs when it comes.
 struct Context {
   int version;
   const Scene* scene;
+  Meshes meshes;  // of the lines so far
 };
+
+[[noreturn]] void fail(const std::string& place, const Fault& fault) {
+  fail(place + fault.place, fault.what, fault.allowed);
+}
+
+// The meshes that a line carries.
+void read_meshes(const Value& line, Meshes& meshes) {
+  if (text::member(*line.json, "meshes") == nullptr) return;
+  const Value carried = line.at("meshes");
+  if (!carried.json->is_object())
+    fail(carried.place, text::brief(*carried.json) + " is out of place", "an object");
+  for (const auto& [file, text] : carried.json->items()) {
+    const std::string place = text::join(carried.place, file);
+    if (!text.is_string()) fail(place, text::brief(text) + " is out of place", "text of a mesh");
+    MeshFile read = read_obj(text.get_ref<const std::string&>(), file);
+    if (!read.faults.empty()) fail(place, read.faults[0].what, read.faults[0].allowed);
+    meshes[file] = std::make_shared<const TriangleMesh>(std::move(read.mesh));
+  }
+}
+
+// A scene with its meshes, which its line or one before carries.
+Scene scene_of(const Value& value, const Meshes& meshes) {
+  if (!value.json->is_object())
+    fail(value.place, text::brief(*value.json) + " is out of place", "a scene");
+  SceneFile file = read_scene_text(value.json->dump());
+  if (!file.faults.empty()) fail(value.place, file.faults[0]);
+  bool any = false;
+  for (std::size_t c = 0; c < file.scene.cloths.size(); ++c) {
+    MeshSource& mesh = file.scene.cloths[c].mesh;
+    if (mesh.file.empty()) continue;
+    const auto found = meshes.find(mesh.file);
+    if (found == meshes.end())
+      fail(value.place + "/cloths/" + std::to_string(c) + "/mesh/file", "the mesh is missing",
+           "a file in meshes, of this line or one before");
+    mesh.shape = found->second;
+    any = true;
+  }
+  if (any)
+    if (const auto faults = validate(file.scene); !faults.empty()) fail(value.place, faults[0]);
+  return std::move(file.scene);
+}
 
 // Version 1 names the particles of grids by column and row.
 void read_particle(const Value& value, const Context& context, Input& input) {
@@ -114,7 +154,7 @@ Input input_of(Kind kind, const Value& value, const Context& context) {
     input.collider = value.at("collider").whole<int>();
     input.a = value.at("target").vector();
   } else if (kind == Kind::set_scene) {
-    input.scene = std::make_shared<const Scene>(value.scene());
+    input.scene = std::make_shared<const Scene>(scene_of(value, context.meshes));
   }
   return input;
 }
@@ -156,14 +196,15 @@ class Order {
 constexpr int kNewestVersion = 2;
 
 // Returns the version.
-int read_header(const Value& line, Recording& recording) {
+int read_header(const Value& line, Context& context, Recording& recording) {
   const bool known =
       line.json->is_object() && text::member(*line.json, "weft_recording") != nullptr;
   const int version = known ? line.at("weft_recording").whole<int>() : 0;
   if (version < 1 || version > kNewestVersion)
     fail("", "this is no recording", "weft_recording 1 or " + std::to_string(kNewestVersion));
   recording.seed = line.at("seed").whole<std::uint64_t>();
-  recording.scene = line.at("scene").scene();
+  read_meshes(line, context.meshes);
+  recording.scene = scene_of(line.at("scene"), context.meshes);
   return version;
 }
 
@@ -199,16 +240,17 @@ Recording read_recording(const std::string& path) {
   std::string text;
   std::int64_t number = 0;
   Order order;
-  Context context{0, &recording.scene};
+  Context context{0, &recording.scene, {}};
   while (next_line(in, text)) {
     ++number;
     try {
       const Json json = parsed(text);
       const Value line{&json, ""};
       if (number == 1) {
-        context.version = read_header(line, recording);
+        context.version = read_header(line, context, recording);
         continue;
       }
+      read_meshes(line, context.meshes);
       recording.events.push_back(event_of(line, context));
       const Recording::Event& event = recording.events.back();
       order.check(event);

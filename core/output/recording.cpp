@@ -2,10 +2,14 @@
 #include "weft/recording.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "output/hex.h"
 #include "output/input_names.h"
+#include "scene/json_text.h"
+#include "weft/mesh.h"
 #include "weft/read_scene.h"
 
 namespace weft {
@@ -42,6 +46,18 @@ Json input_json(const Input& input) {
   return Json::object();
 }
 
+// Meshes by the names of their files alone.
+Scene without_folders(Scene scene) {
+  for (Cloth& cloth : scene.cloths)
+    cloth.mesh.file = std::filesystem::path(cloth.mesh.file).filename().string();
+  return scene;
+}
+
+bool same_shape(const MeshSource& a, const MeshSource& b) {
+  if (!a.shape || !b.shape) return true;  // not read
+  return a.shape->vertices == b.shape->vertices && a.shape->triangles == b.shape->triangles;
+}
+
 }  // namespace
 
 void apply(const Input& input, Simulation& simulation) {
@@ -74,19 +90,33 @@ void apply(const Input& input, Simulation& simulation) {
 }
 
 Recorder::Recorder(const std::string& path, const Simulation& simulation) : file_(path) {
-  for (const Cloth& cloth :
-       simulation.scene().cloths)  // a recording is one file, and holds no meshes
-    if (cloth.mesh.given()) throw WriteError(path, "a mesh is not recorded; grids alone are");
-  const Json header{{"weft_recording", 2},
-                    {"seed", simulation.options().seed},
-                    {"scene", scene_json(simulation.scene())}};
+  Json header{{"weft_recording", 2}, {"seed", simulation.options().seed}};
+  if (Json meshes = new_meshes(simulation.scene()); !meshes.empty()) header["meshes"] = meshes;
+  header["scene"] = scene_json(simulation.scene());
   file_.write(header.dump() + "\n");
 }
 
 void Recorder::input(std::int64_t frame, const Input& input) {
-  const Json line{{"frame", frame},
-                  {kInputNames[static_cast<std::size_t>(input.kind)], input_json(input)}};
+  Json line{{"frame", frame}};
+  if (input.scene)
+    if (Json meshes = new_meshes(*input.scene); !meshes.empty()) line["meshes"] = meshes;
+  line[kInputNames[static_cast<std::size_t>(input.kind)]] = input_json(input);
   file_.write(line.dump() + "\n");
+}
+
+// Texts by file, of the scene's meshes that no line has yet.
+std::map<std::string, std::string> Recorder::new_meshes(const Scene& scene) {
+  std::map<std::string, std::string> texts;
+  for (const Cloth& cloth : scene.cloths) {
+    const auto& [file, shape] = std::tie(cloth.mesh.file, cloth.mesh.shape);
+    if (!cloth.mesh.given() || meshes_[file] == shape) continue;
+    if (file.empty()) throw WriteError(path(), "a mesh that is of no file is not recorded");
+    meshes_[file] = shape;
+    texts[file] = write_obj(*shape);
+    if (texts[file].size() > text::kMaxTextBytes / 2)
+      throw WriteError(path(), file + ": the mesh is too large for a recording (32 MiB of text)");
+  }
+  return texts;
 }
 
 void Recorder::frame(const Simulation& simulation) {
@@ -105,8 +135,13 @@ std::int64_t Recording::frames() const {
 }
 
 std::string difference(const Scene& a, const Scene& b) {
-  const Json difference = Json::diff(scene_json(a), scene_json(b));
-  return difference.empty() ? "" : difference[0]["path"].get<std::string>();
+  const Json difference =
+      Json::diff(scene_json(without_folders(a)), scene_json(without_folders(b)));
+  if (!difference.empty()) return difference[0]["path"].get<std::string>();
+  for (std::size_t c = 0; c < a.cloths.size(); ++c)
+    if (!same_shape(a.cloths[c].mesh, b.cloths[c].mesh))
+      return "/cloths/" + std::to_string(c) + "/mesh/file";
+  return "";
 }
 
 const Input* next_input(const Recording& recording, std::size_t& next,

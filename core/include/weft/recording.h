@@ -4,9 +4,11 @@
 // The file has one JSON object a line: first {"weft_recording": 2, "seed": …, "scene": {…}}, then
 // inputs {"frame": f, "grab": {…}} in order, given before frame f + 1 is computed, and hashes
 // {"frame": f, "hash": "16 hex digits"} of the state after frame f. Particles are [cloth, number]; files of version 1,
-// where they are [cloth, column, row], are read as well.
+// where they are [cloth, column, row], are read as well. A line whose scene has meshes that no line before it has
+// carries them, "meshes": {FILE: text of a Wavefront .obj}, so that a recording needs no other file.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,7 +33,8 @@ struct Input {
 // Makes the call; throws what it throws.
 void apply(const Input& input, Simulation& simulation);
 
-// Writes a recording as it happens. Throws WriteError.
+// Writes a recording as it happens. Throws WriteError, also for a mesh that a program made, which has no file to
+// be named by, and for one of more than 32 MiB of text.
 class Recorder {
  public:
   // The simulation stands at its start.
@@ -47,7 +50,10 @@ class Recorder {
   const std::string& path() const { return file_.path(); }
 
  private:
+  std::map<std::string, std::string> new_meshes(const Scene& scene);
+
   OutputFile file_;
+  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;  // that are written, by file
 };
 
 // A recording cannot be read: what() says where and why.
@@ -70,7 +76,8 @@ struct Recording {
 // Throws RecordingError.
 Recording read_recording(const std::string& path);
 
-// Where two scenes differ first, as a JSON pointer; "" when they are equal.
+// Where two scenes differ first, as a JSON pointer; "" when they are equal. Meshes that are read are compared by
+// what they are, wherever their files lie.
 std::string difference(const Scene& a, const Scene& b);
 
 // The next input that comes before the next frame, null when there is none; `next` counts the events
