@@ -189,11 +189,6 @@ void change_cuts(const Torn& before, const Torn& after, Torn& torn) {
   torn = std::move(all);
 }
 
-bool same_cuts(const Scene& a, const Scene& b) {
-  return std::equal(a.cloths.begin(), a.cloths.end(), b.cloths.begin(),
-                    [](const Cloth& c, const Cloth& d) { return c.cuts == d.cuts; });
-}
-
 }  // namespace
 
 void Simulation::set_scene(Scene scene) {
@@ -208,11 +203,9 @@ void Simulation::set_scene(Scene scene) {
     for (std::size_t n = 0; n < after.cloths.size(); ++n)
       if (before.cloths[n].pins != after.cloths[n].pins)
         change_pins(before.cloths[n], after.cloths[n], m.cloths[n]);
-    if (!same_cuts(before, after)) {
-      const Snapshot old = Simulation(before, state_->options).snapshot(), fresh = next.snapshot();
-      for (std::size_t n = 0; n < after.cloths.size(); ++n)
-        change_cuts(old.cloths[n].torn, fresh.cloths[n].torn, m.cloths[n].torn);
-    }
+    for (std::size_t n = 0; n < after.cloths.size(); ++n)
+      if (before.cloths[n].cuts != after.cloths[n].cuts)
+        change_cuts(state_->cut_from_start[n], next.state_->cut_from_start[n], m.cloths[n].torn);
     m.paths.clear();
     for (const Collider& c : after.colliders) m.paths.push_back(c.keys);
     for (Snapshot::ClothState& c : m.cloths) c.inside.resize(after.colliders.size());

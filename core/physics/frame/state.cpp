@@ -96,6 +96,9 @@ Simulation::State::State(Scene given, const Options& given_options, const Vec3& 
     scene = moved(std::move(scene), times(origin, -1));
   }
   build_cloths();
+  for (const auto& cloth : cloths)
+    cut_from_start.push_back(cloth->cloth().cuts.empty() ? std::vector<Joined>{}
+                                                         : cloth->model().tearing()->torn_list());
   choose_method_and_substeps();
   if (threads.count() < threads.asked())
     plan.notes.push_back("the system starts no more than " + std::to_string(threads.count()) +

@@ -85,6 +85,8 @@ struct Simulation::State {
     return physics::is_explicit(method) || scene.solver.order == 1 ? dt / 2 : 0;
   }
   std::vector<physics::Spectrum> spectra;  // of every cloth (explicit springs)
+  // Constraints that the scene's cuts take, of every cloth, pairs of particles.
+  std::vector<std::vector<physics::Joined>> cut_from_start;
 
   // Wall time of every frame [ms]; reserved ahead for the scene's own length.
   std::vector<float> frame_ms;
