@@ -208,8 +208,8 @@ TEST_F(MeshScene, ExportsTheVerticesInTheFilesOrder) {
 // the same frames, wherever the files are by then.
 TEST_F(MeshScene, IsRecordedWithItsMeshes) {
   write("late.obj",
-               "v 0.1 0 0.3\nv 1 0.7 0\nv 0 1 0\nv 0 0 5\nvt 0.1 0.3\nvt 1 0\nvt 0 1\n"
-               "f 1/1 2/2 3/3\nl 1 4\n");
+        "v 0.1 0 0.3\nv 1 0.7 0\nv 0 1 0\nv 0 0 5\nvt 0.1 0.3\nvt 1 0\nvt 0 1\n"
+        "f 1/1 2/2 3/3\nl 1 4\n");
   const SceneFile first = read(R"({"mesh": {"file": "square.obj"}})");
   const SceneFile second =
       read(R"({"mesh": {"file": "square.obj"}}, {"mesh": {"file": "late.obj"}})");

@@ -31,9 +31,10 @@ void add_key_to_first_pin(const Screen& screen) {
   look_for(screen, "pins", "/cloths/0/pins");
   screen.click("/cloths/0/pins");
   screen.click("/cloths/0/pins/0");
-  screen.click("/cloths/0/pins/0 add");
+  screen.click("/cloths/0/pins/0/keys");
+  screen.click("/cloths/0/pins/0/keys add");
   screen.wait("a key", [](const Json& now) {
-    return now["controls"].contains("/cloths/0/pins/0 remove 0");
+    return now["controls"].contains("/cloths/0/pins/0/keys remove 0");
   });
 }
 
@@ -229,7 +230,7 @@ TEST_F(Window, PathsAreEditedKeyByKey) {
   // Undone key by key, to the pin without a path.
   screen.key("ctrl+z");
   screen.wait("no key", [](const Json& now) {
-    return !now["controls"].contains("/cloths/0/pins/0 remove 0");
+    return !now["controls"].contains("/cloths/0/pins/0/keys remove 0");
   });
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }

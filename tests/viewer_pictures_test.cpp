@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <stb_image.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -61,6 +62,30 @@ Decoded decode(const fs::path& path) {
   if (data != nullptr) picture.rgb.assign(data, data + 3 * picture.width * picture.height);
   stbi_image_free(data);
   return picture;
+}
+
+// The last of a strip is further on than the first; both have the cloth.
+TEST(Pictures, AStripShowsTheRunFromItsStart) {
+  const fs::path out = fs::temp_directory_path() / "weft_viewer_strip.png";
+  ASSERT_EQ(run("sphere --headless --frames 40 --strip 3 --size 80x60 --out " + out.string()), 0);
+  const Decoded strip = decode(out);
+  fs::remove(out);
+  ASSERT_EQ(strip.width, 240);
+  ASSERT_EQ(strip.height, 60);
+  const auto at = [&](int picture, int x, int y) {
+    return &strip.rgb[static_cast<std::size_t>(3 * (y * 240 + 80 * picture + x))];
+  };
+  std::array<int, 3> red{}, other{};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (int y = 0; y < 60; ++y)
+      for (int x = 0; x < 80; ++x) {
+        const unsigned char* now = at(static_cast<int>(k), x, y);
+        red[k] += now[0] > 1.3 * now[2];
+        other[k] += std::abs(now[0] - at(0, x, y)[0]) > 8;
+      }
+  for (const int count : red) EXPECT_GT(count, 100);
+  EXPECT_GT(other[1], 50);
+  EXPECT_GT(other[2], other[1]);
 }
 
 // Kept pictures may be of another driver: what an eye would see counts, that is, the mean and the

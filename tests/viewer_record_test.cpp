@@ -47,6 +47,30 @@ TEST_F(WindowEnds, ASignalEndsItInOrder) {
   }
 }
 
+// Alone, and where the session goes on with a mesh after a grid, whose recording ends there.
+TEST_F(WindowEnds, MeshesAreRecordedWithTheSession) {
+  Screen screen(folder);
+  screen.open("flag_round --record session");
+  screen.wait("frames", [](const Json& now) { return now["frame"] > 10; });
+  screen.click("add sphere");
+  const Json added = screen.wait_for("edited", true);
+  screen.wait("more",
+              [&](const Json& now) { return now["frame"] > added["frame"].get<int>() + 15; });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+  EXPECT_NE(folder.read("session").find("\"set_scene\""), std::string::npos);
+  EXPECT_EQ(weft("run flag_round --replay session"), 0) << folder.read("weft.out");
+  expect_recording();
+
+  Screen second(folder);
+  second.open("flag --record session");
+  second.wait("frames", [](const Json& now) { return now["frame"] > 25; });
+  second.key("Next");
+  second.wait("the mesh",
+              [](const Json& now) { return now["scene"] == "flag_round" && now["frame"] > 5; });
+  EXPECT_EQ(second.quit(), 0) << second.said();
+  expect_recording();
+}
+
 // The frame in which it comes would take many minutes.
 TEST_F(WindowEnds, NothingWaitsForALongFrame) {
   const auto scene = [](int substeps, int stiffness) {
@@ -59,6 +83,7 @@ TEST_F(WindowEnds, NothingWaitsForALongFrame) {
     Screen screen(folder);
     screen.open("long.json --record session --threads 1");
     screen.click("Export");
+    screen.click("Start export");
     screen.wait("frames", [](const Json& now) { return now["frame"] > 25; });
     folder.write("long.json", scene(100000, 51));
     screen.wait("the long frame", [](const Json& now) { return now["stiffness"] == 51; });
@@ -155,6 +180,7 @@ TEST_F(WindowEnds, AnExportDoesNotTakeTheNameOfTheRecording) {
   Screen screen(folder);
   screen.open("pinned2 --paused --record pinned2.pc2");
   screen.click("Export");
+  screen.click("Start export");
   screen.wait("the export to begin", [](const Json& now) {
     return now["news"].dump().find("pinned2-2.pc2") != std::string::npos;
   });

@@ -1,5 +1,6 @@
 // The window as a person uses it: real mouse and key events on a screen of the test's own, checked by
 // the state that the window tells and by pictures of the screen.
+#include <array>
 #include <set>
 
 #include "screen.h"
@@ -124,20 +125,106 @@ TEST_F(Window, TheCameraLooksFromEverySideAndComesHome) {
     return apart(now["eye"], now["target"]) < 0.75 * apart(home["eye"], home["target"]);
   });
   EXPECT_GT(apart(near["target"], home["target"]), 0.02);
-  // From below, and home again in the next scene.
-  screen.drag({{1150, 300}, {1150, 150}, {1150, 20}}, "a view from below",
-              [](const Json& now) { return now["eye"][1] < -0.1; });
+  screen.key("Next");
+  screen.wait("the next scene from above its floor", [](const Json& now) {
+    return now["scene"] != "hello" && now["eye"][1] > now["target"][1];
+  });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+// The grid of a scene without a floor hides nothing.
+TEST_F(Window, ClothIsSeenFromBelowThroughAGrid) {
+  Screen screen(folder);
+  screen.open("pinned2 --paused");
+  EXPECT_EQ(screen.now()["floor"], false);
+  screen.drag({{1250, 700}, {1250, 400}, {1250, 60}}, "a view from below",
+              [](const Json& now) { return now["eye"][1] < -0.3; });
   screen.wait_picture("the cloth through the floor", [](const std::string& rgb) {
     std::size_t red = 0;
     for (std::size_t k = 0; k + 2 < rgb.size(); k += 3)
       red += static_cast<unsigned char>(rgb[k]) > 1.3 * static_cast<unsigned char>(rgb[k + 2]);
     return red > 10000;
   });
-  screen.key("Next");
-  screen.wait("the next scene from above its floor", [](const Json& now) {
-    return now["scene"] != "hello" && now["eye"][1] > now["target"][1];
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+// The direction through a pixel of the picture beside the panel, whose middle is (808, 400) here.
+std::array<double, 3> ray_through(const Json& now, int x, int y) {
+  std::array<double, 3> f{};
+  for (std::size_t k = 0; k < 3; ++k)
+    f[k] = (now["target"][k].get<double>() - now["eye"][k].get<double>()) /
+           apart(now["eye"], now["target"]);
+  const double level = std::hypot(f[0], f[2]), t = std::tan(0.3) / 400;
+  const std::array<double, 3> right{-f[2] / level, 0, f[0] / level},
+      up{-f[0] * f[1] / level, level, -f[2] * f[1] / level};
+  for (std::size_t k = 0; k < 3; ++k) f[k] += t * ((x - 808) * right[k] + (400 - y) * up[k]);
+  return f;
+}
+
+// How far a point lies from the ray.
+double beside(const Json& now, const Json& point, int x, int y) {
+  const std::array<double, 3> ray = ray_through(now, x, y);
+  double along = 0, square = 0, from = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double p = point[k].get<double>() - now["eye"][k].get<double>();
+    along += p * ray[k], square += ray[k] * ray[k], from += p * p;
+  }
+  return std::sqrt(std::max(0.0, from - along * along / square));
+}
+
+// A small ball far from the middle of the view stays under the pointer.
+TEST_F(Window, OrbitAndZoomAreAboutWhatIsUnderThePointer) {
+  folder.write("ball.json", R"({"weft": 1, "camera": {"azimuth": 0, "elevation": 0},
+      "cloths": [{"grid": {"points": [20, 20], "origin": [-0.5, 0, 0], "u": [1, 0, 0], "v": [0, -1, 0]},
+                  "pins": [[0, 0], [19, 0]]}],
+      "colliders": [{"sphere": {"center": [0.3, -0.2, 0.5], "radius": 0.03}}]})");
+  Screen screen(folder);
+  screen.open("ball.json --paused");
+  const Json start = screen.now(), ball = start["bodies"][0];
+  int x = 0, y = 0;
+  double nearest = 1e9;
+  for (int i = 500; i < 1280; i += 4)
+    for (int j = 40; j < 760; j += 4)
+      if (const double d = beside(start, ball, i, j); d < nearest) nearest = d, x = i, y = j;
+  ASSERT_LT(nearest, 0.01);
+  ASSERT_GT(std::hypot(x - 808, y - 400), 80);
+  const std::string at = std::to_string(x) + " " + std::to_string(y);
+  screen.type("mousemove " + at + " sleep 0.5 mousedown 2 sleep 0.5 mousemove " +
+              std::to_string(x - 200) + " " + std::to_string(y + 60) + " sleep 0.5 mouseup 2");
+  const Json turned = screen.wait("a turn", [&](const Json& now) {
+    return apart(now["eye"], start["eye"]) > 0.5 * apart(start["eye"], start["target"]);
+  });
+  EXPECT_LT(beside(turned, ball, x, y), 0.04);
+  screen.type("mousemove " + at + " sleep 0.5 click --repeat 4 --delay 100 4");
+  const Json near = screen.wait("nearer", [&](const Json& now) {
+    return apart(now["eye"], ball) < 0.7 * apart(turned["eye"], ball);
+  });
+  EXPECT_LT(beside(near, ball, x, y), 0.04);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+// Turned, moved and brought down, the eye comes near the floor and never below.
+TEST_F(Window, TheCameraStaysAboveASolidFloor) {
+  Screen screen(folder);
+  screen.open("plane --paused");
+  EXPECT_EQ(screen.now()["floor"], true);
+  const auto low = [](const Json& now) { return now["eye"][1] < 0.2; };
+  screen.drag({{1200, 650}, {1200, 400}, {1200, 60}}, "the floor", low);
+  const Json turned = screen.now();
+  screen.type(
+      "mousemove 800 300 sleep 0.3 mousedown 3 sleep 0.3 mousemove 800 60 sleep 0.3 "
+      "mouseup 3 mousemove 800 60 sleep 0.3 mousedown 3 sleep 0.3 mousemove 800 500 "
+      "sleep 0.3 mouseup 3");
+  screen.wait("a shift", [&](const Json& now) { return now["eye"] != turned["eye"]; });
+  screen.type("mousemove 800 700 sleep 0.3 click --repeat 8 --delay 100 4 sleep 0.5");
+  screen.key("alt+1");
+  screen.wait("the front", [](const Json& now) {
+    return std::abs(now["eye"][0].get<double>() - now["target"][0].get<double>()) < 0.01;
   });
   EXPECT_EQ(screen.quit(), 0) << screen.said();
+  std::ifstream log(folder / "log");
+  for (std::string line; std::getline(log, line);)
+    ASSERT_GT(Json::parse(line)["eye"][1], 0) << line;
 }
 
 // Cloth that has fallen out of the scene is not looked after.
@@ -205,6 +292,40 @@ TEST_F(Window, ScenesAreOpenedOneAfterTheOther) {
     })["scene"]);
   }
   EXPECT_EQ(opened.size(), 7u);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+TEST_F(Window, TheGalleryShowsPicturesAndOpensWhatIsClicked) {
+  Screen screen(folder);
+  screen.open("hello --paused");
+  screen.click("Scenes");
+  screen.wait("the gallery", [](const Json& now) {
+    return now["controls"].contains("gallery box_drape") &&
+           now["controls"].contains("gallery coat");
+  });
+  // A picture has light and dark, a button alone has not.
+  const Json at = screen.now()["controls"]["gallery flag_round"];
+  screen.wait_picture("a picture of flag_round", [&](const std::string& rgb) {
+    const auto most = [&](std::size_t channel) {
+      int highest = 0, lowest = 255;
+      for (int y = -50; y < 50; ++y)
+        for (int x = -60; x < 60; ++x) {
+          const auto p = static_cast<std::size_t>(
+              3 * (Screen::kWidth * (at[1].get<int>() + y) + at[0].get<int>() + x));
+          const int value = static_cast<unsigned char>(rgb[p + channel]);
+          highest = std::max(highest, value), lowest = std::min(lowest, value);
+        }
+      return highest - lowest;
+    };
+    return most(0) > 80;
+  });
+  screen.key("Escape");
+  screen.wait("it to close",
+              [](const Json& now) { return !now["controls"].contains("gallery coat"); });
+  EXPECT_EQ(screen.now()["scene"], "hello");
+  screen.key("g");
+  screen.click("gallery coat");
+  screen.wait_for("scene", "coat");
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 

@@ -64,6 +64,10 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
       ->type_name("N")
       ->transform(CLI::Validator(decimal, ""))
       ->check(CLI::Range(0, 1'000'000));
+  program
+      .add_option("--strip", a.strip, "So many pictures side by side, from the start to that frame")
+      ->type_name("N")
+      ->check(CLI::Range(1, 64));
   program.add_option("--size", size, "Size of the picture in pixels (1280x720)")
       ->type_name("WxH")
       ->check(CLI::Validator(fault_of_size, ""));
@@ -117,6 +121,8 @@ std::optional<int> parse_arguments(int count, char** words, Arguments& arguments
       "export are written, and where the display is lost, too. A second signal ends it at once.");
   try {
     program.parse(count, words);
+    if (arguments.strip > 1 && !arguments.headless)
+      throw CLI::ValidationError("--strip", "is for --headless");
     if (arguments.headless && arguments.out.empty())
       throw CLI::RequiredError("--headless needs --out FILE.png: it");
   } catch (const CLI::Success& asked) {

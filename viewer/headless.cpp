@@ -1,6 +1,7 @@
 // The program without a window: simulate, draw, write.
 #include "headless.h"
 
+#include <algorithm>
 #include <iostream>
 #include <numbers>
 
@@ -41,6 +42,28 @@ void aim(const Sight& sight, const Bounds& bounds, float aspect, float clear, Ca
   camera.zoom(static_cast<float>(std::log(sight.zoom) / -std::log(0.88)));
 }
 
+namespace {
+
+// The frame of picture k of a strip: from the start to the last, evenly.
+std::int64_t frame_of(const Arguments& arguments, int k) {
+  return arguments.strip == 1 ? arguments.frames : arguments.frames * k / (arguments.strip - 1);
+}
+
+// Puts a picture into a strip of such, as number k.
+void paste(const Picture& picture, int k, Picture& strip) {
+  const std::ptrdiff_t row = 3 * picture.width, whole = 3 * strip.width;
+  for (int y = 0; y < picture.height; ++y)
+    std::copy_n(picture.rgb.begin() + y * row, row, strip.rgb.begin() + y * whole + k * row);
+}
+
+void refuse_problems(const Renderer& renderer) {
+  std::string problems;
+  for (const std::string& problem : renderer.problems()) problems += problem + "\n";
+  if (!problems.empty()) throw Failure(kNoGraphics, problems);
+}
+
+}  // namespace
+
 void render_picture(const Arguments& arguments) {
   const SceneFile file = load_scene(arguments);
   refuse_clashes(arguments, file.path);
@@ -57,24 +80,30 @@ void render_picture(const Arguments& arguments) {
   frame_data.scene =
       std::make_shared<const Scene>(moved(file.scene, {-origin[0], -origin[1], -origin[2]}));
   const Setting setting = setting_of(frame_data);
-  while (simulation.frame() < arguments.frames && simulation.status().ok && interrupted() == 0)
-    simulation.advance_frame();
-  takeover.stop();
-  if (interrupted() != 0) return;  // a picture of another frame is not what was asked for
-  copy_view(simulation.view(), simulation.scene(), frame_data);
-  frame_data.frame = simulation.frame();
 
   Renderer renderer(arguments.pictures);
   const RenderTarget target(arguments.width, arguments.height, 8);
   const float aspect = static_cast<float>(arguments.width) / static_cast<float>(arguments.height);
   Camera camera;
-  aim(sight_of(arguments, file.scene), seen_bounds(frame_data, setting), aspect, 1, camera);
-  renderer.draw(frame_data, setting, *find_look(arguments.look), arguments.settings, camera,
-                target);
-  std::string problems;
-  for (const std::string& problem : renderer.problems()) problems += problem + "\n";
-  if (!problems.empty()) throw Failure(kNoGraphics, problems);
-  write_png(arguments.out, target.read());
+  Picture strip{arguments.strip * arguments.width, arguments.height, {}};
+  strip.rgb.resize(std::size_t{3} * strip.width * strip.height);
+  for (int k = 0; k < arguments.strip; ++k) {
+    while (simulation.frame() < frame_of(arguments, k) && simulation.status().ok &&
+           interrupted() == 0)
+      simulation.advance_frame();
+    if (interrupted() != 0) return;  // a picture of another frame is not what was asked for
+    copy_view(simulation.view(), simulation.scene(), frame_data);
+    frame_data.frame = simulation.frame();
+    Bounds bounds = seen_bounds(frame_data, setting);
+    if (arguments.strip > 1) bounds.add(setting.room);  // one view for all
+    if (k == 0) aim(sight_of(arguments, file.scene), bounds, aspect, 1, camera);
+    renderer.draw(frame_data, setting, *find_look(arguments.look), arguments.settings, camera,
+                  target);
+    refuse_problems(renderer);
+    paste(target.read(), k, strip);
+  }
+  takeover.stop();
+  write_png(arguments.out, strip);
   if (!simulation.status().ok)
     throw Failure(kStopped, "the simulation stopped itself: " + simulation.status().text);
 }

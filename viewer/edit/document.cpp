@@ -39,6 +39,19 @@ std::string fault_lines(const std::string& file, const std::vector<Fault>& fault
   return lines;
 }
 
+Json pin_json(const Cloth& cloth, int particle) {
+  if (cloth.mesh.given()) return particle;
+  return Json::array({particle % cloth.grid.nx, particle / cloth.grid.nx});
+}
+
+std::vector<Document::Change> changes_between(const Scene& before, const Scene& after) {
+  const Json old = text::document_of(before), fresh = text::document_of(after);
+  std::vector<Document::Change> changes;
+  for (auto it = fresh.begin(); it != fresh.end(); ++it)
+    if (old.at(it.key()) != *it) changes.push_back({"/" + it.key(), *it});
+  return changes;
+}
+
 std::vector<Fault> Document::open(const std::string& path_or_name,
                                   const std::vector<Override>& overrides) {
   SceneFile file = read_scene(path_or_name, overrides);

@@ -87,6 +87,12 @@ class Document {
   std::filesystem::file_time_type time_{};
 };
 
+// A particle as scenes name it: [i, j] of a grid, its number of a mesh.
+text::Json pin_json(const Cloth& cloth, int particle);
+
+// What to change in a document of `before` for one of `after`: the values at its top that differ.
+std::vector<Document::Change> changes_between(const Scene& before, const Scene& after);
+
 // "file.json:/pointer: what (allowed)", a line for each fault.
 std::string fault_lines(const std::string& file, const std::vector<Fault>& faults);
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/document.h"
-
 namespace weft::viewer {
 namespace {
 
@@ -135,12 +133,7 @@ Scene with(Scene scene, const SpringCloth& wanted) {
 }
 
 std::vector<Document::Change> changes_to(const Scene& scene, const SpringCloth& wanted) {
-  const text::Json before = text::document_of(scene),
-                   after = text::document_of(with(scene, wanted));
-  std::vector<Document::Change> changes;
-  for (auto it = after.begin(); it != after.end(); ++it)
-    if (before.at(it.key()) != *it) changes.push_back({"/" + it.key(), *it});
-  return changes;
+  return changes_between(scene, with(scene, wanted));
 }
 
 }  // namespace weft::viewer

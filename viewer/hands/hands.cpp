@@ -95,7 +95,7 @@ void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer
       workspace.messages.warn("Meshes are not cut, only grids are", workspace.now());
     return;
   }
-  if (tool == Tool::move && pusher.take_arrow(workspace, area, pointer.x, pointer.y)) {
+  if (tool == Tool::move && pusher.take_gizmo(workspace, area, pointer.x, pointer.y)) {
     drag_ = Drag::body;
     return;
   }
@@ -158,6 +158,11 @@ void Hands::cut(Workspace& workspace) {
   joined_ = workspace.edit(changes, joined_, "cut") || joined_;
 }
 
+void Hands::choose_newest(const Workspace& workspace) {
+  tool = Tool::move;
+  pusher.choose(static_cast<int>(workspace.document().scene().colliders.size()) - 1);
+}
+
 // A small one is a click on the nearest particle.
 void Hands::take_lasso(Workspace& workspace, const Area& area) const {
   const FrameData& frame_data = workspace.frame_data();
@@ -179,17 +184,6 @@ void Hands::take_lasso(Workspace& workspace, const Area& area) const {
   }
   toggle_pins(workspace, chosen);
 }
-
-namespace {
-
-// A particle as scenes name it: [i, j] of a grid, its number of a mesh.
-text::Json pin_json(const Cloth& cloth, int particle) {
-  if (cloth.mesh.given()) return particle;
-  const int columns = cloth.grid.nx;
-  return text::Json::array({particle % columns, particle / columns});
-}
-
-}  // namespace
 
 void Hands::toggle_pins(Workspace& workspace,
                         const std::vector<std::vector<int>>& particles) const {

@@ -33,6 +33,9 @@ class Hands {
   // Marks over the picture: pins, what is held, the stroke, arrows of the chosen body.
   void draw(const Workspace& workspace, const Area& area, ImDrawList& list) const;
 
+  // Takes up the newest body, to be moved.
+  void choose_newest(const Workspace& workspace);
+
   bool busy() const { return drag_ != Drag::none; }
 
   Pusher pusher;  // moves what is chosen

@@ -1,20 +1,133 @@
-// Undo, redo, save, pictures, films, recordings.
+// Undo, redo, save, pictures, films, animations.
+#include <imgui.h>
+#include <imgui_stdlib.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "film/film.h"
 #include "panel/panel.h"
 #include "panel/theme.h"
+#include "weft/output.h"
 
 namespace weft::viewer {
 
-void draw_files(Workspace& workspace, Requests& requests, bool filming) {
+namespace {
+
+bool button(const char* label, bool enabled, const std::string& about) {
+  ImGui::BeginDisabled(!enabled);
+  const bool pressed = ImGui::Button(label);
+  ImGui::EndDisabled();
+  mark(label);
+  tooltip(about.c_str());
+  return pressed;
+}
+
+// Red while it goes on.
+bool lasting(const char* label, bool on, const char* begin, const char* end) {
+  if (on) ImGui::PushStyleColor(ImGuiCol_Button, kRunning);
+  const bool pressed = button(label, true, on ? end : begin);
+  if (on) ImGui::PopStyleColor();
+  return pressed;
+}
+
+// Typed after Ctrl + click, as everywhere in the panel.
+void whole_number(const char* name, int& value, int low, int high) {
+  ImGui::SetNextItemWidth(5 * ImGui::GetFontSize());
+  ImGui::DragInt((std::string("##") + name).c_str(), &value, 1, low, high, "%d",
+                 ImGuiSliderFlags_AlwaysClamp);
+  mark(name);
+}
+
+void draw_picture_form(Requests& requests, PictureRequest& form) {
+  if (!ImGui::BeginPopup("picture")) return;
+  whole_number("picture width", form.width, 16, 8192);
+  ImGui::SameLine();
+  ImGui::TextUnformatted("×");
+  ImGui::SameLine();
+  whole_number("picture height", form.height, 16, 8192);
+  ImGui::SameLine();
+  ImGui::TextUnformatted("pixels");
+  ImGui::SliderInt("samples of a pixel", &form.samples, 1, 16, "%d", ImGuiSliderFlags_AlwaysClamp);
+  mark("picture samples");
+  if (button("Save picture", true, "PNG, in the current folder")) {
+    requests.picture = form;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+// The frames of an export; the scene's own length is offered.
+void draw_range(const Scene& scene, FileForms& forms) {
+  ImGui::Checkbox("from now on, until it is ended", &forms.endless);
+  mark("export endless");
+  if (forms.endless) return;
+  constexpr int kMost = 1'000'000;
+  const double length = std::round(scene.time.seconds / scene.time.frame);
+  if (forms.frames[1] == 0) forms.frames[1] = static_cast<int>(std::min(length, 1.0 * kMost));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted("frames");
+  ImGui::SameLine();
+  whole_number("first frame", forms.frames[0], 0, kMost);
+  ImGui::SameLine();
+  ImGui::TextUnformatted("to");
+  ImGui::SameLine();
+  whole_number("last frame", forms.frames[1], 0, kMost);
+  forms.frames[1] = std::max(forms.frames[1], forms.frames[0]);
+  ImGui::TextColored(kQuiet, "A scene that is past the first frame starts anew.");
+}
+
+void draw_export_form(Workspace& workspace, FileForms& forms) {
+  if (!ImGui::BeginPopup("export")) return;
+  const std::vector<std::string> formats = animation_extensions();
+  for (std::size_t k = 0; k < formats.size(); ++k) {
+    if (k > 0) ImGui::SameLine();
+    if (ImGui::RadioButton(formats[k].c_str(), &forms.format, static_cast<int>(k)))
+      forms.path = forms.named
+                       ? std::filesystem::path(forms.path).replace_extension(formats[k]).string()
+                       : free_name(workspace.document().name(), formats[k], workspace.record());
+    mark("export " + formats[k]);
+  }
+  if (ImGui::InputText("file", &forms.path)) forms.named = true;
+  mark("export to " + forms.path);
+  std::error_code error;
+  if (std::filesystem::exists(forms.path, error))
+    ImGui::TextColored(kAccent, "What is there now is replaced.");
+  draw_range(workspace.document().scene(), forms);
+  const bool known = std::filesystem::path(forms.path).extension() ==
+                     formats[static_cast<std::size_t>(forms.format)];
+  if (button("Start export", known, known ? "" : "The file's name ends as the format is called")) {
+    const std::int64_t now = workspace.frame_data().frame;
+    if (forms.endless)
+      workspace.start_export(forms.path, now, {});
+    else
+      workspace.start_export(forms.path, forms.frames[0], forms.frames[1]);
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void draw_export(Workspace& workspace, FileForms& forms) {
+  if (lasting("Export", workspace.telemetry().exporting,
+              "The animation in a format for other programs, all of it or some frames",
+              "Ends the export")) {
+    if (workspace.telemetry().exporting) {
+      workspace.end_export();
+    } else {
+      const std::string format = animation_extensions()[static_cast<std::size_t>(forms.format)];
+      forms.path = free_name(workspace.document().name(), format, workspace.record());
+      forms.named = false;
+      ImGui::OpenPopup("export");
+    }
+  }
+  draw_export_form(workspace, forms);
+}
+
+}  // namespace
+
+void draw_files(Workspace& workspace, Requests& requests, FileForms& forms, bool filming) {
   const Document& document = workspace.document();
-  const auto button = [](const char* label, bool enabled, const std::string& about) {
-    ImGui::BeginDisabled(!enabled);
-    const bool pressed = ImGui::Button(label);
-    ImGui::EndDisabled();
-    mark(label);
-    tooltip(about.c_str());
-    return pressed;
-  };
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {5, ImGui::GetStyle().FramePadding.y});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {4, ImGui::GetStyle().ItemSpacing.y});
   if (button("Undo", document.can_undo(), document.next_undo())) workspace.undo();
@@ -24,24 +137,16 @@ void draw_files(Workspace& workspace, Requests& requests, bool filming) {
   if (button("Save", document.edited() || document.shipped(), "Saves to " + document.save_path()))
     workspace.save(document.save_path());
   ImGui::SameLine(0, 3 * ImGui::GetStyle().ItemSpacing.x);
-  if (button("Picture", true, "Saves a picture of the view as PNG")) requests.screenshot = true;
+  if (button("Picture", true, "A picture of the view as PNG, of any size; F12: as it is seen"))
+    ImGui::OpenPopup("picture");
   ImGui::SameLine();
-  // Red while it goes on.
-  const auto lasting = [&](const char* label, bool on, const char* begin, const char* end) {
-    if (on) ImGui::PushStyleColor(ImGuiCol_Button, kRunning);
-    const bool pressed = button(label, true, on ? end : begin);
-    if (on) ImGui::PopStyleColor();
-    return pressed;
-  };
   if (lasting("Film", filming,
               "Films the view to MP4 where ffmpeg is installed, else to numbered PNG files",
               "Ends the film"))
     requests.film = true;
   ImGui::SameLine();
-  if (lasting("Export", workspace.telemetry().exporting,
-              "Exports the animation from here on as a PC2 point cache, as weft run --export does",
-              "Ends the export"))
-    workspace.start_or_end_export();
+  draw_export(workspace, forms);
+  draw_picture_form(requests, forms.picture);
   ImGui::PopStyleVar(2);
 }
 

@@ -48,8 +48,8 @@ void Panel::draw_side(Workspace& workspace, Requests& requests) {
   ImGui::Begin("side", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
-  draw_scenes(workspace, path_);
-  draw_files(workspace, requests, filming);
+  draw_scenes(workspace, requests, path_);
+  draw_files(workspace, requests, forms_, filming);
   ImGui::Dummy({0, 2});
   if (ImGui::BeginTabBar("tabs")) {
     const auto tab = [&](const char* name, auto&& content) {
@@ -66,6 +66,7 @@ void Panel::draw_side(Workspace& workspace, Requests& requests) {
       parameters_.draw_search();
       const bool all = !parameters_.searching();
       if (all) draw_fabrics(workspace);
+      if (all) draw_parts(workspace, requests);
       if (all) draw_spring_cloth(workspace);
       parameters_.draw(workspace);
       if (all) draw_machine(workspace);
@@ -80,6 +81,7 @@ void Panel::draw_side(Workspace& workspace, Requests& requests) {
 
 void Panel::draw(Workspace& workspace, Hands& hands, Requests& requests) {
   if (has_side()) draw_side(workspace, requests);
+  if (requests.newest) hands.choose_newest(workspace);
   const Area area = picture_area();
   if (visible) {
     draw_tools(hands, area, keys_);
@@ -91,6 +93,8 @@ void Panel::draw(Workspace& workspace, Hands& hands, Requests& requests) {
   if (hands.busy()) played_ = true;
   if (!played_) draw_hints(area, workspace.now() - opened_);
   draw_messages(workspace.messages, area);
+  if (requests.gallery) gallery.open = true;
+  gallery.draw(workspace);
   if (help) draw_help(help, keys_);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "hands/hands.h"
+#include "panel/gallery.h"
 #include "panel/history.h"
 #include "panel/parameters.h"
 #include "window/keys.h"
@@ -9,9 +10,28 @@
 
 namespace weft::viewer {
 
+// A picture of the view as a file.
+struct PictureRequest {
+  int width = 0, height = 0;  // pixels; 0: as the view
+  int samples = 8;            // of a pixel
+};
+
 // What a person asks for that the window itself must do.
 struct Requests {
-  bool screenshot = false, film = false;
+  std::optional<PictureRequest> picture;
+  bool film = false;
+  bool newest = false;   // the newest body is to be moved
+  bool gallery = false;  // to be opened
+};
+
+// What a person has put into the forms of pictures and exports.
+struct FileForms {
+  PictureRequest picture{1920, 1080, 8};
+  int format = 0;          // of animation_extensions()
+  std::string path;        // of the export
+  bool named = false;      // the path was typed
+  bool endless = true;     // from now on, until it is ended
+  int frames[2] = {0, 0};  // else the first and the last
 };
 
 class Panel {
@@ -27,6 +47,7 @@ class Panel {
   bool visible = true;
   bool help = false;
   bool filming = false;
+  Gallery gallery;
   History history;
 
  private:
@@ -35,22 +56,25 @@ class Panel {
 
   const Keys& keys_;
   Parameters parameters_;
+  FileForms forms_;
   std::string path_;     // as it is typed
   double opened_ = -1;   // s
   bool played_ = false;  // a hand has done something
 };
 
 // The parts.
-void draw_scenes(Workspace& workspace, std::string& path);
-void draw_files(Workspace& workspace, Requests& requests, bool filming);
+void draw_scenes(Workspace& workspace, Requests& requests, std::string& path);
+void draw_files(Workspace& workspace, Requests& requests, FileForms& forms, bool filming);
+// Buttons that add cloths and bodies.
+void draw_parts(Workspace& workspace, Requests& requests);
 void draw_fabrics(Workspace& workspace);
 void draw_spring_cloth(Workspace& workspace);
 void draw_looks(Workspace& workspace);
 void draw_machine(Workspace& workspace);  // threads, instruction set
-// Keys [t, x, y, z] of a path; a first one is put at `now` [s] and `place`. True when they have
-// changed.
+// Keys [t, x, …] of a path, or of an angle over time; a first one is put at `now` [s] and `start`. True when
+// they have changed. `about`: what they are, with units.
 bool draw_path(const std::string& name, const std::string& pointer, text::Json& keys, double now,
-               const Vec3& place);
+               const std::vector<double>& start, const char* about);
 void draw_measures(const Workspace& workspace, const History& history);
 void draw_transport(Workspace& workspace, const Area& area, const Keys& keys);
 void draw_tools(Hands& hands, const Area& area, const Keys& keys);

@@ -15,6 +15,9 @@ namespace weft::viewer {
 
 namespace {
 
+constexpr std::size_t kMostPins = 100;
+constexpr const char* kPlaces = "Time [s], and x, y, z then";
+
 std::string words_of(std::string key) {
   std::replace(key.begin(), key.end(), '_', ' ');
   return key;
@@ -132,13 +135,15 @@ void Parameters::collider_path(const std::string& pointer, const Json& value) {
   Json keys = value;
   const FrameData& now = workspace_->frame_data();
   const Vec3 place = place_of(moved(bodies[number].shape, now.origin));
-  if (draw_path("path", pointer, keys, now.time, place)) change(pointer, keys);
+  if (draw_path("path", pointer, keys, now.time, {place.begin(), place.end()}, kPlaces))
+    change(pointer, keys);
 }
 
 // A vector over time; without keys it is what it was at the last one.
 void Parameters::vector_path(const std::string& pointer, const Json& value) {
   Json keys = value;
-  if (!draw_path("over time", pointer, keys, workspace_->frame_data().time, {})) return;
+  if (!draw_path("over time", pointer, keys, workspace_->frame_data().time, {0, 0, 0}, kPlaces))
+    return;
   const std::string vector = pointer.substr(0, pointer.rfind('/'));
   if (keys.empty())
     change(vector, Json{value[0][1], value[0][2], value[0][3]});
@@ -146,33 +151,120 @@ void Parameters::vector_path(const std::string& pointer, const Json& value) {
     change(pointer, keys);
 }
 
-// A pin that has its [i, j] alone is that.
+// Its path, its turn and what it follows; true when one has changed.
+bool Parameters::pin_values(const std::string& place, Json& pin, const Vec3& at) {
+  const double now = workspace_->frame_data().time;
+  const auto keys_of = [](const Json& of) {
+    const Json* known = text::member(of, "keys");
+    return known ? *known : Json::array();
+  };
+  bool changed = false;
+  if (Json keys = keys_of(pin);
+      draw_path("path", place + "/keys", keys, now, {at.begin(), at.end()}, kPlaces)) {
+    pin["keys"] = keys;
+    changed = true;
+  }
+  const Json turn = pin.value("rotate", Json{{"axis", {0, 1, 0}}, {"about", at}});
+  if (Json keys = keys_of(turn); draw_path("turn", place + "/rotate", keys, now, {0},
+                                           "Time [s], and the angle then [degrees]")) {
+    pin["rotate"] = turn;
+    pin["rotate"]["keys"] = keys;
+    changed = true;
+  }
+  if (pin.contains("rotate"))
+    for (const char* which : {"axis", "about"}) {
+      auto vector = turn.value(which, Vec3{});
+      const std::string label = std::string(which) + "##" + place;
+      if (ImGui::DragScalarN(label.c_str(), ImGuiDataType_Double, vector.data(), 3, 0.01f)) {
+        pin["rotate"][which] = vector;
+        changed = true;
+      }
+      mark(place + "/rotate/" + which);
+    }
+  int follow = pin.value("follow", -1);
+  const int last = static_cast<int>(workspace_->document().scene().colliders.size()) - 1;
+  if (last >= 0 &&
+      ImGui::SliderInt(("follows##" + place).c_str(), &follow, -1, last,
+                       follow < 0 ? "nothing" : "body %d", ImGuiSliderFlags_AlwaysClamp)) {
+    pin["follow"] = follow;
+    changed = true;
+  }
+  mark(place + "/follow");
+  return changed;
+}
+
+// A pin that has its place on the cloth alone is that.
 void Parameters::pins(const std::string& pointer, const Json& value) {
   const std::size_t number = std::stoul(pointer.substr(std::string("/cloths/").size()));
-  const auto& cloths = workspace_->frame_data().cloths;
+  const FrameData& now = workspace_->frame_data();
   const std::string label = "pins: " + std::to_string(value.size()) + "###" + pointer;
   const bool open = ImGui::TreeNodeEx(label.c_str(), ImGuiTreeNodeFlags_NoTreePushOnOpen);
   mark(pointer);
-  if (!open || number >= cloths.size()) return;
-  const ClothCopy& cloth = cloths[number];
+  if (!open || number >= now.cloths.size()) return;
+  const ClothCopy& cloth = now.cloths[number];
   ImGui::Indent(6);
-  for (std::size_t p = 0; p < std::min<std::size_t>(value.size(), 100); ++p) {
-    const Json& at = value[p].is_object() ? value[p]["at"] : value[p];
-    const int i = at[0], j = at[1];
-    if (i >= cloth.columns || j >= cloth.rows) continue;
-    const Json* known = text::member(value[p], "keys");
-    Json keys = known ? *known : Json::array();
+  for (std::size_t p = 0; p < std::min<std::size_t>(value.size(), kMostPins); ++p) {
+    Json pin = value[p].is_object() ? value[p] : Json{{"at", value[p]}};
+    const Json at = pin["at"];
+    const int particle =
+        at.is_number() ? at.get<int>() : at[1].get<int>() * cloth.columns + at[0].get<int>();
+    if (particle >= cloth.columns * cloth.rows) continue;
     const std::string place = text::join(pointer, std::to_string(p));
-    const std::string name = "pin " + std::to_string(i) + ", " + std::to_string(j);
-    if (!draw_path(name, place, keys, workspace_->frame_data().time,
-                   workspace_->in_scene(cloth.position(j * cloth.columns + i))))
-      continue;
-    Json pin = value[p].is_object() ? value[p] : Json{{"at", at}};
-    pin["keys"] = keys;
-    if (keys.empty()) pin.erase("keys");
+    const std::string name =
+        "pin " + (at.is_number() ? at.dump() : at[0].dump() + ", " + at[1].dump());
+    const bool shown =
+        ImGui::TreeNodeEx((name + "###" + place).c_str(), ImGuiTreeNodeFlags_NoTreePushOnOpen);
+    mark(place);
+    if (!shown || !pin_values(place, pin, workspace_->in_scene(cloth.position(particle)))) continue;
+    // What moves nothing is left out.
+    if (pin.contains("keys") && pin["keys"].empty()) pin.erase("keys");
+    if (pin.contains("rotate") && pin["rotate"]["keys"].empty()) pin.erase("rotate");
+    if (pin.value("follow", 0) < 0) pin.erase("follow");
     change(place, pin.size() == 1 ? at : pin);
   }
+  if (value.size() > kMostPins) ImGui::TextColored(kQuiet, "… %zu more", value.size() - kMostPins);
   ImGui::Unindent(6);
+}
+
+// Which lines the cloth is cut along; each can be sewn up again.
+void Parameters::cuts(const std::string& pointer, const Json& value) {
+  const std::string label = "cuts: " + std::to_string(value.size()) + "###" + pointer;
+  const bool open = ImGui::TreeNodeEx(label.c_str(), ImGuiTreeNodeFlags_NoTreePushOnOpen);
+  mark(pointer);
+  if (!open) return;
+  std::size_t gone = value.size();
+  for (std::size_t k = 0; k < std::min<std::size_t>(value.size(), kMostPins); ++k) {
+    const Json &from = value[k].front(), &to = value[k].back();
+    ImGui::Text("%.1f, %.1f  to  %.1f, %.1f: %zu points", from[0].get<double>(),
+                from[1].get<double>(), to[0].get<double>(), to[1].get<double>(), value[k].size());
+    ImGui::SameLine();
+    ImGui::PushID(static_cast<int>(k));
+    if (ImGui::SmallButton("×")) gone = k;
+    mark(pointer + " remove " + std::to_string(k));
+    ImGui::PopID();
+  }
+  if (gone == value.size()) return;
+  Json left = value;
+  left.erase(gone);
+  change(pointer, left);
+}
+
+// Of a cloth or a body as a whole.
+void Parameters::part_buttons(const std::string& pointer) {
+  const bool cloth = pointer.starts_with("/cloths/");
+  const Part part{cloth ? Kind::cloth : Kind::body,
+                  std::stoul(pointer.substr(pointer.rfind('/') + 1))};
+  const Scene& scene = workspace_->document().scene();
+  ImGui::PushID(pointer.c_str());
+  if (ImGui::SmallButton("Duplicate")) copied_ = part;
+  mark(pointer + " duplicate");
+  ImGui::SameLine();
+  ImGui::BeginDisabled(cloth && scene.cloths.size() == 1);
+  if (ImGui::SmallButton("Delete")) removed_ = part;
+  ImGui::EndDisabled();
+  mark(pointer + " delete");
+  tooltip(cloth && scene.cloths.size() == 1 ? "A scene has one cloth at least" : "");
+  ImGui::PopID();
 }
 
 void Parameters::member(const std::string& pointer, const std::string& key, const Json& schema,
@@ -182,6 +274,7 @@ void Parameters::member(const std::string& pointer, const std::string& key, cons
   const Json& chosen = *text::alternative(schema, value);
   if (value.is_object()) return group(pointer, words_of(key), chosen, value, false);
   if (key == "pins" && !value.empty()) return pins(pointer, value);
+  if (key == "cuts" && value.is_array() && !value.empty()) return cuts(pointer, value);
   if (key == "keys" && pointer.starts_with("/colliders")) return collider_path(pointer, value);
   if (key == "keys") return vector_path(pointer, value);
   if (options && key == "substeps") {  // a number, or auto
@@ -250,6 +343,8 @@ void Parameters::group(const std::string& pointer, const std::string& title, con
   if (!shown) return;
   const bool whole = std::exchange(whole_, whole_ || (searching() && named(title)));
   ImGui::Indent(6);
+  const bool part = pointer.starts_with("/cloths/") || pointer.starts_with("/colliders/");
+  if (part && std::count(pointer.begin(), pointer.end(), '/') == 2) part_buttons(pointer);
   members(pointer, schema, value);
   ImGui::Unindent(6);
   whole_ = whole;
@@ -265,7 +360,7 @@ void Parameters::draw(Workspace& workspace) {
   workspace_ = &workspace;
   if (!moved_.empty() && !ImGui::IsAnyItemActive()) moved_.clear();
   ImGui::PushItemWidth(ImGui::GetFontSize() * 9.5f);
-  // The document may change under the controls: they look at a copy.
+  // Values of the document may change under the controls: they look at a copy. Parts come and go behind them.
   const Json json = workspace.document().json();
   const Json& schema = text::scene_schema_json();
   const auto top = [&](const char* key, bool open) {
@@ -294,6 +389,8 @@ void Parameters::draw(Workspace& workspace) {
       group("/colliders/" + std::to_string(n), title, collider, json["colliders"][n], false);
   }
   ImGui::PopItemWidth();
+  if (const auto part = std::exchange(copied_, {})) workspace.duplicate(*part);
+  if (const auto part = std::exchange(removed_, {})) workspace.remove(*part);
   workspace_ = nullptr;
 }
 

@@ -2,6 +2,7 @@
 // those that validation and the documentation speak from.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "window/workspace.h"
@@ -31,6 +32,9 @@ class Parameters {
               const Json& value);
   void area_density(const std::string& pointer);
   void pins(const std::string& pointer, const Json& value);
+  bool pin_values(const std::string& place, Json& pin, const Vec3& at);
+  void cuts(const std::string& pointer, const Json& value);
+  void part_buttons(const std::string& pointer);
   void collider_path(const std::string& pointer, const Json& value);
   void vector_path(const std::string& pointer, const Json& value);
   void change(const std::string& pointer, const Json& value);
@@ -39,8 +43,9 @@ class Parameters {
 
   Workspace* workspace_ = nullptr;  // while drawing
   std::string filter_;
-  bool whole_ = false;  // within a group whose name is looked for
-  std::string moved_;   // the place whose control is held
+  bool whole_ = false;                    // within a group whose name is looked for
+  std::string moved_;                     // the place whose control is held
+  std::optional<Part> copied_, removed_;  // asked for, while drawing
 };
 
 }  // namespace weft::viewer

@@ -1,4 +1,4 @@
-// The path of a pin or a collider, or a vector over time: a line for each key, time and place.
+// The path of a pin or a collider, or a vector or an angle over time: a line for each key, time and values.
 #include <algorithm>
 
 #include "panel/panel.h"
@@ -13,22 +13,24 @@ constexpr double kBetween = 0.01;               // s, between neighbours at leas
 constexpr std::size_t kMostKeys = 200;
 
 // The controls of key k; true when it has changed.
-bool draw_key(text::Json& keys, std::size_t k) {
+bool draw_key(text::Json& keys, std::size_t k, const char* about) {
   text::Json& key = keys[k];
-  auto value = key.get<std::array<double, 4>>();
+  auto value = key.get<std::vector<double>>();
   const double first = k > 0 ? keys[k - 1][0].get<double>() + kBetween : 0;
   const double last = k + 1 < keys.size() ? keys[k + 1][0].get<double>() - kBetween : kLongest;
   const double low = -kFar, high = kFar;
   const float em = ImGui::GetFontSize();
   ImGui::SetNextItemWidth(4.2f * em);
-  bool changed = ImGui::DragScalar("##time", ImGuiDataType_Double, &value[0], 0.01f, &first, &last,
-                                   "%.2f s", ImGuiSliderFlags_AlwaysClamp);
+  bool changed = ImGui::DragScalar("##time", ImGuiDataType_Double, value.data(), 0.01f, &first,
+                                   &last, "%.2f s", ImGuiSliderFlags_AlwaysClamp);
   ImGui::SameLine();
+  const int values = static_cast<int>(value.size()) - 1;
   ImGui::SetNextItemWidth(11.5f * em);
-  changed = ImGui::DragScalarN("##place", ImGuiDataType_Double, &value[1], 3, 0.005f, &low, &high,
-                               "%.3g", ImGuiSliderFlags_AlwaysClamp) ||
+  const float speed = values == 1 ? 0.5f : 0.005f;
+  changed = ImGui::DragScalarN("##values", ImGuiDataType_Double, &value[1], values, speed, &low,
+                               &high, "%.3g", ImGuiSliderFlags_AlwaysClamp) ||
             changed;
-  tooltip("Time [s], and x, y, z then");
+  tooltip(about);
   if (changed) key = value;
   return changed;
 }
@@ -36,7 +38,7 @@ bool draw_key(text::Json& keys, std::size_t k) {
 }  // namespace
 
 bool draw_path(const std::string& name, const std::string& pointer, text::Json& keys, double now,
-               const Vec3& place) {
+               const std::vector<double>& start, const char* about) {
   const std::string count = keys.empty() ? "" : ": " + std::to_string(keys.size()) + " keys";
   const bool open = ImGui::TreeNodeEx((name + count + "###" + pointer).c_str(),
                                       ImGuiTreeNodeFlags_NoTreePushOnOpen);
@@ -47,7 +49,7 @@ bool draw_path(const std::string& name, const std::string& pointer, text::Json& 
   ImGui::PushID(pointer.c_str());
   for (std::size_t k = 0; k < std::min(keys.size(), kMostKeys); ++k) {
     ImGui::PushID(static_cast<int>(k));
-    changed = draw_key(keys, k) || changed;
+    changed = draw_key(keys, k, about) || changed;
     ImGui::SameLine();
     if (ImGui::Button("×")) gone = k;
     mark(pointer + " remove " + std::to_string(k));
@@ -59,8 +61,11 @@ bool draw_path(const std::string& name, const std::string& pointer, text::Json& 
   }
   if (ImGui::Button("Add a key")) {
     const double after = keys.empty() ? 0 : keys.back()[0].get<double>() + 0.5;
-    const Vec3 at = keys.empty() ? place : Vec3{keys.back()[1], keys.back()[2], keys.back()[3]};
-    keys.push_back({std::max(now, after), at[0], at[1], at[2]});
+    text::Json key = start;
+    key.insert(key.begin(), 0.0);
+    if (!keys.empty()) key = keys.back();
+    key[0] = std::max(now, after);
+    keys.push_back(key);
     changed = true;
   }
   mark(pointer + " add");

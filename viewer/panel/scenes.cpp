@@ -7,9 +7,10 @@
 
 namespace weft::viewer {
 
-void draw_scenes(Workspace& workspace, std::string& path) {
+void draw_scenes(Workspace& workspace, Requests& requests, std::string& path) {
   const Document& document = workspace.document();
-  ImGui::SetNextItemWidth(-1);
+  const float gallery = ImGui::CalcTextSize("Scenes").x + 2 * ImGui::GetStyle().FramePadding.x;
+  ImGui::SetNextItemWidth(-gallery - ImGui::GetStyle().ItemSpacing.x);
   const std::string title = document.name() + (document.edited() ? " *" : "");
   if (ImGui::BeginCombo("##scenes", title.c_str(), ImGuiComboFlags_HeightLargest)) {
     ImGui::SetNextItemWidth(-1);
@@ -29,6 +30,10 @@ void draw_scenes(Workspace& workspace, std::string& path) {
     ImGui::EndCombo();
   }
   tooltip(document.path().c_str());
+  ImGui::SameLine();
+  if (ImGui::Button("Scenes")) requests.gallery = true;
+  mark("Scenes");
+  tooltip("All shipped scenes as pictures");
   ImGui::PushTextWrapPos(0);
   ImGui::TextColored(kQuiet, "%s", document.scene().about.c_str());
   ImGui::PopTextWrapPos();

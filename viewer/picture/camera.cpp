@@ -26,22 +26,37 @@ void Camera::frame(const Bounds& bounds, float aspect, float clear) {
     needed = std::max(needed, across - dot(p, f));
   }
   distance_ = needed * 1.1f;
+  stay_above();
 }
 
-void Camera::orbit(float azimuth, float elevation) {
-  turn_to(azimuth_ - azimuth, elevation_ + elevation);
+// So far above the floor that the near plane does not meet it.
+float Camera::lowest() const {
+  return floor_ + 0.02f * distance_;
 }
 
+// The whole camera is lifted: it looks the same way.
+void Camera::stay_above() {
+  target_.y += std::max(0.0f, lowest() - eye().y);
+}
+
+// The eye is `high` above and `back` behind the point, in the camera's own directions, so that it stands at
+// high cos(e) + back sin(e) = r sin(e + angle) over it, at elevation e.
 void Camera::orbit(float azimuth, float elevation, Vec3f about) {
   const Vec3f from = target_ - about;
   const float across = dot(from, right()), high = dot(from, up()), deep = dot(from, forward());
-  orbit(azimuth, elevation);
+  const float back = distance_ - deep, r = std::hypot(high, back);
+  float next = elevation_ + elevation;
+  if (const float sine = (lowest() - about.y) / r; elevation < 0 && std::abs(sine) < 1)
+    next = std::max(next, std::min(elevation_, std::asin(sine) - std::atan2(high, back)));
+  turn_to(azimuth_ - azimuth, next);
   target_ = about + right() * across + up() * high + forward() * deep;
+  stay_above();
 }
 
 void Camera::pan(float x, float y) {
   const float height = 2 * distance_ * std::tan(kFov / 2);
   target_ = target_ - right() * (x * height) + up() * (y * height);
+  stay_above();
 }
 
 void Camera::zoom(float notches) {
@@ -53,6 +68,7 @@ void Camera::zoom(float notches, float x, float y, float aspect) {
   zoom(notches);
   const float t = std::tan(kFov / 2) * (before - distance_);
   target_ = target_ + right() * (x * t * aspect) + up() * (y * t);
+  stay_above();
 }
 
 Vec3f Camera::eye() const {

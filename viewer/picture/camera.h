@@ -1,5 +1,8 @@
-// The camera: turns about a point, moves with it, comes nearer, and frames what it is given.
+// The camera: turns about a point, moves with it, comes nearer, and frames what it is given. Its eye stays above
+// a floor.
 #pragma once
+
+#include <limits>
 
 #include "picture/linear.h"
 
@@ -7,15 +10,17 @@ namespace weft::viewer {
 
 class Camera {
  public:
+  // The height below which the eye does not go [m]; -infinity: it goes anywhere.
+  void set_floor(float height) { floor_ = height; }
+
   // Fits the box into the view, keeping the direction; `clear`: the share of the view's height, about its
   // middle, that nothing covers.
   void frame(const Bounds& bounds, float aspect, float clear = 1);
 
-  // A turn by angles [rad]; right and up are positive.
-  void orbit(float azimuth, float elevation);
   // A shift by fractions of the view's height, so that what is grabbed follows the pointer.
   void pan(float x, float y);
-  // The same about a point of the scene, which stays where it is in the picture.
+  // A turn by angles [rad], right and up are positive, about a point of the scene, which stays where it is in
+  // the picture. Over the floor it goes no lower.
   void orbit(float azimuth, float elevation, Vec3f about);
   // One notch of the wheel is 1: nearer. What is seen through (x, y), -1 … 1, stays there.
   void zoom(float notches);
@@ -38,9 +43,13 @@ class Camera {
  private:
   static constexpr float kFov = 0.6f;  // rad, bottom to top
 
+  float lowest() const;
+  void stay_above();
+
   Vec3f target_{};
   float azimuth_ = 0.52f, elevation_ = 0.3f;  // rad
   float distance_ = 3;
+  float floor_ = -std::numeric_limits<float>::infinity();
 };
 
 }  // namespace weft::viewer

@@ -217,6 +217,10 @@ void write_png(const std::string& path, const Picture& picture) {
   }
 }
 
+Texture load_picture(const std::string& path, std::string& error) {
+  return load_file(path, GL_RGB8, error);
+}
+
 Texture load_texture(const std::string& path, std::string& error) {
   if (!path.empty())
     if (Texture texture = load_file(path, GL_SRGB8, error)) return texture;

@@ -19,6 +19,9 @@ struct Picture {
 // Throws Failure when it cannot be written.
 void write_png(const std::string& path, const Picture& picture);
 
+// A file as it is, for the panel; an empty object and the reason when it cannot be read.
+Texture load_picture(const std::string& path, std::string& error);
+
 // A file, or "" for the program's own. What is wrong with a file is in `error`, and the program's
 // own is given.
 Texture load_texture(const std::string& path, std::string& error);     // woven check; sRGB

@@ -52,11 +52,14 @@ void Outputs::input(std::int64_t frame, const Input& input) {
   if (failed) throw WriteError(*failed);
 }
 
-void Outputs::export_to(const std::string& path, const Simulation& simulation) {
+void Outputs::export_to(const std::string& path, const Simulation& simulation, std::int64_t first,
+                        std::optional<std::int64_t> last) {
   const std::lock_guard lock(mutex_);
   if (finished_) return;
-  export_ = open_animation(path, simulation.view());
-  export_->append(simulation.view());
+  export_ = open_animation(path, simulation.view(), last ? *last - first + 1 : 0);
+  first_ = first;
+  last_ = last;
+  if (simulation.frame() == first) export_->append(simulation.view());
 }
 
 bool Outputs::exporting() const {
@@ -64,12 +67,15 @@ bool Outputs::exporting() const {
   return export_ != nullptr;
 }
 
-void Outputs::frame(const Simulation& simulation) {
+std::string Outputs::frame(const Simulation& simulation) {
   const std::lock_guard lock(mutex_);
   const auto no_recording = attempt(recorder_, [&](Recorder& to) { to.frame(simulation); });
-  const auto no_export = attempt(export_, [&](Animation& to) { to.append(simulation.view()); });
+  const auto no_export = attempt(export_, [&](Animation& to) {
+    if (simulation.frame() >= first_) to.append(simulation.view());
+  });
   if (no_recording) throw WriteError(*no_recording);
   if (no_export) throw WriteError(*no_export);
+  return last_ && simulation.frame() >= *last_ ? viewer::finish(export_) : "";
 }
 
 std::string Outputs::finish_recording() {

@@ -20,12 +20,14 @@ class Outputs {
   // An input that was applied when the simulation stood at a frame.
   void input(std::int64_t frame, const Input& input);
 
-  // Begins an animation, in a format of weft/output.h, with what the simulation is now.
-  void export_to(const std::string& path, const Simulation& simulation);
+  // Begins an animation of the frames first … last, in a format of weft/output.h; the simulation is not past
+  // the first. Without a last one it goes on until finish_export().
+  void export_to(const std::string& path, const Simulation& simulation, std::int64_t first,
+                 std::optional<std::int64_t> last);
   bool exporting() const;
 
-  // Right after a frame.
-  void frame(const Simulation& simulation);
+  // Right after a frame. Where the animation is written after its last frame, or "".
+  std::string frame(const Simulation& simulation);
 
   // Gives the file its name; where it was written, or "" where nothing is.
   std::string finish_recording();
@@ -40,6 +42,8 @@ class Outputs {
   mutable std::mutex mutex_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<Animation> export_;
+  std::int64_t first_ = 0;  // frame of the export
+  std::optional<std::int64_t> last_;
   bool finished_ = false;
   std::string problem_;
 };

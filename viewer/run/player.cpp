@@ -213,8 +213,12 @@ void Player::finish_recording() {
   attempt([&] { tell_written(outputs_.finish_recording()); });
 }
 
-void Player::export_to(const std::string& path) {
-  attempt([&] { outputs_.export_to(path, *simulation_); });
+void Player::export_to(const std::string& path, std::int64_t first,
+                       std::optional<std::int64_t> last) {
+  attempt([&] {
+    if (simulation_->frame() > first) open(scene_);
+    outputs_.export_to(path, *simulation_, first, last);
+  });
 }
 
 void Player::finish_export() {
@@ -251,7 +255,7 @@ void Player::advance() {
     telemetry_.frame_ms = 1e3 * (seconds_now() - start);
     ++telemetry_.frames;
     if (!simulation_->status().ok) return;
-    outputs_.frame(*simulation_);
+    tell_written(outputs_.frame(*simulation_));
     keep_state();
   });
 }

@@ -171,14 +171,31 @@ void App::draw_picture() {
 void App::dispatch(Action action) {
   if (action == Action::quit) window_.close();
   if (action == Action::close) close_top();
+  if (action == Action::gallery) panel_.gallery.open = !panel_.gallery.open;
   if (action == Action::help) panel_.help = !panel_.help;
   if (action == Action::panel) panel_.visible = !panel_.visible;
-  if (action == Action::screenshot) take_screenshot();
+  if (action == Action::screenshot) take_picture({});
   if (action == Action::film) start_or_end_film();
   if (action >= Action::hand && action <= Action::ball)
     hands_.tool = static_cast<Tool>(static_cast<int>(action) - static_cast<int>(Action::hand));
   dispatch_scene(action);
   dispatch_view(action);
+  dispatch_part(action);
+}
+
+// The body that the arrows move.
+void App::dispatch_part(Action action) {
+  const int chosen = hands_.pusher.chosen();
+  if (action != Action::remove && action != Action::duplicate) return;
+  if (hands_.tool != Tool::move || chosen < 0) {
+    workspace_.messages.tell("Choose a body with the tool Move first; cloths are in the panel",
+                             workspace_.now());
+    return;
+  }
+  const Part part{Kind::body, static_cast<std::size_t>(chosen)};
+  if (part.number >= workspace_.document().scene().colliders.size()) return;
+  if (action == Action::remove && workspace_.remove(part)) hands_.pusher.choose(Pusher::kNothing);
+  if (action == Action::duplicate && workspace_.duplicate(part)) hands_.choose_newest(workspace_);
 }
 
 // The list or the help that is open; where nothing is, says how to leave.
@@ -188,6 +205,8 @@ void App::close_top() {
     ImGui::ClosePopupsOverWindow(nullptr, false);
   else if (panel_.help)
     panel_.help = false;
+  else if (panel_.gallery.open)
+    panel_.gallery.open = false;
   else
     workspace_.messages.tell(keys_.names_of(Action::quit) + " leaves", workspace_.now());
 }
@@ -247,15 +266,16 @@ void App::take_dropped() {
 }
 
 void App::apply(const Requests& requests) {
-  if (requests.screenshot) take_screenshot();
+  if (requests.picture) take_picture(*requests.picture);
   if (requests.film) start_or_end_film();
 }
 
-void App::take_screenshot() {
+void App::take_picture(const PictureRequest& asked) {
   const std::string path = free_name(workspace_.document().name(), ".png", workspace_.record());
-  const auto [width, height] = picture_size();
+  const auto [width, height] =
+      asked.width > 0 ? std::pair(asked.width, asked.height) : picture_size();
   try {
-    write_png(path, view_.picture(workspace_, width, height));
+    write_png(path, view_.picture(workspace_, width, height, asked.samples));
     workspace_.messages.tell("Picture saved to " + full_path(path), workspace_.now());
   } catch (const Failure& failure) {
     workspace_.messages.warn("No picture: " + std::string(failure.what()), workspace_.now());

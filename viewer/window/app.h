@@ -32,13 +32,14 @@ class App {
   void close_top();
   void dispatch_scene(Action action);
   void dispatch_view(Action action);
+  void dispatch_part(Action action);
   void push_bodies(double seconds);
   void take_dropped();
   bool measured(double begun);
   void turn();
   void draw_picture();
   void apply(const Requests& requests);
-  void take_screenshot();
+  void take_picture(const PictureRequest& asked);
   void start_or_end_film();
   void end_film();
   void film();

@@ -23,6 +23,7 @@ const std::array<ActionText, kActions> kActionTexts{{
     {"front", "Alt+1", "Look from the front"},
     {"side", "Alt+2", "Look from the right"},
     {"top", "Alt+3", "Look from above"},
+    {"gallery", "G", "All scenes as pictures"},
     {"help", "H, F1", "These keys"},
     {"panel", "Tab", "Hide or show the panel"},
     {"undo", "Ctrl+Z", "Undo a change"},
@@ -49,6 +50,8 @@ const std::array<ActionText, kActions> kActionTexts{{
     {"move_far", "Up", "Move it away"},
     {"move_up", "E", "Move it up"},
     {"move_down", "D", "Move it down"},
+    {"duplicate", "Ctrl+D", "The chosen body once more"},
+    {"delete", "Delete", "Take the chosen body away"},
 }};
 
 namespace {

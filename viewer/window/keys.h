@@ -21,6 +21,7 @@ enum class Action {
   front,
   side,
   top,
+  gallery,
   help,
   panel,
   undo,
@@ -47,6 +48,8 @@ enum class Action {
   move_far,
   move_up,
   move_down,
+  duplicate,
+  remove,
   count
 };
 inline constexpr auto kActions = static_cast<std::size_t>(Action::count);

@@ -52,6 +52,7 @@ void Log::write(const Workspace& workspace, const View& view, const Hands& hands
                         {"held", held},
                         {"torn", !s.cloths.empty() && s.cloths[0].torn},
                         {"triangles", s.cloths.empty() ? 0 : s.cloths[0].triangles.size()},
+                        {"cloths", s.cloths.size()},
                         {"bodies", bodies},
                         {"undo", workspace.document().next_undo()},
                         {"edited", workspace.document().edited()},

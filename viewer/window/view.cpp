@@ -95,8 +95,8 @@ void View::took(double ms) {
   }
 }
 
-Picture View::picture(const Workspace& workspace, int width, int height) {
-  const RenderTarget target(width, height, 8);
+Picture View::picture(const Workspace& workspace, int width, int height, int samples) {
+  const RenderTarget target(width, height, samples);
   renderer_.draw(workspace.frame_data(), workspace.setting(), *workspace.look, workspace.settings,
                  workspace.camera, target);
   return target.read();

@@ -17,8 +17,8 @@ class View {
 
   // Draws what is new, and copies the picture into the window: x, y its lower left corner [pixels].
   void draw(Workspace& workspace, int x, int y, int width, int height);
-  // The whole picture in full quality.
-  Picture picture(const Workspace& workspace, int width, int height);
+  // The whole picture in full quality; `samples`: of a pixel.
+  Picture picture(const Workspace& workspace, int width, int height, int samples = 8);
 
   // Looks after the shaders' files and the pictures asked for.
   void reload(Workspace& workspace);

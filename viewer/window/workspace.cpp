@@ -1,6 +1,7 @@
 // Between the person and the simulation.
 #include "window/workspace.h"
 
+#include <limits>
 #include <thread>
 
 #include "clashes.h"
@@ -50,8 +51,14 @@ std::string Workspace::end() {
 
 void Workspace::show_start() {
   serial_ = frame_data().scene_serial;
-  setting_ = setting_of(frame_data());
+  take_setting(setting_of(frame_data()));
   if (aspect_ > 0) show_home();
+}
+
+// Beneath a grid, which nothing lands on, the eye may go.
+void Workspace::take_setting(const Setting& setting) {
+  setting_ = setting;
+  camera.set_floor(setting.solid ? setting.ground : -std::numeric_limits<float>::infinity());
 }
 
 void Workspace::set_picture(float aspect, float clear) {
@@ -131,6 +138,29 @@ bool Workspace::edit(const std::vector<Document::Change>& changes, bool joined,
   return wrong.empty();
 }
 
+bool Workspace::edit(const Scene& scene, const std::string& name, bool joined) {
+  return edit(changes_between(document_.scene(), scene), joined, name);
+}
+
+bool Workspace::add_cloth() {
+  const Bounds& room = setting_.room;
+  const Vec3f over{camera.target().x, room.high.y + 0.05f * setting_.size, camera.target().z};
+  return edit(with_cloth(document_.scene(), in_scene(over), 0.4 * setting_.size), "add cloth");
+}
+
+bool Workspace::add_body(std::size_t shape) {
+  return edit(with_body(document_.scene(), shape, in_scene(camera.target()), 0.2 * setting_.size),
+              std::string("add ") + kShapeNames[shape]);
+}
+
+bool Workspace::duplicate(const Part& part) {
+  return edit(with_copy(document_.scene(), part), "duplicate");
+}
+
+bool Workspace::remove(const Part& part) {
+  return edit(without(document_.scene(), part), "delete");
+}
+
 void Workspace::undo() {
   if (!document_.can_undo()) return;
   messages.tell("Undone: " + document_.next_undo(), now_);
@@ -178,14 +208,19 @@ void Workspace::give(const Input& input) {
   session_->post([input](Player& player) { player.hand(input); });
 }
 
-void Workspace::start_or_end_export() {
-  if (telemetry().exporting) {
-    session_->post([](Player& player) { player.finish_export(); });
+void Workspace::start_export(const std::string& path, std::int64_t first,
+                             std::optional<std::int64_t> last) {
+  if (same_file(path, record_)) {
+    messages.warn("Not exported: the recording goes to " + printable(path), now_);
     return;
   }
-  const std::string path = free_name(document_.name(), ".pc2", record_);
-  messages.tell("The animation goes to " + full_path(path) + " until you end it", now_);
-  session_->post([path](Player& player) { player.export_to(path); });
+  const std::string until = last ? " up to frame " + std::to_string(*last) : " until you end it";
+  messages.tell("The animation goes to " + full_path(path) + until, now_);
+  session_->post([=](Player& player) { player.export_to(path, first, last); });
+}
+
+void Workspace::end_export() {
+  session_->post([](Player& player) { player.finish_export(); });
 }
 
 void Workspace::next_look(int step) {
@@ -239,8 +274,7 @@ void Workspace::refresh(double now) {
       show_start();
     } else {
       serial_ = frame_data().scene_serial;
-      const Setting now_set = setting_of(frame_data());
-      if (frame_data().frame == 0) setting_ = now_set;
+      if (frame_data().frame == 0) take_setting(setting_of(frame_data()));
     }
   }
   const Telemetry& v = telemetry();

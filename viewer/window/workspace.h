@@ -5,7 +5,7 @@
 #include <string>
 
 #include "command_line.h"
-#include "edit/document.h"
+#include "edit/parts.h"
 #include "picture/renderer.h"
 #include "run/session.h"
 #include "window/messages.h"
@@ -33,6 +33,14 @@ class Workspace {
   // `name`: for undo (Document::set).
   bool edit(const std::vector<Document::Change>& changes, bool joined = false,
             const std::string& name = "");
+  // The same for the scene as a whole.
+  bool edit(const Scene& scene, const std::string& name, bool joined = false);
+  // Puts a cloth, or a body of the shape (kShapeNames), where the camera looks.
+  bool add_cloth();
+  bool add_body(std::size_t shape);
+  // Puts the part beside itself once more, or takes it away.
+  bool duplicate(const Part& part);
+  bool remove(const Part& part);
   void undo();
   void redo();
   void set_options(int threads, Simd simd);
@@ -43,7 +51,10 @@ class Workspace {
   void go_back(int back);  // states before the newest kept
   void give(const Input& input);
 
-  void start_or_end_export();
+  // Writes the animation of the frames first … last to a file in a format of weft/output.h; without a last one
+  // until end_export(). Where the scene is past the first, it starts anew.
+  void start_export(const std::string& path, std::int64_t first, std::optional<std::int64_t> last);
+  void end_export();
 
   void next_look(int step);
   void frame_cloth();
@@ -79,6 +90,7 @@ class Workspace {
 
  private:
   void show_start();
+  void take_setting(const Setting& setting);
   Bounds to_frame() const;
   void post_change();
   void watch_file();

@@ -1,0 +1,196 @@
+// Parts of a scene: added, copied, turned, sized, taken away (parts.h).
+#include "edit/parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "weft/mesh.h"
+#include "weft/shape.h"
+
+namespace weft::viewer {
+
+namespace {
+
+using Matrix = std::array<Vec3, 3>;  // rows
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+Vec3 plus(const Vec3& a, const Vec3& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+// A turn about a coordinate axis.
+Matrix rotation(std::size_t axis, double angle) {
+  Matrix m{};
+  const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
+  m[axis][axis] = 1;
+  m[a][a] = m[b][b] = std::cos(angle);
+  m[b][a] = std::sin(angle);
+  m[a][b] = -m[b][a];
+  return m;
+}
+
+Vec3 times(const Matrix& m, const Vec3& v) {
+  Vec3 out{};
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c) out[r] += m[r][c] * v[c];
+  return out;
+}
+
+Matrix times(const Matrix& m, const Matrix& n) {
+  Matrix out{};
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t k = 0; k < 3; ++k) out[r][c] += m[r][k] * n[k][c];
+  return out;
+}
+
+// Of turns about x, then y, then z [degrees]: Rz Ry Rx.
+Matrix matrix_of(const Vec3& degrees) {
+  return times(rotation(2, degrees[2] * kDegree),
+               times(rotation(1, degrees[1] * kDegree), rotation(0, degrees[0] * kDegree)));
+}
+
+// The angles again. Where y is a quarter turn, x and z turn about one axis, and z is taken as 0.
+Vec3 angles_of(const Matrix& m) {
+  const double sine = std::clamp(-m[2][0], -1.0, 1.0);
+  if (std::abs(sine) > 1 - 1e-9)
+    return {std::atan2(-m[1][2], m[1][1]) / kDegree, std::asin(sine) / kDegree, 0};
+  return {std::atan2(m[2][1], m[2][2]) / kDegree, std::asin(sine) / kDegree,
+          std::atan2(m[1][0], m[0][0]) / kDegree};
+}
+
+// How wide points are along x, or along z where that is more.
+Vec3 beside(const std::vector<Vec3>& points) {
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points)
+    for (std::size_t k = 0; k < 3; ++k)
+      low[k] = std::min(low[k], p[k]), high[k] = std::max(high[k], p[k]);
+  const double x = high[0] - low[0], z = high[2] - low[2];
+  constexpr double kGap = 1.15;
+  return x >= z ? Vec3{kGap * x, 0, 0} : Vec3{0, 0, kGap * z};
+}
+
+void shift(std::vector<Key>& keys, const Vec3& by) {
+  for (Key& key : keys) key.position = plus(key.position, by);
+}
+
+Cloth copy_of(const Cloth& cloth) {
+  Cloth copy = cloth;
+  Grid& g = copy.grid;
+  const bool mesh = cloth.mesh.given();
+  const Vec3 by = mesh ? beside(placed_vertices(cloth.mesh))
+                       : beside({g.origin, plus(g.origin, g.u), plus(g.origin, g.v),
+                                 plus(plus(g.origin, g.u), g.v)});
+  Vec3& place = mesh ? copy.mesh.translate : g.origin;
+  place = plus(place, by);
+  for (Pin& pin : copy.pins) {
+    shift(pin.keys, by);
+    pin.rotate.about = plus(pin.rotate.about, by);
+  }
+  return copy;
+}
+
+Collider copy_of(const Collider& body) {
+  Collider copy = body;
+  const Vec3 by = beside(triangulate(body.shape).positions);
+  copy.shape = moved(body.shape, by);
+  shift(copy.keys, by);
+  return copy;
+}
+
+Shape made(std::size_t shape, const Vec3& at, double size) {
+  const double r = size / 2;
+  const Vec3 low = plus(at, {0, -r, 0}), high = plus(at, {0, r, 0});
+  const Shape all[] = {Sphere{at, r}, Plane{low, {0, 1, 0}}, Capsule{low, high, r / 2},
+                       Box{at, {r, r, r}, {}, r / 10}, Cylinder{low, high, r, r / 10}};
+  return all[shape];
+}
+
+}  // namespace
+
+Scene with_body(Scene scene, std::size_t shape, const Vec3& at, double size) {
+  Collider body;
+  body.shape = made(shape, at, size);
+  body.friction = {FrictionModel::coulomb, 0.3, 0.3};
+  body.offset = 0.01 * size;
+  scene.colliders.push_back(body);
+  return scene;
+}
+
+Scene with_cloth(Scene scene, const Vec3& at, double size) {
+  Cloth cloth = scene.cloths.front();
+  cloth.mesh = {};
+  cloth.grid = {32, 32, plus(at, {-size / 2, 0, -size / 2}), {size, 0, 0}, {0, 0, size}, 0};
+  cloth.pins.clear();
+  cloth.cuts.clear();
+  cloth.masses.clear();
+  cloth.velocity = cloth.spin = {};
+  scene.cloths.push_back(std::move(cloth));
+  return scene;
+}
+
+Scene with_copy(Scene scene, const Part& part) {
+  if (part.kind == Kind::cloth)
+    scene.cloths.push_back(copy_of(scene.cloths[part.number]));
+  else
+    scene.colliders.push_back(copy_of(scene.colliders[part.number]));
+  return scene;
+}
+
+Scene without(Scene scene, const Part& part) {
+  const auto at = static_cast<std::ptrdiff_t>(part.number);
+  if (part.kind == Kind::cloth) {
+    scene.cloths.erase(scene.cloths.begin() + at);
+    return scene;
+  }
+  scene.colliders.erase(scene.colliders.begin() + at);
+  for (Cloth& cloth : scene.cloths)
+    for (Pin& pin : cloth.pins) {
+      if (pin.follow == at) pin.follow = -1;
+      if (pin.follow > at) --pin.follow;
+    }
+  return scene;
+}
+
+Shape turned(Shape shape, std::size_t axis, double angle) {
+  const Matrix turn = rotation(axis, angle);
+  const auto about = [&](const Vec3& p, const Vec3& place) {
+    return plus(place, times(turn, Vec3{p[0] - place[0], p[1] - place[1], p[2] - place[2]}));
+  };
+  if (auto* plane = std::get_if<Plane>(&shape)) plane->normal = times(turn, plane->normal);
+  if (auto* box = std::get_if<Box>(&shape))
+    box->rotation = angles_of(times(turn, matrix_of(box->rotation)));
+  if (auto* capsule = std::get_if<Capsule>(&shape)) capsule->b = about(capsule->b, capsule->a);
+  if (auto* cylinder = std::get_if<Cylinder>(&shape)) cylinder->b = about(cylinder->b, cylinder->a);
+  return shape;
+}
+
+Shape sized(Shape shape, double factor) {
+  const auto longer = [&](const Vec3& a, Vec3& b) {
+    for (std::size_t k = 0; k < 3; ++k) b[k] = a[k] + factor * (b[k] - a[k]);
+  };
+  if (auto* sphere = std::get_if<Sphere>(&shape)) sphere->radius *= factor;
+  if (auto* capsule = std::get_if<Capsule>(&shape))
+    longer(capsule->a, capsule->b), capsule->radius *= factor;
+  if (auto* cylinder = std::get_if<Cylinder>(&shape)) {
+    longer(cylinder->a, cylinder->b);
+    cylinder->radius *= factor;
+    cylinder->rounding *= factor;
+  }
+  if (auto* box = std::get_if<Box>(&shape)) {
+    for (double& half : box->half) half *= factor;
+    box->rounding *= factor;
+  }
+  return shape;
+}
+
+bool can_turn(const Shape& shape) {
+  return !std::holds_alternative<Sphere>(shape);
+}
+bool can_size(const Shape& shape) {
+  return !std::holds_alternative<Plane>(shape);
+}
+
+}  // namespace weft::viewer

@@ -1,0 +1,22 @@
+// What a scene is made of: buttons that add a cloth or a body.
+#include "panel/panel.h"
+#include "panel/theme.h"
+
+namespace weft::viewer {
+
+void draw_parts(Workspace& workspace, Requests& requests) {
+  heading("Add");
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+  const ImVec2 size{(ImGui::GetContentRegionAvail().x - 2 * gap) / 3, 0};
+  if (ImGui::Button("cloth", size)) workspace.add_cloth();
+  mark("add cloth");
+  tooltip("A level sheet of the first cloth's material, above all else");
+  for (std::size_t shape = 0; shape < kShapeNames.size(); ++shape) {
+    if (shape != 2) ImGui::SameLine(0, gap);  // two rows of three
+    if (ImGui::Button(kShapeNames[shape], size)) requests.newest = workspace.add_body(shape);
+    mark(std::string("add ") + kShapeNames[shape]);
+    tooltip("Put where the camera looks; Move then has its arrows, rings and square");
+  }
+}
+
+}  // namespace weft::viewer
