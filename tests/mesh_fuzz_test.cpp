@@ -5,6 +5,7 @@
 #include <random>
 #include <sstream>
 
+#include "made_up_mesh.h"
 #include "weft/mesh.h"
 #include "weft/simulation.h"
 
@@ -89,6 +90,58 @@ TEST(MeshFuzz, BrokenFilesAreRefusedOrMakeCloth) {
   }
   EXPECT_GT(refused, 300);
   EXPECT_GT(read, 200);
+}
+
+// Whatever is asked of the methods that project together: no fault, nothing that is no number, and no more
+// energy than falling gives.
+TEST(MeshFuzz, SweepsHoldWhateverIsAsked) {
+  std::mt19937 random(3);
+  const auto between = [&](double low, double high) {
+    return low * std::pow(high / low, double(random()) / 4294967296.0);
+  };
+  for (int round = 0; round < 60; ++round) {
+    Scene scene;
+    Cloth& cloth = scene.cloths.emplace_back();
+    const int nx = 2 + int(random() % 30), ny = 2 + int(random() % 30);
+    const auto mesh = made_up({.nx = nx,
+                               .ny = ny,
+                               .width = between(0.05, 5),
+                               .height = between(0.05, 5),
+                               .shift = 0.1 * double(random() % 5),
+                               .shuffled = random() % 2 == 0,
+                               .seed = unsigned(random())});
+    cloth.mesh.shape = mesh;
+    cloth.stiffness.structural = between(1, 1e7);
+    cloth.density = between(0.01, 10);
+    cloth.drag = random() % 2 == 0 ? 0 : between(0.1, 10);
+    if (random() % 2 == 0) cloth.bending = between(1e-7, 1);
+    if (random() % 3 == 0) cloth.strain_limit = between(1e-3, 0.5);
+    cloth.velocity = {between(0.01, 20), 0, -between(0.01, 20)};
+    for (auto n = random() % 5; n > 0; --n) cloth.pins.push_back({int(n), 0, {}});
+    Solver& solver = scene.solver;
+    solver.method = Method::compliant;
+    solver.sweep = random() % 2 == 0 ? Sweep::line : Sweep::gauss_seidel;
+    solver.order = 1 + int(random() % 2);
+    solver.iterations = 1 + int(random() % 4);
+    solver.tethers = random() % 2 == 0;
+    scene.time.substeps = random() % 3 == 0 ? kAutoSubsteps : 1 + int(random() % 40);
+    if (random() % 3 == 0)
+      scene.colliders.push_back({Sphere{{0.3, -0.2, 0.2}, 0.15}, {}, 0.001, {}, false});
+    if (random() % 3 == 0) scene.wind = {{3, 1, 0}, 0.5, 0.1, 0.3};
+    ASSERT_TRUE(validate(scene).empty()) << round << ": " << validate(scene)[0].what;
+    std::uint64_t hash = 0;
+    for (const int threads : {1, 2}) {
+      Simulation run(scene, {.threads = threads});
+      const double start = run.report().energy.total;
+      for (int n = 0; n < 20; ++n) run.advance_frame();
+      ASSERT_TRUE(run.status().ok) << round << ": " << run.status().text;
+      if (threads == 1) hash = run.hash();
+      EXPECT_EQ(run.hash(), hash) << round;
+      const double speed = 30 + 9.81 / 3;  // and of the wind
+      const double mass = cloth.density * 25;
+      EXPECT_LT(run.report().energy.kinetic, std::abs(start) + mass * speed * speed) << round;
+    }
+  }
 }
 
 TEST(MeshFuzz, MeshesOfProgramsAreLookedAt) {

@@ -41,6 +41,7 @@ constexpr double kSpring = 0.5, kDampedSpring = 0.75;
 constexpr double kGaussSeidel = 1.0, kJacobi = 0.6, kLine = 1.3;    // and sweep
 constexpr double kMembrane = 1.6, kSpringBend = 2, kSweepBend = 5;  // from here on: a particle
 constexpr double kVertex = 9, kBentVertex = 18;                     // of a mesh
+constexpr double kEdge = 1.6, kStrandEdge = 5, kBentSweep = 25;     // and of its sweeps
 constexpr double kProjection = 1.2, kTethers = 1.5;
 constexpr double kStrainLimit = 1.2, kTearing = 0.6, kWind = 0.8;
 constexpr double kCollider = 0.5, kBox = 20;       // and collider; a box meets whole triangles
@@ -131,7 +132,14 @@ double constraint_cost(const Cloth& cloth, const Solver& solver) {
   const double count = constraints_of(cloth);
   const double particles = particle_count(cloth);
   const double bends = cloth.bending.given() ? particles : 0;
-  if (cloth.mesh.given()) return particles * (bends > 0 ? cost::kBentVertex : cost::kVertex);
+  if (cloth.mesh.given()) {
+    if (is_spring(solver.method))
+      return particles * (bends > 0 ? cost::kBentVertex : cost::kVertex);
+    const double edge = solver.sweep == Sweep::line ? cost::kStrandEdge : cost::kEdge;
+    const double tethered = solver.tethers ? cost::kTethers : 0;
+    return solver.iterations * count * edge + bends * cost::kBentSweep +
+           particles * (cost::kProjection + tethered);
+  }
   if (is_spring(solver.method) && cloth.membrane.given())
     return particles * cost::kMembrane + bends * cost::kSpringBend;
   if (solver.method == Method::spring) return count * cost::kSpring + bends * cost::kSpringBend;

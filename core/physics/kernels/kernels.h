@@ -302,6 +302,9 @@ struct TearRow {
 struct MeshRow;  // kernels/mesh.h
 struct MeshWind;
 struct MeshForces;
+struct RecordRow;  // kernels/mesh_sweep.h
+struct EdgeSweep;
+struct HingeSweep;
 struct TransposeRows;
 struct SecondOrderRow;  // kernels/second_order.h
 struct TetherRow;
@@ -358,9 +361,13 @@ struct KernelTable {
   float (*greatest_square)(const FarRows&);     // of a constraint's length
   double (*stretch_energy)(const StretchRow&);  // J
   void (*tangent)(const TangentRow&);
-  void (*mesh_load)(const MeshRow&);       // positions and velocities into records, forces <- 0
-  void (*mesh_forces)(const MeshForces&);  // of triangles, added to the records of their corners
-  void (*mesh_move)(const MeshRow&);       // leapfrog step from the forces of the records
+  void (*mesh_load)(const MeshRow&);        // positions and velocities into records, forces <- 0
+  void (*mesh_forces)(const MeshForces&);   // of triangles, added to the records of their corners
+  void (*mesh_move)(const MeshRow&);        // leapfrog step from the forces of the records
+  void (*load_records)(const RecordRow&);   // positions and inverse masses, corrections <- 0
+  void (*store_records)(const RecordRow&);  // positions, and velocities, gain the corrections
+  void (*sweep_edges)(const EdgeSweep&);
+  void (*sweep_hinges)(const HingeSweep&);
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

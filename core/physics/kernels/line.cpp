@@ -198,7 +198,7 @@ class Block {
     const Wide coupling = w_ * dot(edge_, e);
     const Wide factor = coupling * reciprocal_;
     const Wide pivot = fnma(factor, coupling, (w_ + w_far + alpha) * squared);
-    Wide rest = wide(p.rest);
+    Wide rest = p.rests ? load(p.rests + std::ptrdiff_t(m) * kBatchLines + offset_) : wide(p.rest);
     if constexpr (kLambda)
       if (!p.fresh) rest = fnma(alpha, load_at(p.lambda, here), rest);
     right_ = fma(factor, right_, fnma(length, rest, squared));

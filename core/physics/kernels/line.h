@@ -25,11 +25,13 @@ struct LineBatch {
   int particles;  // rows that lines pass through
   int lean;
   int columns;
-  int first;         // number of the batch's first line, a multiple of 16; it has up to kBatchLines
-  float rest;        // m
-  float share;       // factor on the correction
-  Row3 v;            // velocities, laid out as x; gain corrections times inverse_dt
-  float inverse_dt;  // 1/s; 0 = velocities are not touched
+  int first;   // number of the batch's first line, a multiple of 16; it has up to kBatchLines
+  float rest;  // m
+  // Of constraint m of each line, [m][kBatchLines]; null: `rest` for all.
+  const float* rests;
+  float share;                     // factor on the correction
+  Row3 v;                          // velocities, laid out as x; gain corrections times inverse_dt
+  float inverse_dt;                // 1/s; 0 = velocities are not touched
   const float* compliance;         // [m][kBatchLines] of constraint m of each line [1/kg]
   std::ptrdiff_t compliance_step;  // kBatchLines, or 0 when all rows are alike
   // -1 where constraint m of line n holds, 0 where it is cut, laid out as x; or null.

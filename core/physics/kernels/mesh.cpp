@@ -4,6 +4,7 @@
 // quadratic form of the hinges: how far neighbours lie off the triangle's plane, as vectors.
 #include "physics/kernels/mesh.h"
 
+#include "physics/kernels/hinges.h"
 #include "physics/kernels/records.h"
 #include "physics/kernels/row_kernels.h"
 
@@ -16,22 +17,6 @@ using physics::MeshRow;
 
 constexpr float kTinySquare = 1e-20f;  // m²
 constexpr float kTinyArea = 1e-30f;    // m⁴, squared
-
-// Adds to the first three floats of the records that are told.
-WEFT_INLINE void add_records(float* records, const std::int32_t* number, Wide3 v) {
-#if WEFT_LANES >= 4
-  Wide r[4] = {v.x, v.y, v.z, Wide{}};
-  turn(r);
-  for (int k = 0; k < 4; ++k)
-    for_each_quarter(r[k], [&](int l, Four one) {
-      float* const at = records + 4 * std::ptrdiff_t(number[l + k]);
-      store_four(at, load_four(at) + one);
-    });
-#else
-  float* const at = records + 4 * std::ptrdiff_t(number[0]);
-  store_four(at, load_four(at) + Four{v.x[0], v.y[0], v.z[0], 0});
-#endif
-}
 
 struct Derivatives {
   Wide3 u, v;
@@ -86,37 +71,13 @@ struct Triangles {
     }
   }
 
-  // Jumps of slope: of the positions of a triangle's corners and its neighbours', or of velocities.
-  WEFT_INLINE void jumps(const Wide3 (&x)[6], Wide3 (&jump)[3]) const {
-    for (int k = 0; k < 3; ++k) {
-      const Wide3 a = x[k], side = x[(k + 1) % 3] - a;
-      jump[k] = (x[3 + k] - a - side * load(b.away_at[k] + lane)) * load(b.away[k] + lane) +
-                (x[(k + 2) % 3] - a - side * load(b.own_at[k] + lane)) * load(b.own[k] + lane);
-    }
-  }
-
   // What a jump becomes off the triangle is damped; that it turns with the triangle is not.
   WEFT_INLINE void add_rates(const Wide3 (&x)[3], const Wide3 (&v)[6], Wide3 (&jump)[3]) const {
     const Wide3 normal = cross(x[1] - x[0], x[2] - x[0]);
     const Wide scale = m.bend_damping / max(dot(normal, normal), wide(kTinyArea));
     Wide3 rate[3];
-    jumps(v, rate);
+    Hinges{b, lane}.jumps(v, rate);
     for (int k = 0; k < 3; ++k) jump[k] = jump[k] + normal * (dot(normal, rate[k]) * scale);
-  }
-
-  WEFT_INLINE void bending(const Wide3 (&hinge)[3], Wide3 (&f)[3], Wide3 (&across)[3]) const {
-    for (int k = 0; k < 3; ++k) {
-      const int next = (k + 1) % 3, last = (k + 2) % 3;
-      const Wide3 moment = hinge[k] * load(b.moment[k] + lane) +
-                           hinge[next] * load(b.moment[3 + k] + lane) +
-                           hinge[last] * load(b.moment[3 + last] + lane);
-      const Wide3 away = moment * load(b.away[k] + lane), own = moment * load(b.own[k] + lane);
-      const Wide3 far = away * load(b.away_at[k] + lane) + own * load(b.own_at[k] + lane);
-      across[k] = Wide3{} - away;
-      f[last] = f[last] - own;
-      f[next] = f[next] + far;
-      f[k] = f[k] + (away + own - far);
-    }
   }
 };
 
@@ -135,16 +96,18 @@ WEFT_INLINE void forces_of(const MeshForces& m) {
         t.springs(x, v, f);
       if constexpr (kBends) {
         Wide3 jump[3], across[3];
-        t.jumps({x[0], x[1], x[2], t.at(m.position, 3), t.at(m.position, 4), t.at(m.position, 5)},
-                jump);
+        const Hinges hinges{t.b, lane};
+        hinges.jumps(
+            {x[0], x[1], x[2], t.at(m.position, 3), t.at(m.position, 4), t.at(m.position, 5)},
+            jump);
         if (m.bend_damping > 0)
           t.add_rates(
               x, {v[0], v[1], v[2], t.at(m.velocity, 3), t.at(m.velocity, 4), t.at(m.velocity, 5)},
               jump);
-        t.bending(jump, f, across);
-        for (int k = 0; k < 3; ++k) add_records(m.force, t.b.corner[3 + k] + lane, across[k]);
+        hinges.pull(jump, f, across);
+        for (int k = 0; k < 3; ++k) add_records(m.force, 4, t.b.corner[3 + k] + lane, across[k]);
       }
-      for (int k = 0; k < 3; ++k) add_records(m.force, t.b.corner[k] + lane, f[k]);
+      for (int k = 0; k < 3; ++k) add_records(m.force, 4, t.b.corner[k] + lane, f[k]);
     }
 }
 

@@ -39,12 +39,17 @@ WEFT_INLINE void for_each_number(const std::int32_t* number, const Visit& visit)
 #endif
 }
 
+// Record k is what load makes of address(k).
+template <class Address, class Load>
+WEFT_INLINE Wide4 records_from(const Address& address, const Load& load) {
+  Four record[kLanes];
+  for (int k = 0; k < kLanes; ++k) record[k] = load(address(k));
+  return turned(record);
+}
 // Record k has its four floats at address(k).
 template <class Address>
 WEFT_INLINE Wide4 records_from(const Address& address) {
-  Four record[kLanes];
-  for (int k = 0; k < kLanes; ++k) record[k] = load_four(address(k));
-  return turned(record);
+  return records_from(address, [](const float* at) { return load_four(at); });
 }
 
 // At records + stride * number[k].
@@ -91,6 +96,23 @@ WEFT_INLINE void put_records(float* records, [[maybe_unused]] int stride, Wide4 
     });
 #else
   store_four(records, Four{v.xyz.x[0], v.xyz.y[0], v.xyz.z[0], v.last[0]});
+#endif
+}
+
+// Adds to the first three floats of records; no number comes twice.
+WEFT_INLINE void add_records(float* records, [[maybe_unused]] int stride,
+                             const std::int32_t* number, Wide3 v) {
+#if WEFT_LANES >= 4
+  Wide r[4] = {v.x, v.y, v.z, Wide{}};
+  turn(r);
+  for (int k = 0; k < 4; ++k)
+    for_each_quarter(r[k], [&](int l, Four one) {
+      float* const at = records + stride * std::ptrdiff_t(number[l + k]);
+      store_four(at, load_four(at) + one);
+    });
+#else
+  float* const at = records + stride * std::ptrdiff_t(number[0]);
+  store_four(at, load_four(at) + Four{v.x[0], v.y[0], v.z[0], 0});
 #endif
 }
 

@@ -56,6 +56,10 @@ const physics::KernelTable& table() {
       .mesh_load = mesh_load,
       .mesh_forces = mesh_forces,
       .mesh_move = mesh_move,
+      .load_records = load_records,
+      .store_records = store_records,
+      .sweep_edges = sweep_edges,
+      .sweep_hinges = sweep_hinges,
   };
   return table;
 }

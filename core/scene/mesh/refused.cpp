@@ -26,9 +26,8 @@ void check_keys(const Cloth& cloth, const std::string& place, Check& result) {
          "0.5, with a mesh");
   refuse(cloth.stiffness_gradient > 0, "/stiffness_gradient", "a mesh has a gradient",
          "0, with a mesh");
-  refuse(cloth.strain_limit > 0, "/strain_limit", "a mesh has a strain limit", "0, with a mesh");
   refuse(cloth.strain_limit_order != Cloth{}.strain_limit_order, "/strain_limit_order",
-         "a mesh has no strain limit", "colours, with a mesh");
+         "the course's order is that of a grid", "colours, with a mesh");
   refuse(!cloth.cuts.empty(), "/cuts", "a mesh is cut", "none, with a mesh");
   refuse(cloth.tear_strain > 0, "/tear_strain", "a mesh is to tear", "0, with a mesh");
   refuse(cloth.tears != Tears::split, "/tears", "a mesh does not tear", "split, with a mesh");
@@ -40,15 +39,27 @@ void check_keys(const Cloth& cloth, const std::string& place, Check& result) {
          "nothing, with a mesh");
 }
 
+// Of the solver, for a cloth that is a mesh.
+void check_method(const Solver& solver, const Cloth& cloth, const std::string& place,
+                  Check& result) {
+  if (!result.sound("/solver/method")) return;
+  if (solver.method == Method::positional)
+    result.fault(place + "/mesh", "a mesh is to be projected without compliance",
+                 "method compliant, spring or spring_friction, with a mesh");
+  if (solver.method != Method::compliant) return;
+  if (cloth.membrane.given())
+    result.fault(place + "/membrane", "a membrane of a mesh is to be projected",
+                 "springs, or method spring or spring_friction, with a mesh");
+  if (solver.sweep == Sweep::jacobi && result.sound("/solver/sweep"))
+    result.fault(place + "/mesh", "a mesh is to be projected by means of its constraints",
+                 "sweep gauss_seidel or line, with a mesh");
+}
+
 }  // namespace
 
 void check_mesh(const Scene& scene, const Cloth& cloth, const std::string& place, Check& result) {
   check_keys(cloth, place, result);
-  const Method method = scene.solver.method;
-  const bool springs = method == Method::spring || method == Method::spring_friction;
-  if (!springs && result.sound("/solver/method"))
-    result.fault(place + "/mesh", "a mesh is to be projected by the scene's method",
-                 "method spring or spring_friction, with a mesh");
+  check_method(scene.solver, cloth, place, result);
   for (const Collider& collider : scene.colliders)
     if (collider.cuts)
       return result.fault(place + "/mesh", "a collider cuts a mesh", "grids alone are cut");

@@ -12,6 +12,7 @@
 #include "physics/model/lattice/bending.h"
 #include "physics/model/path.h"
 #include "physics/model/random.h"
+#include "weft/mesh.h"
 
 namespace weft::physics {
 namespace {
@@ -201,6 +202,38 @@ double lightest_mass(const Cloth& cloth) {
   return *std::min_element(cloth.masses.begin(), cloth.masses.end());
 }
 
+namespace {
+
+// What the substep of methods that project depends on.
+struct Fineness {
+  double points_over_spacing;  // 1/m; along the longer side
+  double mass, stiffness;      // kg, N/m
+};
+
+Fineness fineness_of(const Cloth& c, const Solver& solver) {
+  if (!c.mesh.given())
+    return {std::max(c.grid.nx / spacing_u(c.grid), c.grid.ny / spacing_v(c.grid)),
+            lightest_mass(c), spring_repeats(solver) * greatest_stiffness(c)};
+  // As if its triangles were halves of squares of their mean area.
+  const std::vector<Vec3>& x = c.mesh.shape->vertices;
+  double area = 0, longest = 0;
+  for (const auto& [p, q, r] : c.mesh.shape->triangles) {
+    const Vec3 n = cross(minus(x[std::size_t(q)], x[std::size_t(p)]),
+                         minus(x[std::size_t(r)], x[std::size_t(p)]));
+    area += std::sqrt(physics::dot(n, n)) / 2;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [low, high] = std::minmax_element(
+        x.begin(), x.end(), [&](const Vec3& a, const Vec3& b) { return a[k] < b[k]; });
+    longest = std::max(longest, (*high)[k] - (*low)[k]);
+  }
+  const double scale = c.mesh.scale;
+  const double square = scale * scale * 2 * area / double(c.mesh.shape->triangles.size());
+  return {scale * longest / square, c.density * square, c.stiffness.structural};
+}
+
+}  // namespace
+
 double projection_substep(const Scene& scene) {
   constexpr double kSag = 0.02;
   constexpr double kJacobi = 0.3;  // of what a Gauss-Seidel sweep does: it takes means
@@ -210,14 +243,10 @@ double projection_substep(const Scene& scene) {
   const double sweeps = solver.iterations * (solver.sweep == Sweep::jacobi ? kJacobi : 1);
   double dt = kLongestProjection;
   for (const Cloth& c : scene.cloths) {
-    const double points_over_spacing =
-        std::max(c.grid.nx / spacing_u(c.grid), c.grid.ny / spacing_v(c.grid));
-    double needed = std::sqrt(kSag * sweeps / (2 * g * points_over_spacing));
-    if (solver.method != Method::positional) {
-      const double lightest = lightest_mass(c);
-      const double k = spring_repeats(solver) * greatest_stiffness(c);
-      needed = std::max(needed, std::sqrt(lightest / std::max(k, 1e-12)));
-    }
+    const Fineness f = fineness_of(c, solver);
+    double needed = std::sqrt(kSag * sweeps / (2 * g * f.points_over_spacing));
+    if (solver.method != Method::positional)
+      needed = std::max(needed, std::sqrt(f.mass / std::max(f.stiffness, 1e-12)));
     dt = std::min(dt, needed);
   }
   return dt;

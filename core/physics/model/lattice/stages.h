@@ -8,7 +8,7 @@
 #include "physics/model/cloth_model.h"
 #include "physics/model/lattice/lattice.h"
 #include "physics/model/lattice/stencil.h"
-#include "physics/model/push.h"
+#include "physics/model/projected_motion.h"
 #include "physics/step/stage.h"
 
 namespace weft::physics {
@@ -32,28 +32,12 @@ int greatest_reach(const LatticeParts& parts);
 
 std::unique_ptr<RowStage> make_springs(const LatticeParts& parts, bool damped);
 std::unique_ptr<RowStage> make_membrane(const LatticeParts& parts);
-// `corrections`: what sweeps have found, if they gather it.
-std::unique_ptr<RowStage> make_predict(const LatticeParts& parts, struct Multipliers* multipliers,
-                                       Rows* corrections);
-std::unique_ptr<RowStage> make_velocity(const LatticeParts& parts, bool compliant);
 // m, past which a constraint tears.
 inline float tear_length(const Cloth& cloth, const Stencil& stencil) {
   return float(stencil.rest * (1 + cloth.tear_strain));
 }
 std::unique_ptr<RowStage> make_tear(const LatticeParts& parts, LatticeTearing& tearing);
 std::unique_ptr<RowStage> make_wind(const LatticeParts& parts, std::uint64_t seed);
-
-// Lagrange multipliers of the compliant method, kept over the sweeps of one substep: one lattice of
-// floats per stencil, null when a single sweep needs none.
-struct Multipliers {
-  Multipliers(const Lattice& lattice, std::size_t stencils);
-  float* row(std::size_t stencil, int j);
-  void clear(int begin, int end);  // rows
-  std::size_t bytes() const { return data.size() * sizeof(float); }
-  int rows, stride;
-  std::size_t stencils;
-  AlignedArray<float> data;
-};
 
 // The Gauss–Seidel sweep: one stage per row offset and colour, appended in the fixed order.
 struct SweepOptions {
@@ -65,22 +49,6 @@ struct SweepOptions {
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
 // The strain limit, one constraint after the other.
 std::unique_ptr<RowStage> make_course_limit(const LatticeParts& parts);
-// After the sweeps: positions and velocities gain the corrections, which are then zero again.
-std::unique_ptr<RowStage> make_corrections(const LatticeParts& parts, Rows& corrections);
-// What the second-order substep keeps of the substep before (Lattice::previous is its position).
-struct History {
-  explicit History(const Lattice& lattice);
-  std::size_t bytes() const {
-    return v_before.bytes() + v_end.bytes() + predicted.bytes() +
-           inverse_mass.size() * sizeof(float);
-  }
-  Rows v_before, v_end, predicted;
-  AlignedArray<float> inverse_mass;
-};
-std::unique_ptr<RowStage> make_predict_second_order(const LatticeParts& parts, History& history,
-                                                    Multipliers* multipliers);
-std::unique_ptr<RowStage> make_velocity_second_order(const LatticeParts& parts, History& history);
-
 std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts, bool compliant);
 // The curvature energy, as a force on the velocities or as constraints.
 std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Method method);

@@ -5,6 +5,8 @@
 
 #include "physics/model/keyed_pins.h"
 #include "physics/model/largest_eigenvalue.h"
+#include "physics/model/mesh/mesh_attachments.h"
+#include "physics/model/mesh/strand_sweep.h"
 #include "physics/model/number.h"
 #include "physics/model/path.h"
 #include "physics/model/push.h"
@@ -15,17 +17,8 @@ namespace weft::physics {
 namespace {
 
 // Where what no force reaches is heavy enough for arithmetic, and held.
-constexpr double kLooseMass = 1;  // kg
-
-std::vector<Joined> edges_of(const TriangleMesh& mesh) {
-  std::vector<Joined> edges;
-  for (const auto& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k)
-      edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  return edges;
-}
+constexpr double kLooseMass = 1;    // kg
+constexpr double kRounding = 4e-7;  // of positions in single precision, of the scene's size
 
 double distance(const Vec3& a, const Vec3& b) {
   const Vec3 e = minus(a, b);
@@ -45,10 +38,8 @@ MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t
       order_(order_of(mesh_)),
       particles_(order_.counts, false, order_.vertices),
       parts_{scene, scene.cloths[std::size_t(index)], method_, particles_, kernels, *this},
-      edges_(edges_of(mesh_)) {
+      edges_(edges_of(mesh_, start_)) {
   for (const Collider& c : scene.colliders) first_moves_.push_back(displacement(c, 0));
-  for (const auto& [a, b] : edges_)
-    rest_.push_back(distance(start_[std::size_t(a)], start_[std::size_t(b)]));
   surface_.triangles = mesh_.triangles;
   const auto lane = [&](int p) { return std::uint32_t(particles_.lane(p)); };
   for (int p = 0; p < particles_.count(); ++p) drawn_.lanes.push_back(lane(p));
@@ -87,6 +78,11 @@ void MeshModel::place() {
 void MeshModel::append_motion(Method method, StageList& list) {
   method_ = method;
   material_ = material_of(parts_.cloth, method == Method::spring_friction);
+  history_.reset();
+  is_explicit(method) ? append_forces(list) : append_projections(list);
+}
+
+void MeshModel::append_forces(StageList& list) {
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
   if (!material_.bends) list.skip("bending", "bending is 0");
   list.stages.push_back(make_triangles(parts_, order_, triangles_, material_));
@@ -94,20 +90,87 @@ void MeshModel::append_motion(Method method, StageList& list) {
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
 }
 
+// As those of a grid (lattice_model.cpp).
+void MeshModel::append_projections(StageList& list) {
+  const Solver& solver = parts_.scene.solver;
+  list.skip("triangles", "constraints are projected with this method");
+  const bool lines = solver.sweep == Sweep::line;
+  if ((lines || solver.order == 2) && particles_.previous.bytes() == 0)
+    particles_.previous = Rows(particles_.rows, particles_.stride);
+  if (solver.order == 2)
+    history_ = std::make_unique<History>(particles_);
+  else
+    list.skip("second order", "order is 1");
+  list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, nullptr)
+                                 : make_predict(parts_, nullptr, nullptr));
+  list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_), "drag and lift are 0");
+  list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
+  if (solver.tethers && tethers_.empty()) tethers_ = attachments();
+  list.choose("tethers", solver.tethers ? make_tethers(parts_, true, tethers_) : nullptr,
+              solver.tethers ? "nothing is pinned" : "off in the scene");
+  if (material_.stiffness == 0)
+    list.skip("gauss_seidel", "stiffness is 0");
+  else if (lines)
+    list.stages.push_back(make_strands(parts_, edges_, material_.stiffness, start_));
+  else
+    sweeps().append_edges(solver.iterations, list);
+  if (material_.bends)
+    sweeps().append_hinges(list);
+  else
+    list.skip("bending", "bending is 0");
+  if (history_)
+    list.stages.push_back(make_velocity_second_order(parts_, *history_));
+  else if (lines)
+    list.stages.push_back(make_velocity(parts_, true));
+}
+
+std::vector<std::vector<Tether>> MeshModel::attachments() const {
+  std::vector<int> pins;
+  for (const Pin& pin : parts_.cloth.pins) pins.push_back(pin.i);
+  return mesh_attachments(mesh_, start_, pins);
+}
+
+// What is farther from a pin than the mesh is long is taken back at once.
+double MeshModel::attachment_energy(const Rows& at, double dt) const {
+  const std::vector<Vec3> x = particles_.gather(at);
+  double sum = 0;
+  for (const std::vector<Tether>& slot : tethers_)
+    for (std::size_t p = 0; p < slot.size(); ++p) {
+      const double w = particles_.inverse_mass[particles_.lane(int(p))];
+      if (slot[p].pin < 0 || w == 0) continue;
+      const double over =
+          std::max(0.0, distance(x[p], x[std::size_t(slot[p].pin)]) - slot[p].reach);
+      sum += 0.5 / w * over * over / (dt * dt);
+    }
+  return sum;
+}
+
+MeshSweeps& MeshModel::sweeps() {
+  if (!sweeps_) {
+    sweeps_ = std::make_unique<MeshSweeps>(parts_, order_);
+    sweeps_->make_edges(edges_, material_.stiffness);
+    if (material_.bends) sweeps_->make_hinges(triangles_);
+  }
+  return *sweeps_;
+}
+
 void MeshModel::append_limits(StageList& list) {
   list.skip("tear", "tear_strain is 0");
-  list.skip("strain_limit", "strain_limit is 0");
+  if (parts_.cloth.strain_limit > 0)
+    sweeps().append_limit(parts_.cloth.strain_limit, list);
+  else
+    list.skip("strain_limit", "strain_limit is 0");
 }
 
 ConstraintCounts MeshModel::constraints() const {
-  return {std::int64_t(edges_.size()), 0, 0};
+  return {std::int64_t(edges_.ends.size()), 0, 0};
 }
 
 Pull MeshModel::pull() const {
   const double stiffness = material_.membrane
                                ? std::max({material_.c11, material_.c22, material_.c66})
                                : 2 * material_.stiffness;
-  const double longest = *std::max_element(rest_.begin(), rest_.end());
+  const double longest = *std::max_element(edges_.rest.begin(), edges_.rest.end());
   const double force = 2 * stiffness * longest;
   return {stiffness, force, 3 * force / *std::min_element(masses_.begin(), masses_.end())};
 }
@@ -133,12 +196,12 @@ double MeshModel::elastic_energy() const {
 
 Strain MeshModel::strain() const {
   const std::vector<Vec3> x = particles_.gather(particles_.x);
-  Strain strain{-1, 0, std::int64_t(edges_.size())};
-  for (std::size_t n = 0; n < edges_.size(); ++n) {
-    const auto& [a, b] = edges_[n];
-    const double e = distance(x[std::size_t(a)], x[std::size_t(b)]) / rest_[n] - 1;
+  Strain strain{-1, 0, std::int64_t(edges_.ends.size())};
+  for (std::size_t n = 0; n < edges_.ends.size(); ++n) {
+    const auto& [a, b] = edges_.ends[n];
+    const double e = distance(x[std::size_t(a)], x[std::size_t(b)]) / edges_.rest[n] - 1;
     strain.max = std::max(strain.max, e);
-    strain.mean += e / double(edges_.size());
+    strain.mean += e / double(edges_.ends.size());
   }
   return strain;
 }
@@ -150,19 +213,42 @@ Vec3 MeshModel::pin_position(const Pin& pin, double time) const {
   return plus(alone, minus(displacement(parts_.scene.colliders[n], time), first_moves_[n]));
 }
 
-double MeshModel::held_energy(const Rows& x, double) const {
+double MeshModel::held_energy(const Rows& x, double dt) const {
+  if (!is_explicit(method_)) return projected_energy(x, dt);
   return mesh_energy(triangles_, material_, particles_.gather(x)) + rounding_gain();
+}
+
+// A projected edge counts as a spring of at most the inertia of its ends over dt², all that a sweep makes
+// of it.
+double MeshModel::projected_energy(const Rows& at, double dt) const {
+  const std::vector<Vec3> x = particles_.gather(at);
+  const double slack = kRounding * std::max(1.0, double(at.greatest(parts_.kernels)));
+  double sum = 0;
+  for (std::size_t n = 0; n < edges_.ends.size(); ++n) {
+    const auto& [a, b] = edges_.ends[n];
+    const double w = double(particles_.inverse_mass[particles_.lane(a)]) +
+                     double(particles_.inverse_mass[particles_.lane(b)]);
+    if (w == 0) continue;
+    const double k = std::min(material_.stiffness * edges_.triangles[n], 1 / (w * dt * dt));
+    const double over =
+        std::abs(distance(x[std::size_t(a)], x[std::size_t(b)]) - edges_.rest[n]) + slack;
+    sum += 0.5 * k * over * over;
+  }
+  MeshMaterial bending = material_;
+  bending.membrane = false;
+  bending.stiffness = 0;
+  return sum + (bending.bends ? mesh_energy(triangles_, bending, x) : 0);
 }
 
 // Every fourth edge is looked at.
 float MeshModel::greatest_stretch(const Rows& x) const {
   double most = 0;
-  for (std::size_t n = 0; n < edges_.size(); n += 4) {
+  for (std::size_t n = 0; n < edges_.ends.size(); n += 4) {
     const auto at = [&](int p) {
       const auto [j, i] = particles_.place(p);
       return Vec3{x.at(0, j, i), x.at(1, j, i), x.at(2, j, i)};
     };
-    most = std::max(most, distance(at(edges_[n][0]), at(edges_[n][1])) / rest_[n]);
+    most = std::max(most, distance(at(edges_.ends[n][0]), at(edges_.ends[n][1])) / edges_.rest[n]);
   }
   return float(most * most);
 }
@@ -170,7 +256,7 @@ float MeshModel::greatest_stretch(const Rows& x) const {
 double MeshModel::rounding_gain() const {
   constexpr double kHalfUnit = 6e-8;  // of a position's last place, of the scene's size
   const double size = std::max(1.0, double(particles_.x.greatest(parts_.kernels)));
-  return pull().stiffness * double(edges_.size()) * std::pow(kHalfUnit * size, 2);
+  return pull().stiffness * double(edges_.ends.size()) * std::pow(kHalfUnit * size, 2);
 }
 
 // Of M^-1/2 K M^-1/2, K as the difference of forces, which are as good as linear so near to rest; the
@@ -192,7 +278,7 @@ Spectrum MeshModel::spectrum(std::span<const float> inverse_masses) const {
     add_mesh_forces(triangles_, material_, x, v, f);
     return f;
   };
-  const double step = 1e-4 * *std::min_element(rest_.begin(), rest_.end());
+  const double step = 1e-4 * *std::min_element(edges_.rest.begin(), edges_.rest.end());
   const auto stiffness = [&](const Field& u, Field& y) {
     double greatest = 1e-300;
     for (std::size_t n = 0; n < u.size(); ++n)
@@ -228,18 +314,22 @@ bool MeshModel::folds_freely() const {
 // As read nothing is stretched: what it holds is bending, in proportion to rigidity times squared angles.
 std::vector<std::string> MeshModel::notes() const {
   constexpr double kCurved = 1e-3;
+  std::vector<std::string> notes;
+  if (!is_explicit(method_) && material_.bend_damping > 0)
+    notes.push_back("bending runs without its damping, which explicit methods alone have");
   const Bending& bending = parts_.cloth.bending;
   const double held = mesh_energy(triangles_, material_, start_);
-  if (held <= kCurved * std::max({bending.warp, bending.weft, bending.twist})) return {};
-  return {"bending draws the mesh flat: curved as its file has it, it holds " + number(held) +
-          " J"};
+  if (held > kCurved * std::max({bending.warp, bending.weft, bending.twist}))
+    notes.push_back("bending draws the mesh flat: curved as its file has it, it holds " +
+                    number(held) + " J");
+  return notes;
 }
 
 std::vector<Joined> MeshModel::constraints_near(const Vec3& a, const Vec3& way,
                                                 double distance) const {
   const std::vector<Vec3> x = particles_.gather(particles_.x);
   std::vector<Joined> found;
-  for (const Joined& edge : edges_) {
+  for (const Joined& edge : edges_.ends) {
     const Vec3 &from = x[std::size_t(edge[0])], &to = x[std::size_t(edge[1])];
     if (segment_distance(a, way, from, minus(to, from)) <= distance) found.push_back(edge);
   }
@@ -248,8 +338,9 @@ std::vector<Joined> MeshModel::constraints_near(const Vec3& a, const Vec3& way,
 
 std::size_t MeshModel::bytes() const {
   return particles_.bytes() + triangles_.size() * sizeof(RestTriangle) +
-         edges_.size() * (sizeof(Joined) + sizeof(double)) +
-         start_.size() * (sizeof(Vec3) + sizeof(double));
+         edges_.ends.size() * (sizeof(Joined) + sizeof(double)) +
+         start_.size() * (sizeof(Vec3) + sizeof(double)) + (sweeps_ ? sweeps_->bytes() : 0) +
+         (history_ ? history_->bytes() : 0);
 }
 
 }  // namespace weft::physics

@@ -1,8 +1,11 @@
 // A cloth whose particles are the vertices of a triangle mesh. Particles keep the numbers that they have in
-// the mesh; in memory they lie in rows of breadth-first levels (mesh_order.h). Explicit methods only.
+// the mesh; in memory they lie in rows of breadth-first levels (mesh_order.h).
 #pragma once
 
+#include "physics/model/mesh/mesh_sweeps.h"
 #include "physics/model/mesh/triangle_stage.h"
+#include "physics/model/projected_motion.h"
+#include "physics/model/tethers.h"
 
 namespace weft::physics {
 
@@ -13,7 +16,7 @@ class MeshModel final : public ClothModel {
             const KernelTable& kernels);
 
   const ClothParts& parts() const override { return parts_; }
-  bool only_explicit() const override { return true; }
+  bool only_explicit() const override { return material_.membrane; }
   void append_motion(Method method, StageList& list) override;
   void append_limits(StageList& list) override;
   double mass(int particle) const override { return masses_[std::size_t(particle)]; }
@@ -28,7 +31,7 @@ class MeshModel final : public ClothModel {
   Vec3 pin_position(const Pin& pin, double time) const override;
   double held_energy(const Rows& x, double dt) const override;
   float greatest_stretch(const Rows& x) const override;
-  double attachment_energy(const Rows&, double) const override { return 0; }
+  double attachment_energy(const Rows& x, double dt) const override;
   double rounding_gain() const override;
   Spectrum spectrum(std::span<const float> inverse_masses) const override;
   double stiffening(double stretch) const override;
@@ -41,6 +44,11 @@ class MeshModel final : public ClothModel {
  private:
   void weigh();
   void place();
+  void append_forces(StageList& list);
+  void append_projections(StageList& list);
+  MeshSweeps& sweeps();
+  std::vector<std::vector<Tether>> attachments() const;
+  double projected_energy(const Rows& x, double dt) const;
 
   const TriangleMesh& mesh_;
   Method method_;
@@ -53,8 +61,10 @@ class MeshModel final : public ClothModel {
   ClothParts parts_;
   std::vector<double> masses_;     // kg, of every particle
   std::vector<Vec3> first_moves_;  // of colliders
-  std::vector<Joined> edges_;      // each once
-  std::vector<double> rest_;       // m, of each edge
+  MeshEdges edges_;                // each once
+  std::unique_ptr<MeshSweeps> sweeps_;
+  std::unique_ptr<History> history_;
+  std::vector<std::vector<Tether>> tethers_;  // none: the scene has them off
   SurfaceMesh surface_;
   DrawnMesh drawn_;
 };

@@ -1,6 +1,6 @@
 // Air on the triangles of a mesh, by the law of grids (wind_stage.h).
 #include "physics/kernels/mesh.h"
-#include "physics/model/mesh/triangle_batches.h"
+#include "physics/model/mesh/batches.h"
 #include "physics/model/mesh/triangle_stage.h"
 #include "physics/model/wind_stage.h"
 
@@ -12,8 +12,8 @@ class MeshWindStage final : public WindStage {
   MeshWindStage(const ClothParts& parts, const MeshOrder& order,
                 const std::vector<RestTriangle>& triangles, std::uint64_t seed)
       : WindStage(parts, seed, std::int64_t(triangles.size())), parts_(parts) {
-    const TriangleBatches all = batches_of(order, triangles, 3);
-    for (const std::vector<int>& chosen : all.triangles) {
+    const Batches all = batches_of(order, triangles, 3);
+    for (const std::vector<int>& chosen : all.elements) {
       MeshAirBatch b{};
       b.count = int(chosen.size());
       for (std::size_t n = 0; n < chosen.size(); ++n)

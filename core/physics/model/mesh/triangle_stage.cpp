@@ -8,7 +8,7 @@
 #include <cassert>
 
 #include "physics/kernels/mesh.h"
-#include "physics/model/mesh/triangle_batches.h"
+#include "physics/model/mesh/batches.h"
 #include "physics/model/push.h"
 
 namespace weft::physics {
@@ -69,8 +69,8 @@ class TriangleStage final : public RowStage {
 
   void make_batches(const MeshOrder& order, const std::vector<RestTriangle>& triangles,
                     bool bends) {
-    const TriangleBatches all = batches_of(order, triangles, bends ? 6 : 3);
-    for (const std::vector<int>& one : all.triangles)
+    const Batches all = batches_of(order, triangles, bends ? 6 : 3);
+    for (const std::vector<int>& one : all.elements)
       batches_.push_back(batch_of(one, order, triangles));
     first_ = all.first;
   }
@@ -86,15 +86,7 @@ class TriangleStage final : public RowStage {
         if (const int c = r.corner[k]; c >= 0)
           b.corner[k][n] = order.rows[std::size_t(c)] % ring_ * parts_.particles.stride +
                            order.lanes[std::size_t(c)];
-      for (std::size_t k = 0; k < 2; ++k) b.du[k][n] = float(r.du[k]), b.dv[k][n] = float(r.dv[k]);
-      b.area[n] = float(r.area);
-      for (std::size_t k = 0; k < 3; ++k) {
-        b.rest[k][n] = float(r.rest[k]);
-        b.half[k][n] = 1;
-        b.away[k][n] = float(r.away[k]), b.away_at[k][n] = float(r.away_at[k]);
-        b.own[k][n] = float(r.own[k]), b.own_at[k][n] = float(r.own_at[k]);
-      }
-      for (std::size_t m = 0; m < 6; ++m) b.moment[m][n] = float(r.moment[m]);
+      set_triangle(b, n, r);
     }
     return b;
   }

@@ -1,15 +1,15 @@
 // Stages "predict" and "velocity" of the second-order substep (kernels/second_order.cpp).
 #include "physics/kernels/second_order.h"
 
-#include "physics/model/lattice/stages.h"
 #include "physics/model/path.h"
+#include "physics/model/projected_motion.h"
 
 namespace weft::physics {
 namespace {
 
 // Rows j … end-1 as one long row, padding and all.
-SecondOrderRow rows_of(const LatticeParts& parts, History& h, int j, int end, double dt) {
-  Lattice& l = parts.lattice;
+SecondOrderRow rows_of(const ClothParts& parts, History& h, int j, int end, double dt) {
+  Particles& l = parts.particles;
   const std::size_t lane = std::size_t(j) * l.stride;
   SecondOrderRow r{};
   r.columns = (end - j) * l.stride;
@@ -29,16 +29,16 @@ SecondOrderRow rows_of(const LatticeParts& parts, History& h, int j, int end, do
 
 class Predict final : public RowStage {
  public:
-  Predict(const LatticeParts& parts, History& history, Multipliers* multipliers)
+  Predict(const ClothParts& parts, History& history, Multipliers* multipliers)
       : RowStage("predict", "second order, from two substeps before", 0, parts.particles.count(),
                  "particles"),
         parts_(parts),
         history_(history),
         multipliers_(multipliers),
-        dt_(parts.lattice.rows, 0.0) {}
+        dt_(parts.particles.rows, 0.0) {}
   void restart() override {
     std::fill(dt_.begin(), dt_.end(), 0.0);
-    const AlignedArray<float>& mass = parts_.lattice.inverse_mass;
+    const AlignedArray<float>& mass = parts_.particles.inverse_mass;
     std::copy_n(mass.data(), mass.size(), history_.inverse_mass.data());
   }
   // Where what the sweeps did is not in them yet, it adds that itself.
@@ -70,7 +70,7 @@ class Predict final : public RowStage {
     parts_.kernels.predict_second_order(r);
   }
 
-  LatticeParts parts_;
+  ClothParts parts_;
   History& history_;
   Multipliers* multipliers_;
   std::vector<double> dt_;  // s, of every row's substep before; 0 = none
@@ -78,7 +78,7 @@ class Predict final : public RowStage {
 
 class Velocity final : public RowStage {
  public:
-  Velocity(const LatticeParts& parts, History& history)
+  Velocity(const ClothParts& parts, History& history)
       : RowStage("velocity", "of the second order, kept for the next substep", 0,
                  parts.particles.count(), "particles"),
         parts_(parts),
@@ -93,13 +93,13 @@ class Velocity final : public RowStage {
   }
 
  private:
-  LatticeParts parts_;
+  ClothParts parts_;
   History& history_;
 };
 
 }  // namespace
 
-History::History(const Lattice& l)
+History::History(const Particles& l)
     : v_before(l.rows, l.stride),
       v_end(l.rows, l.stride),
       predicted(l.rows, l.stride),
@@ -107,12 +107,12 @@ History::History(const Lattice& l)
   std::copy_n(l.inverse_mass.data(), l.inverse_mass.size(), inverse_mass.data());
 }
 
-std::unique_ptr<RowStage> make_predict_second_order(const LatticeParts& parts, History& history,
+std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
                                                     Multipliers* multipliers) {
   return std::make_unique<Predict>(parts, history, multipliers);
 }
 
-std::unique_ptr<RowStage> make_velocity_second_order(const LatticeParts& parts, History& history) {
+std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history) {
   return std::make_unique<Velocity>(parts, history);
 }
 

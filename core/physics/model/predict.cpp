@@ -2,14 +2,14 @@
 // particle moves by its velocity and gravity, after them the velocity gains what the sweeps moved it
 // by, or both position and velocity the corrections that the sweeps have found. Between substeps where
 // nobody else looks that is left to the next predict (step/schedule.h).
-#include "physics/model/lattice/stages.h"
+#include "physics/model/projected_motion.h"
 
 namespace weft::physics {
 namespace {
 
 // Rows begin … end-1 as one long row, padding and all.
-AdvanceRow rows_of(const LatticeParts& parts, int begin, int end) {
-  Lattice& l = parts.lattice;
+AdvanceRow rows_of(const ClothParts& parts, int begin, int end) {
+  Particles& l = parts.particles;
   AdvanceRow a{};
   a.columns = (end - begin) * l.stride;
   a.x = l.x.row(begin);
@@ -21,7 +21,7 @@ AdvanceRow rows_of(const LatticeParts& parts, int begin, int end) {
 
 class Predict final : public RowStage {
  public:
-  Predict(const LatticeParts& parts, Multipliers* multipliers, Rows* corrections)
+  Predict(const ClothParts& parts, Multipliers* multipliers, Rows* corrections)
       : RowStage("predict", "positions by velocity and gravity", 0, parts.particles.count(),
                  "particles"),
         parts_(parts),
@@ -42,14 +42,14 @@ class Predict final : public RowStage {
   }
 
  private:
-  LatticeParts parts_;
+  ClothParts parts_;
   Multipliers* multipliers_;
   Rows* corrections_;
 };
 
 class Velocity final : public RowStage {
  public:
-  Velocity(const LatticeParts& parts, bool compliant)
+  Velocity(const ClothParts& parts, bool compliant)
       : RowStage("velocity", "by how far the sweeps moved particles", 0, parts.particles.count(),
                  "particles"),
         parts_(parts),
@@ -67,14 +67,14 @@ class Velocity final : public RowStage {
   }
 
  private:
-  LatticeParts parts_;
+  ClothParts parts_;
   bool compliant_;
 };
 
 // What the sweeps of the compliant method have found goes into positions and velocities.
 class Corrections final : public RowStage {
  public:
-  Corrections(const LatticeParts& parts, Rows& corrections)
+  Corrections(const ClothParts& parts, Rows& corrections)
       : RowStage("velocity", "positions and velocities gain the corrections", 0,
                  parts.particles.count(), "particles"),
         parts_(parts),
@@ -90,17 +90,17 @@ class Corrections final : public RowStage {
   }
 
  private:
-  LatticeParts parts_;
+  ClothParts parts_;
   Rows& corrections_;
 };
 
 }  // namespace
 
-Multipliers::Multipliers(const Lattice& lattice, std::size_t stencils_)
-    : rows(lattice.rows),
-      stride(lattice.stride),
+Multipliers::Multipliers(const Particles& particles, std::size_t stencils_)
+    : rows(particles.rows),
+      stride(particles.stride),
       stencils(stencils_),
-      data(stencils_ * static_cast<std::size_t>(lattice.rows) * lattice.stride) {}
+      data(stencils_ * static_cast<std::size_t>(particles.rows) * particles.stride) {}
 
 float* Multipliers::row(std::size_t stencil, int j) {
   return data.data() + (stencil * rows + j) * stride;
@@ -110,16 +110,16 @@ void Multipliers::clear(int begin, int end) {
   for (std::size_t f = 0; f < stencils; ++f) std::fill(row(f, begin), row(f, end), 0.0f);
 }
 
-std::unique_ptr<RowStage> make_predict(const LatticeParts& parts, Multipliers* multipliers,
+std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* multipliers,
                                        Rows* corrections) {
   return std::make_unique<Predict>(parts, multipliers, corrections);
 }
 
-std::unique_ptr<RowStage> make_corrections(const LatticeParts& parts, Rows& corrections) {
+std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections) {
   return std::make_unique<Corrections>(parts, corrections);
 }
 
-std::unique_ptr<RowStage> make_velocity(const LatticeParts& parts, bool compliant) {
+std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant) {
   return std::make_unique<Velocity>(parts, compliant);
 }
 

@@ -1,0 +1,30 @@
+#include "physics/model/mesh/mesh_edges.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/model/vector.h"
+
+namespace weft::physics {
+
+MeshEdges edges_of(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
+  std::vector<Joined> sides;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      sides.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+  std::sort(sides.begin(), sides.end());
+  MeshEdges edges;
+  for (const Joined& side : sides) {
+    if (!edges.ends.empty() && edges.ends.back() == side) {
+      edges.triangles.back() += 1;
+      continue;
+    }
+    edges.ends.push_back(side);
+    const Vec3 e = minus(x[std::size_t(side[1])], x[std::size_t(side[0])]);
+    edges.rest.push_back(std::sqrt(dot(e, e)));
+    edges.triangles.push_back(1);
+  }
+  return edges;
+}
+
+}  // namespace weft::physics

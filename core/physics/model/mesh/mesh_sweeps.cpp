@@ -1,0 +1,265 @@
+#include "physics/model/mesh/mesh_sweeps.h"
+
+#include <algorithm>
+
+#include "physics/model/mesh/triangle_constraint.h"
+#include "physics/model/push.h"
+
+namespace weft::physics {
+namespace {
+
+float* record_row(AlignedArray<float>& records, const Particles& p, int j) {
+  return records.data() + std::size_t(kRecord) * std::size_t(j) * std::size_t(p.stride);
+}
+
+// Where the record of a vertex begins.
+std::int32_t offset_of(const Particles& p, int vertex) {
+  return std::int32_t(kRecord * p.lane(vertex));
+}
+
+RecordRow record_row_of(const ClothParts& parts, AlignedArray<float>& records, int j,
+                        float inverse_dt) {
+  Particles& p = parts.particles;
+  return {p.count(j), p.x.row(j), p.v.row(j), p.w(j), record_row(records, p, j), inverse_dt};
+}
+
+// Row j and those that its constraints reach are there after its turn, and stay until they are stored.
+class LoadRecords final : public RowStage {
+ public:
+  LoadRecords(const ClothParts& parts, AlignedArray<float>& records, int reach)
+      : RowStage("load", "vertices into records", reach, parts.particles.count(), "particles"),
+        parts_(parts),
+        records_(records) {}
+  Velocities velocities(double) const override { return Velocities::left_alone; }
+  void start(const Substep& s) override { loaded_[std::size_t(s.slot)] = 0; }
+  void run(int j, const Substep& s) override {
+    int& loaded = loaded_[std::size_t(s.slot)];
+    if (j == 0) loaded = 0;
+    const int end = std::min(j + reach + 1, parts_.particles.rows);
+    for (loaded = std::max(loaded, j); loaded < end; ++loaded)
+      parts_.kernels.load_records(record_row_of(parts_, records_, loaded, 0));
+  }
+
+ protected:
+  void reserve_slots(int slots) override { loaded_.assign(std::size_t(slots), 0); }
+
+ private:
+  ClothParts parts_;
+  AlignedArray<float>& records_;
+  std::vector<int> loaded_;  // the next row to come into the records, of each slot
+};
+
+class StoreRecords final : public RowStage {
+ public:
+  // `limit`: corrections are of a substep's end, and change velocities at once.
+  StoreRecords(const ClothParts& parts, AlignedArray<float>& records, bool limit)
+      : RowStage("store", "positions and velocities gain the corrections", 0,
+                 parts.particles.count(), "particles"),
+        parts_(parts),
+        records_(records),
+        limit_(limit) {}
+  Velocities velocities(double dt) const override {
+    return gain(dt) > 0 ? Velocities::used : Velocities::left_alone;
+  }
+  void run(int j, const Substep& s) override {
+    parts_.kernels.store_records(record_row_of(parts_, records_, j, gain(s.dt)));
+  }
+
+ private:
+  float gain(double dt) const {
+    return limit_ ? float(1 / dt) : velocity_gain(parts_.scene.solver, true, dt);
+  }
+  ClothParts parts_;
+  AlignedArray<float>& records_;
+  bool limit_;
+};
+
+struct EdgeOptions {
+  int colour;
+  bool fresh = true;   // the first sweep of a substep
+  double longest = 0;  // > 0: a limit
+};
+
+class SweepEdges final : public RowStage {
+ public:
+  SweepEdges(const ClothParts& parts, EdgeColour& colour, AlignedArray<float>& records,
+             const EdgeOptions& options)
+      : RowStage(options.longest > 0 ? "strain_limit" : "gauss_seidel",
+                 "edges of colour " + std::to_string(options.colour), 1, colour.edges,
+                 "constraints"),
+        parts_(parts),
+        colour_(colour),
+        records_(records),
+        options_(options) {}
+  Velocities velocities(double) const override { return Velocities::left_alone; }
+  void run(int begin, int end, const Substep& s) override {
+    const int first = colour_.first[std::size_t(begin)];
+    const double h = s.dt * implicit_share(parts_.scene.solver);
+    EdgeSweep sweep{};
+    sweep.batches = colour_.batches.data() + first;
+    sweep.count = colour_.first[std::size_t(end)] - first;
+    sweep.records = records_.data();
+    sweep.inverse_dt2 = float(1 / (h * h));
+    sweep.fresh = options_.fresh;
+    sweep.longest = float(options_.longest);
+    if (colour_.lambda.size() > 0 && options_.longest == 0)
+      sweep.lambda = colour_.lambda.data() + std::ptrdiff_t(kBatch) * first;
+    parts_.kernels.sweep_edges(sweep);
+  }
+
+ private:
+  ClothParts parts_;
+  EdgeColour& colour_;
+  AlignedArray<float>& records_;
+  EdgeOptions options_;
+};
+
+class SweepHinges final : public RowStage {
+ public:
+  SweepHinges(const ClothParts& parts, HingeColour& colour,
+              const std::vector<RestTriangle>& triangles, AlignedArray<float>& records, int number)
+      : RowStage("bending", "triangles of colour " + std::to_string(number), 2, colour.count,
+                 "triangles"),
+        parts_(parts),
+        colour_(colour),
+        triangles_(triangles),
+        records_(records) {}
+  Velocities velocities(double) const override { return Velocities::left_alone; }
+  void prepare(double dt) override {
+    dt_ = dt;
+    set_matrices();
+  }
+  void restart() override {
+    if (dt_ > 0) set_matrices();
+  }
+  void run(int begin, int end, const Substep&) override {
+    const int first = colour_.first[std::size_t(begin)];
+    parts_.kernels.sweep_hinges(
+        {colour_.batches.data() + first, colour_.first[std::size_t(end)] - first, records_.data()});
+  }
+
+ private:
+  // The second order scales inverse masses while it solves, by 9/4 at most.
+  void set_matrices() {
+    const Solver& solver = parts_.scene.solver;
+    const double h = dt_ * implicit_share(solver), scale = solver.order == 2 ? 2.25 : 1;
+    const Particles& p = parts_.particles;
+    for (std::size_t n = 0; n < colour_.triangles.size(); ++n) {
+      if (colour_.triangles[n] < 0) continue;
+      const RestTriangle& r = triangles_[std::size_t(colour_.triangles[n])];
+      const auto matrix =
+          hinge_matrix(r, h, [&](int v) { return scale * p.inverse_mass[p.lane(v)]; });
+      MeshBatch& b = colour_.batches[n / kBatch];
+      for (std::size_t m = 0; m < 6; ++m) b.moment[m][n % kBatch] = float(matrix[m]);
+    }
+  }
+
+  ClothParts parts_;
+  HingeColour& colour_;
+  const std::vector<RestTriangle>& triangles_;
+  AlignedArray<float>& records_;
+  double dt_ = 0;
+};
+
+}  // namespace
+
+MeshSweeps::MeshSweeps(const ClothParts& parts, const MeshOrder& order)
+    : parts_(parts),
+      order_(order),
+      records_(std::size_t(kRecord) * std::size_t(parts.particles.rows) *
+               std::size_t(parts.particles.stride)) {}
+
+// Places of no edge are told the padding behind their own row, a lane each.
+void MeshSweeps::make_edges(const MeshEdges& edges, double stiffness) {
+  const Particles& p = parts_.particles;
+  std::vector<Corners> elements;
+  for (const auto& [a, b] : edges.ends) elements.push_back({a, b, -1, -1, -1, -1});
+  for (const Batches& all : coloured_batches(order_, elements)) {
+    EdgeColour& colour = edges_.emplace_back();
+    colour.first = all.first;
+    for (int j = 0; j < p.rows; ++j)
+      for (int n = all.first[std::size_t(j)]; n < all.first[std::size_t(j) + 1]; ++n) {
+        EdgeBatch& b = colour.batches.emplace_back();
+        for (int k = 0; k < kBatch; ++k) {
+          b.near[k] = b.far[k] = kRecord * (j * p.stride + p.count(j) + k);
+          b.give[k] = 1;
+        }
+        const std::vector<int>& chosen = all.elements[std::size_t(n)];
+        for (std::size_t k = 0; k < chosen.size(); ++k) {
+          const auto e = std::size_t(chosen[k]);
+          b.near[k] = offset_of(p, edges.ends[e][0]);
+          b.far[k] = offset_of(p, edges.ends[e][1]);
+          b.rest[k] = float(edges.rest[e]);
+          b.give[k] = float(1 / std::max(stiffness * edges.triangles[e], 1e-12));
+        }
+        colour.edges += std::int64_t(chosen.size());
+      }
+  }
+}
+
+void MeshSweeps::make_hinges(const std::vector<RestTriangle>& triangles) {
+  const Particles& p = parts_.particles;
+  triangles_ = &triangles;
+  std::vector<Corners> elements;
+  for (const RestTriangle& r : triangles) elements.push_back(r.corner);
+  for (const Batches& all : coloured_batches(order_, elements)) {
+    HingeColour& colour = hinges_.emplace_back();
+    colour.first = all.first;
+    for (int j = 0; j < p.rows; ++j)
+      for (int n = all.first[std::size_t(j)]; n < all.first[std::size_t(j) + 1]; ++n) {
+        MeshBatch& b = colour.batches.emplace_back();
+        const std::vector<int>& chosen = all.elements[std::size_t(n)];
+        for (std::size_t k = 0; k < kBatch; ++k) {
+          colour.triangles.push_back(k < chosen.size() ? chosen[k] : -1);
+          for (std::size_t c = 0; c < kMeshCorners; ++c)
+            b.corner[c][k] = kRecord * (j * p.stride + p.count(j) + int(k));
+          if (k >= chosen.size()) continue;
+          const RestTriangle& r = triangles[std::size_t(chosen[k])];
+          set_triangle(b, k, r);
+          for (std::size_t c = 0; c < kMeshCorners; ++c)
+            if (r.corner[c] >= 0) b.corner[c][k] = offset_of(p, r.corner[c]);
+        }
+        colour.count += std::int64_t(chosen.size());
+      }
+  }
+}
+
+void MeshSweeps::append_edges(int iterations, StageList& list) {
+  list.stages.push_back(std::make_unique<LoadRecords>(parts_, records_, 1));
+  for (int n = 0; n < iterations; ++n)
+    for (int c = 0; c < int(edges_.size()); ++c) {
+      EdgeColour& colour = edges_[std::size_t(c)];
+      if (iterations > 1 && colour.lambda.size() == 0)
+        colour.lambda = AlignedArray<float>(colour.batches.size() * kBatch);
+      list.stages.push_back(
+          std::make_unique<SweepEdges>(parts_, colour, records_, EdgeOptions{c, n == 0, 0}));
+    }
+  list.stages.push_back(std::make_unique<StoreRecords>(parts_, records_, false));
+}
+
+void MeshSweeps::append_hinges(StageList& list) {
+  list.stages.push_back(std::make_unique<LoadRecords>(parts_, records_, 2));
+  for (int c = 0; c < int(hinges_.size()); ++c)
+    list.stages.push_back(
+        std::make_unique<SweepHinges>(parts_, hinges_[std::size_t(c)], *triangles_, records_, c));
+  list.stages.push_back(std::make_unique<StoreRecords>(parts_, records_, false));
+}
+
+void MeshSweeps::append_limit(double strain, StageList& list) {
+  list.stages.push_back(std::make_unique<LoadRecords>(parts_, records_, 1));
+  for (int c = 0; c < int(edges_.size()); ++c)
+    list.stages.push_back(std::make_unique<SweepEdges>(parts_, edges_[std::size_t(c)], records_,
+                                                       EdgeOptions{c, true, 1 + strain}));
+  list.stages.push_back(std::make_unique<StoreRecords>(parts_, records_, true));
+}
+
+std::size_t MeshSweeps::bytes() const {
+  std::size_t bytes = records_.size() * sizeof(float);
+  for (const EdgeColour& c : edges_)
+    bytes += c.batches.size() * sizeof(EdgeBatch) + c.lambda.size() * sizeof(float);
+  for (const HingeColour& c : hinges_)
+    bytes += c.batches.size() * (sizeof(MeshBatch) + kBatch * sizeof(int));
+  return bytes;
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,56 @@
+// Sweeps over a mesh's constraints: edges as compliant constraints or as a strain limit, and the bending of
+// triangles. All are Gauss–Seidel by colours in a fixed order, one row stage a colour: in the order of rows, or
+// forward and backward in turn, sweeps of one constraint after another blow up on meshes. Vertices lie in
+// records meanwhile (kernels/mesh_sweep.h), where a stage of its own puts them, and from where another takes
+// them back.
+#pragma once
+
+#include "physics/kernels/mesh_sweep.h"
+#include "physics/model/mesh/batches.h"
+#include "physics/model/mesh/mesh_edges.h"
+
+namespace weft::physics {
+
+struct EdgeColour {
+  std::vector<EdgeBatch> batches;
+  std::vector<int> first;  // batch of each row, and how many there are
+  std::int64_t edges = 0;
+  AlignedArray<float> lambda;  // multipliers; none: a single sweep
+};
+
+struct HingeColour {
+  std::vector<MeshBatch> batches;
+  std::vector<int> triangles;  // of each place in the batches, -1: none
+  std::vector<int> first;
+  std::int64_t count = 0;
+};
+
+// What is made once for the sweeps of one mesh.
+class MeshSweeps {
+ public:
+  MeshSweeps(const ClothParts& parts, const MeshOrder& order);
+
+  // `stiffness`: of an edge from each of its triangles [N/m].
+  void make_edges(const MeshEdges& edges, double stiffness);
+  void make_hinges(const std::vector<RestTriangle>& triangles);
+
+  // Edges as compliant constraints, so many times one after the other; positions and velocities gain the
+  // corrections at the end.
+  void append_edges(int iterations, StageList& list);
+  void append_hinges(StageList& list);
+  // Nothing is longer than 1 + strain times its length.
+  void append_limit(double strain, StageList& list);
+
+  int colours() const { return int(edges_.size()); }
+  std::size_t bytes() const;
+
+ private:
+  const ClothParts& parts_;
+  const MeshOrder& order_;
+  AlignedArray<float> records_;
+  std::vector<EdgeColour> edges_;
+  const std::vector<RestTriangle>* triangles_ = nullptr;
+  std::vector<HingeColour> hinges_;
+};
+
+}  // namespace weft::physics

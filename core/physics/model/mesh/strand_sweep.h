@@ -1,0 +1,13 @@
+// Line sweeps over a mesh: strands in the place of lines.
+#pragma once
+
+#include "physics/model/cloth_model.h"
+#include "physics/model/mesh/strands.h"
+
+namespace weft::physics {
+
+// `stiffness`: of an edge from each of its triangles [N/m]; `x`: of the vertices at rest [m].
+std::unique_ptr<Stage> make_strands(const ClothParts& parts, const MeshEdges& edges,
+                                    double stiffness, const std::vector<Vec3>& x);
+
+}  // namespace weft::physics

@@ -1,0 +1,43 @@
+// Stages "predict" and "velocity" of the methods that project positions, of the first order and the second,
+// for particles of any model; and what they keep from one substep to the next.
+#pragma once
+
+#include "physics/model/push.h"
+
+namespace weft::physics {
+
+// Lagrange multipliers of the compliant method, kept over the sweeps of one substep: one array of rows for
+// each stencil.
+struct Multipliers {
+  Multipliers(const Particles& particles, std::size_t stencils);
+  float* row(std::size_t stencil, int j);
+  void clear(int begin, int end);  // rows
+  std::size_t bytes() const { return data.size() * sizeof(float); }
+  int rows, stride;
+  std::size_t stencils;
+  AlignedArray<float> data;
+};
+
+// `multipliers`: to be cleared before the sweeps; `corrections`: what these have found, if they gather it.
+// Either may be null.
+std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* multipliers,
+                                       Rows* corrections);
+std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant);
+// After the sweeps: positions and velocities gain the corrections, which are then zero again.
+std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections);
+
+// What the second-order substep keeps of the substep before (Particles::previous is its position).
+struct History {
+  explicit History(const Particles& particles);
+  std::size_t bytes() const {
+    return v_before.bytes() + v_end.bytes() + predicted.bytes() +
+           inverse_mass.size() * sizeof(float);
+  }
+  Rows v_before, v_end, predicted;
+  AlignedArray<float> inverse_mass;
+};
+std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
+                                                    Multipliers* multipliers);
+std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history);
+
+}  // namespace weft::physics
