@@ -25,7 +25,7 @@ TEST(Report, HasTheContractsKeysInTheContractsOrder) {
             (Names{"scene",    "version",          "build",   "particles",   "constraints",
                    "frames",   "substeps",         "dt",      "sim_seconds", "threads",
                    "wall_ms",  "stages",           "skipped", "hash",        "energy",
-                   "momentum", "angular_momentum", "strain",  "penetration", "torn",
+                   "momentum", "angular_momentum", "strain",  "penetration", "contact", "torn",
                    "asleep",   "finite",           "status"}));
   EXPECT_EQ(keys(json["build"]), (Names{"compiler", "simd"}));
   EXPECT_EQ(keys(json["constraints"]), (Names{"structural", "shear", "bend"}));

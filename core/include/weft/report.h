@@ -87,6 +87,12 @@ struct Report {
     double self_max = 0;  // m
     std::int64_t crossings = 0;
   } penetration;
+  // Of contact between sheets, from the start of the run to now.
+  struct {
+    double energy_taken = 0;    // J; of motion, by impulses (friction and blows)
+    double greatest_clamp = 0;  // m; by how much a particle's way was cut at most so that nothing passes
+    double least_distance = 1;  // of two that touched, in distances at which they are held
+  } contact;
   std::int64_t torn = 0;
   std::int64_t asleep = 0;  // particles at rest that are not worked on
   bool finite = true;

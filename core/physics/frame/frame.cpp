@@ -53,6 +53,7 @@ void Simulation::State::advance_frame() {
   ++frame;
   total_substeps += substeps;
   check_strain_limits();
+  note_clamps();
 
   if (sleeping) sleeping->end_frame([&](std::size_t c) -> const Rows& { return records_[c].x(); });
   if (is_explicit(method) && !(sleeping && sleeping->all_asleep())) follow_stretch(limit_);
@@ -68,7 +69,7 @@ void Simulation::State::advance_frame() {
 void Simulation::State::run_frame() {
   if (sleeping && sleeping->all_asleep()) return;
   if (!self_collision) return run_substeps(0, substeps);
-  if (surface) begin_surfaces();
+  begin_contact();
   if (self_collision->particles() < kManyParticles) return run_with_contact();
   threads.together([&] { run_with_contact(); });
 }
@@ -76,7 +77,7 @@ void Simulation::State::run_frame() {
 // What the frame has come to.
 FrameRun Simulation::State::frame_run() {
   FrameRun run{scene, method, cloths, records_, asleep_,  frame,
-               dt,    true,   {},     limit_,   driven(), nothing_else_acts()};
+               dt,    true,   {},     limit_,   limit_share(), driven(), nothing_else_acts()};
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     asleep_[c] = asleep(c);
     if (asleep_[c]) continue;
@@ -113,35 +114,47 @@ void Simulation::State::tell_of_limits() {
   }
 }
 
+// A frame ends with a run of contact, so that what was put back to a frame's start, or set, begins anew.
 void Simulation::State::run_with_contact() {
   for (int s = 0; s < substeps;) {
-    const int count = std::min(until_collision_ - since_collision_, substeps - s);
+    const int count = std::min(until_collision_, substeps - s);
     run_substeps(s, count);
     s += count;
-    since_collision_ += count;
-    // A frame ends with surfaces that have not crossed.
-    if (since_collision_ < until_collision_ && !(surface && s == substeps)) break;
     const auto start = std::chrono::steady_clock::now();
-    const double swing =
+    const double longest =
         is_explicit(method) ? kSwing * limit_ : std::numeric_limits<double>::infinity();
-    until_collision_ = self_collision->run(dt, since_collision_, swing, threads);
-    if (surface)
-      until_collision_ = std::min(until_collision_, surface->run(dt, since_collision_, threads));
-    since_collision_ = 0;
+    until_collision_ = self_collision->run(dt, count, longest, threads);
+    if (scene.solver.order == 2 && self_collision->touched()) start_anew();
     const auto spent = std::chrono::steady_clock::now() - start;
     self_collision_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
     ++self_collision_runs;
   }
 }
 
-// Contact begins with what does not cross; what does comes apart first.
-void Simulation::State::begin_surfaces() {
-  if (untangle->due() || surface->forced()) {
+// Motion that contact had to cut short is told of once.
+void Simulation::State::note_clamps() {
+  if (clamps_noted_ || !self_collision || self_collision->record().held == 0) return;
+  clamps_noted_ = true;
+  plan.notes.push_back("frame " + std::to_string(frame) +
+                       ": sheets would have passed through each other; what met moves as one until "
+                       "it comes apart (shorter substeps or a greater thickness avoid that)");
+}
+
+// The second-order substep goes on from a smooth past. Where contact has changed a part of a sheet, the
+// whole begins anew: particles that begin anew beside others that do not would not keep momentum.
+void Simulation::State::start_anew() {
+  for (auto& step : cloths)
+    for (const auto& stage : step->stages()) stage->restart();
+}
+
+// Surfaces begin with what does not cross; what does comes apart first.
+void Simulation::State::begin_contact() {
+  if (self_collision->surfaces() && (untangle->due() || self_collision->forced())) {
     untangle->pull_apart();
-    surface->leave_out(untangle->passing());
-    surface->restart();
+    self_collision->leave_out(untangle->passing());
+    self_collision->restart();
   }
-  if (!surface->valid()) surface->begin(threads);
+  if (!self_collision->begun()) self_collision->begin(threads);
 }
 
 Substeps Simulation::State::substeps_from(int first, int count) const {

@@ -83,6 +83,8 @@ void add_self_contact(const Simulation::State& s, Report& r) {
   // By a search of its own: the one that runs must not notice.
   const SelfContact::Overlaps overlaps =
       SelfContact::make(s.scene, lattices_of(s.cloths), kernel_table(s.simd))->overlaps();
+  const SelfContact::Record& record = s.self_collision->record();
+  r.contact = {record.energy_taken, record.greatest_held, record.least_distance};
   r.penetration.self_pairs = overlaps.pairs;
   r.penetration.self_max = overlaps.deepest;
 }
@@ -107,22 +109,20 @@ void add_idle(const Simulation::State& s, Report& r) {
     const auto percent_of_substeps = [&](std::int64_t times) {
       return 100 * double(times) / double(std::max<std::int64_t>(s.total_substeps, 1));
     };
+    const SelfContact::Record& of = s.self_collision->record();
+    const double runs = double(std::max<std::int64_t>(of.runs, 1));
     char why[240];
     std::snprintf(
         why, sizeof why,
-        "looked after %.1f %% of the substeps, searched in %.1f %% of those; %.1f %% of the "
-        "particles had nothing near",
-        percent_of_substeps(s.self_collision_runs), 100 * (1 - s.self_collision->kept()),
-        100 * s.self_collision->passed_over());
+        "ran after %.1f %% of the substeps, searched in %.1f %% of those; %.1f %% of the "
+        "particles had nothing near; %.1f contacts, swept %.1f times",
+        percent_of_substeps(s.self_collision_runs), 100 * double(of.searches) / runs,
+        100 * of.passed_over / (runs * double(s.self_collision->particles())),
+        double(of.contacts) / runs, double(of.sweeps) / runs);
     r.skipped.push_back({"self_collision", why});
-    if (s.surface) {
-      std::snprintf(
-          why, sizeof why,
-          "surfaces measured after %.1f %% of the substeps and in part after %.1f %%, pairs listed "
-          "%.1f times; %lld moves of particles cut short",
-          percent_of_substeps(s.surface->measured()),
-          percent_of_substeps(s.surface->measured_in_part()), s.surface->listed(),
-          static_cast<long long>(s.surface->held_back()));
+    if (s.self_collision->surfaces()) {
+      std::snprintf(why, sizeof why, "pairs listed %.1f times; %lld moves of particles cut short",
+                    s.self_collision->listed(), static_cast<long long>(of.held));
       r.skipped.push_back({"self_surface", why});
     }
   }

@@ -136,9 +136,6 @@ void Simulation::State::build_cloths() {
 void Simulation::State::make_self_contact() {
   const std::vector<const LatticeParts*> parts = lattices_of(cloths);
   self_collision = SelfContact::make(scene, parts, kernel_table(simd));
-  surface = self_collision
-                ? SurfaceContact::make(scene, self_collision->sheets(), kernel_table(simd))
-                : nullptr;
   untangle = self_collision ? std::make_unique<Untangle>(scene, parts) : nullptr;
 }
 
@@ -152,10 +149,11 @@ Plan Simulation::State::describe_stages() const {
       all.skipped.push_back({stage.name, why_not});
   };
   const std::int64_t meeting = self_collision ? std::int64_t(self_collision->particles()) : 0;
+  const bool surfaces = self_collision && self_collision->surfaces();
   choose(self_collision != nullptr,
          {"self_collision", "all cloths together, as often as they move", 0, meeting, "particles"},
          "off in the scene");
-  choose(surface != nullptr,
+  choose(surfaces,
          {"self_surface", "vertices against triangles, edges against edges; nothing passes through",
           0, meeting, "squares"},
          self_collision ? "self_collision is particles in all cloths" : "off in the scene");
@@ -204,7 +202,7 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
                       " m; particles nearer than the thickness on the flat sheet do not meet");
     // Half the diagonal of a square is as far as a particle gets from all others.
     const double widest = 0.5 * std::hypot(spacing_u(cloth.grid), spacing_v(cloth.grid));
-    if (cloth.self_collision.mode == SelfCollisionMode::particles && !surface &&
+    if (cloth.self_collision.mode == SelfCollisionMode::particles && !self_collision->surfaces() &&
         cloth.self_collision.thickness < widest)
       notes.push_back(which + ": the thickness of " + number(cloth.self_collision.thickness) +
                       " m is below " + number(widest) +
@@ -219,7 +217,7 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
   if (const std::size_t crossings = untangle->due() ? untangle->crossings() : 0; crossings > 0)
     notes.push_back(
         std::to_string(crossings) + " edges pass through triangles of cloth at the start; " +
-        (surface ? "the smaller part of what meets is taken through, row by row"
+        (self_collision->surfaces() ? "the smaller part of what meets is taken through, row by row"
                  : "their particles are kept apart on the sides where they are (mode surface takes "
                    "such sheets apart)"));
 }
@@ -298,8 +296,6 @@ void Simulation::State::set(std::span<const double> positions, const Vec3& from,
 void Simulation::State::restart_stages() {
   for (auto& step : cloths) step->restart();
   if (self_collision) self_collision->restart();
-  if (surface) surface->restart();
-  since_collision_ = 0;
   until_collision_ = 1;
 }
 
@@ -326,6 +322,7 @@ void Simulation::State::restore() {
     records_[c].restore();
     if (Tearing* tearing = cloths[c]->model().tearing()) tearing->go_back();
   }
+  if (self_collision) self_collision->go_back();
   take_substeps(saved_substeps_);
   lag = saved_lag_;
 }

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "physics/contact/self/self_contact.h"
-#include "physics/contact/self/surface_contact.h"
 #include "physics/contact/self/untangle.h"
 #include "physics/frame/carry.h"
 #include "physics/frame/cloth_step.h"
@@ -65,7 +64,6 @@ struct Simulation::State {
   Method method;                // the scene's, or the stable one put in its place
   physics::Cloths cloths;
   std::unique_ptr<physics::SelfContact> self_collision;  // over all cloths; null when all are off
-  std::unique_ptr<physics::SurfaceContact> surface;      // the same; null unless one asks for it
   std::unique_ptr<physics::Untangle> untangle;           // null when self_collision is
   std::unique_ptr<physics::Sleeping> sleeping;           // null when nothing may sleep
   // Inverse masses of a cloth, of sleeping particles too.
@@ -112,7 +110,8 @@ struct Simulation::State {
   physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
   int grabbed_ = 0;
   std::vector<physics::Carry*> carried_;           // in the plan of each cloth; null while it rests
-  int since_collision_ = 0, until_collision_ = 1;  // substeps
+  int until_collision_ = 1;                        // substeps from one run of contact to the next
+  bool clamps_noted_ = false;
   physics::StepGuard guard_;
   bool was_driven_ = false;  // in the frame before
   double limit_ = 0;         // s; the stability limit at the end of the last frame (explicit)
@@ -134,6 +133,7 @@ struct Simulation::State {
   void set_substeps(int count);
   void stagger(double by, const double* from = nullptr);
   double stretched_limit() const;
+  double limit_share() const;
   int substeps_within(double limit) const;
   void follow_stretch(double limit);
   bool carried() const;
@@ -158,7 +158,9 @@ struct Simulation::State {
   void run_frame();
   void check_strain_limits();
   void run_with_contact();
-  void begin_surfaces();
+  void begin_contact();
+  void start_anew();
+  void note_clamps();
   physics::ClothStep& step_with(int cloth, int particle);
   void plan_changed();
   Plan describe_stages() const;

@@ -1,5 +1,5 @@
 // What the kernels of self-collision take: bounds of blocks (block_bounds.cpp), the search for pairs
-// (near_pairs.cpp), and pushing pairs apart (separate.cpp).
+// (near_pairs.cpp), and contacts (contact_packets.cpp).
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ struct NearBoxes {
 // Cells along an axis, at most. (Their numbers stay within 64 bits.)
 inline constexpr float kMostCells = 1e6f;
 
-// The buckets of particles (cell_grid.h): a + b stride_y + c stride_z for cell (a, b, c), counted from 1
+// The buckets of particles (spatial_hash.h): a + b stride_y + c stride_z for cell (a, b, c), counted from 1
 // at `low`, modulo the table's size where it wraps.
 struct CellKeys {
   ConstRow3 x;
@@ -79,7 +79,7 @@ struct NearSheet {
   int windows;
 };
 
-// Particles in order of their buckets (cell_grid.h), and the nine runs of three buckets about each.
+// Particles in order of their buckets (spatial_hash.h), and the nine runs of three buckets about each.
 struct NearSearch {
   // Sorted, 16 lanes of padding before them and after; their names, by which they are listed, likewise.
   // Null: they are listed by their numbers in sorted order, and there are no neighbours.
@@ -105,42 +105,27 @@ struct NearFound {
   int next, pairs, needed;
 };
 
-// Thicknesses that a pair is held apart: layers of a stack sink in a little.
-inline constexpr float kHeld = 1.05f;
-
-// In place of an owner's friction: pushed by the course's rule.
-inline constexpr float kCourseRule = -1;
-
-// Where a particle is, and the distance at which it is held from its like [m].
+// Where a body, a particle of a sheet, is at the start of an interval of contact [m], and half the
+// distance at which it is held from others [m].
 struct alignas(16) Place {
   float x[4];
 };
 
-// Its velocity [m/s] and inverse mass [1/kg]: apart from its place, which is looked at far more often.
-struct alignas(16) Motion {
-  float v[4];
+// By how much it is moved in the interval [m], and its inverse mass [1/kg].
+struct alignas(16) Displacement {
+  float u[4];
 };
 
-// A block of particles in the lattice, and as bodies: places and motions.
+// A block of particles in the lattice, and as bodies.
 struct BodyBlock {
   int columns, rows;
   std::ptrdiff_t stride, body_stride;  // from row to row of the lattice, and of the bodies
-  Row3 x, v;       // the first particle; in whole groups of lanes, beyond the columns too
-  const float* w;  // inverse mass [1/kg]
-  float held;      // the distance at which they are held from their like [m]
-  Place* place;
-  Motion* motion;
-  // For scattering, laid out as x: by how much contact has to change their velocities, their load
-  // [m/s²]; and what it has given of that in advance the last time, and then gives now [m/s].
-  Row3 load, ahead;
-  float since, inverse_since;  // the last time: s, 1/s
-  float advance;               // share of a lasting load that is given in advance
-  // What neither contact has moved nor carries a load is passed over, 16 columns at once: whether any of
-  // every 16 bodies has moved, and the first of these; and of every 16 in the lattice, whether any has a
-  // load or something in advance, the first of the block's.
-  const std::uint8_t* moved;
-  std::int32_t first_body;
-  std::uint8_t* loaded;
+  ConstRow3 x;                         // the first particle
+  const float* w;                      // inverse mass [1/kg]
+  float half_held;                     // half the distance at which they are held [m]
+  const Place* before;                 // at the start of the interval
+  Place* now;                          // out, in whole groups of lanes: where they are now,
+  Displacement* moved;                 // and how far they have come
 };
 
 // Room for pairs, and 16 lanes of padding.
@@ -178,77 +163,42 @@ struct BesideFound {
   int rows, pairs;
 };
 
-// Pairs, one owner's after another's, and where those of them go that are close, nearer than `reach` of
-// the distances at which they are held, and those that touch, nearer than these.
-struct ClosePairs {
+// Pairs of bodies, and where those of them go that touch: that end the interval nearer than `reach` times
+// the distance at which they are held, or would without what bends their way.
+struct MeetingPairs {
   const Place* place;
+  const Displacement* moved;
   int pairs;
-  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of particles
+  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of bodies
   float reach;
-  PairRoom close, touching;  // out
+  PairRoom meeting;  // out
 };
 
-struct CloseFound {
-  int close, touching;
+// Contacts of N bodies, 16 that share no body, in component arrays. The relative displacement of two
+// surfaces is Σ share u over the bodies (two: u_0 - u_1), `normal` points to where shares are positive.
+inline constexpr int kPacket = 16;
+template <int N>
+struct alignas(64) ContactPacket {
+  std::int32_t body[N][kPacket];
+  float share[N][kPacket];
+  float normal[3][kPacket];
+  float distance[kPacket], held[kPacket];  // at the start, and at which it is held [m]
+  float friction[kPacket];
+  float slide[3][kPacket];  // relative displacement along the surface without contact [m],
+  float gap[kPacket];       // and how much nearer the two may come than that brings them [m]
+  float per[kPacket];       // 1/Σ share² w [kg]; 0 where nothing moves
+  // Impulses times the interval, so far: normal, and along the surface [kg m].
+  float pressed[kPacket], rubbed[3][kPacket];
 };
 
-// Coulomb's coefficient of every body, or kCourseRule; null: all alike.
-struct BodyFriction {
-  const float* each;
-  float alike;
-};
-
-// What a pair that touches asks for, times its weight: of its owner a share, and of its neighbour the
-// rest, the other way.
-struct alignas(32) Asked {
-  float push[4];  // displacement [m], and the weight
-  float gain[4];  // velocity [m/s], and the owner's share
-};
-
-// Pairs that touch, and what they ask for.
-struct AskPairs {
+template <int N>
+struct ContactPackets {
+  ContactPacket<N>* packet;
+  int packets;
   const Place* place;
-  const Motion* motion;
-  BodyFriction friction;
-  int pairs;
-  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of particles
-  Asked* asked;                           // out, and 16 more
-};
-
-struct AskFound {
-  float fastest_squared;  // relative speed of two, at most [m²/s²]
-  float deepest;          // of the distance at which they are held
-};
-
-// What all its pairs ask of a body.
-struct alignas(32) AskedSum {
-  float push[4];  // m, and the weight
-  float gain[4];  // m/s
-};
-
-// Pairs, what they ask for, and where it is summed up for the bodies from `begin` to `end`. Returned is
-// how many of these get something for the first time: they are listed in `body`, which has room for one
-// more than there can be.
-struct SumAsked {
-  int pairs;
-  const std::int32_t *owner, *neighbour;
-  const Asked* asked;
-  std::int32_t begin, end;
-  AskedSum* sum;
-  std::int32_t* body;
-};
-
-// Bodies, and what they are asked, which is nothing any more afterwards.
-struct MoveBodies {
-  Place* place;
-  Motion* motion;
-  BodyFriction friction;
-  AskedSum* sum;
-  int bodies;
-  const std::int32_t* body;
-  std::uint8_t* moved;  // out: set for every 16 bodies of which one moves
-  float course_share;   // of a correction, per run
-  float inverse_dt;     // 1/s
+  const Displacement* moved;
+  Displacement* change;  // of displacements by contact, and inverse masses again
+  float share;           // of what is too close, that is put apart at once
 };
 
 }  // namespace weft::physics

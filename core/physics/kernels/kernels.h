@@ -282,13 +282,17 @@ struct NearSearch;
 struct BesideFound;
 struct BesidePairs;
 struct NearFound;
-struct ClosePairs;
-struct CloseFound;
 struct BodyBlock;
-struct AskPairs;
-struct AskFound;
-struct SumAsked;
-struct MoveBodies;
+struct MeetingPairs;
+template <int N>
+struct ContactPackets;
+// What is done with packets of contacts, one after another (contact_packets.cpp).
+template <int N>
+struct ContactKernels {
+  float (*prepare)(const ContactPackets<N>&);   // returns the fastest relative displacement [m]
+  float (*sweep)(const ContactPackets<N>&);     // returns the greatest correction [m]
+  float (*separate)(const ContactPackets<N>&);  // returns the greatest depth [of the distance held]
+};
 struct SquaresWithin;
 struct SurfacePairs;  // kernels/surface.h
 // Constraints of one stencil in one row: number a joins near + a and far + a. What is longer ends.
@@ -347,14 +351,12 @@ struct KernelTable {
   void (*cell_keys)(const CellKeys&);
   NearFound (*near_pairs)(const NearSearch&);  // who is in range of whom
   BesideFound (*beside_pairs)(const BesidePairs&);
-  CloseFound (*close_pairs)(const ClosePairs&);
-  AskFound (*ask_pairs)(const AskPairs&);
-  int (*sum_asked)(const SumAsked&);  // returns how many are asked for the first time
-  void (*move_bodies)(const MoveBodies&);
   void (*gather_bodies)(const BodyBlock&);
-  void (*scatter_bodies)(const BodyBlock&);
+  int (*meeting_pairs)(const MeetingPairs&);    // returns how many
   int (*squares_within)(const SquaresWithin&);  // returns how many are
-  int (*surface_pairs)(const SurfacePairs&);    // measures them; returns how many touch
+  int (*surface_pairs)(const SurfacePairs&);    // returns how many contacts there are
+  ContactKernels<2> contacts_of_two;
+  ContactKernels<4> contacts_of_four;
   // The greatest size of `count` values, a multiple of 16; infinite if one is not a number.
   float (*greatest)(const float* values, std::ptrdiff_t count);
   EnergySum (*energy_sum)(const EnergyRow&);

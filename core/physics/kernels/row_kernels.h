@@ -148,14 +148,12 @@ int near_boxes(const physics::NearBoxes&);
 void cell_keys(const physics::CellKeys&);
 physics::NearFound near_pairs(const physics::NearSearch&);
 physics::BesideFound beside_pairs(const physics::BesidePairs&);
-physics::CloseFound close_pairs(const physics::ClosePairs&);
-physics::AskFound ask_pairs(const physics::AskPairs&);
-int sum_asked(const physics::SumAsked&);
-void move_bodies(const physics::MoveBodies&);
 void gather_bodies(const physics::BodyBlock&);
-void scatter_bodies(const physics::BodyBlock&);
+int meeting_pairs(const physics::MeetingPairs&);
 int squares_within(const physics::SquaresWithin&);
 int surface_pairs(const physics::SurfacePairs&);
+extern const physics::ContactKernels<2> kContactsOfTwo;
+extern const physics::ContactKernels<4> kContactsOfFour;
 
 #define WEFT_KERNELS_OF_SHAPE(Type, name) extern const physics::ColliderKernels k##Type;
 WEFT_SHAPES(WEFT_KERNELS_OF_SHAPE)

@@ -1,14 +1,14 @@
-// Self-collision among surfaces: vertices against triangles and edges against edges, of kLanes pairs
-// of squares at a time.
+// Contact among surfaces: vertices against triangles and edges against edges, of kLanes pairs of
+// squares at a time.
 //
-// With the closest points Σ a_i x_i and Σ b_k y_k (a, b >= 0, each summing to 1), n from the other's
-// to the own, and d their distance: what is nearer than h is pushed apart by
+// Contacts are a vertex above a triangle and two edges that pass each other, with the common normal n:
+// what lies beside a triangle or beyond an edge's end is the business of the triangle and edge that it
+// is above, and would only be hindered from sliding there. Held they are min(h, ρ/2) apart, h the mean
+// of two thicknesses and ρ how far apart the two points are on the flat sheet, if on one: a sheet is
+// nowhere nearer itself than its own shape, and may bend as tightly as layers h apart ask for (ρ = π h/2).
 //
-//   Δx_i = n (h - d) w_i a_i / (Σ w a² + Σ w b²)
-//
-// and the velocity into the other is lost in the same shares, and of the velocity along it up to μ
-// times as much; of several pairs their mean, each weighing (h - d) h/d, so that between two layers
-// the nearer one has its way.
+// What may pass through is judged by the closest points wherever they lie: n separates two things at
+// first, and does so all the way when n·(x_i - x_k) > 0 for their corners in the end.
 #include "physics/kernels/surface.h"
 
 #include "physics/kernels/records.h"
@@ -18,28 +18,21 @@ namespace weft::WEFT_KERNELS {
 
 namespace {
 
+using physics::kKindsOfPair;
 using physics::Square;
-using physics::SquareChange;
-using physics::SquaresTouching;
 using physics::SquaresWithin;
+using physics::SurfaceContact;
 using physics::SurfacePairs;
-using physics::Vertex;
+using physics::SurfaceSearch;
 
-constexpr float kTiny = 1e-20f;
-// Of the thickness: weights of pairs nearer than that grow no further.
-constexpr float kClosest = 0.01f;
-// Columns or rows from which on squares of one sheet are no neighbours.
-constexpr float kApart = 2.5f;
+constexpr float kTiny = 1e-20f, kOutOfReach = 1e18f;  // m²
+// Shares: how far beside a triangle a vertex still counts as above it; and how near to parallel (sine
+// squared) two edges have no normal of their own, and the sides of a triangle make none.
+constexpr float kBeside = 0.02f, kParallel = 1e-3f, kFlat = 1e-5f;
+constexpr float kLeastLeft = 0.1f;  // of a distance, when something may pass
 
 constexpr int kEdges[3][2] = {{0, 1}, {0, 2}, {1, 2}}, kFaces[2][3] = {{0, 1, 2}, {1, 3, 2}};
-constexpr int kSquare = sizeof(Square) / sizeof(float), kVertex = sizeof(Vertex) / sizeof(float);
-
-// SquareChange of kLanes pairs.
-struct Change {
-  Wide push[4][3], gain[4][3], weight[4];
-};
-constexpr int kFloats = sizeof(SquareChange) / sizeof(float);
-static_assert(sizeof(Change) == kFloats * sizeof(Wide));
+constexpr int kRecord = 4;  // floats
 
 struct Edge {
   Wide3 along;
@@ -69,6 +62,10 @@ WEFT_INLINE Wide clamp01(Wide s) {
   return min(max(s, Wide{}), wide(1));
 }
 
+WEFT_INLINE Wide3 cross(Wide3 a, Wide3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 WEFT_INLINE void fill_shape(Shape& s) {
   const auto edge = [&](int i, int j) {
     const Wide3 along = s.x[j] - s.x[i];
@@ -87,6 +84,34 @@ WEFT_INLINE void fill_shape(Shape& s) {
   }
 }
 
+// A vertex above a triangle: shares of its corners, and the distance squared from its plane.
+WEFT_INLINE Wide vertex_above(Wide3 p, const Face& t, Wide (&share)[3]) {
+  const Edge &e = t.side[0], &f = t.side[1];
+  const Wide3 d = p - t.corner[0];
+  const Wide de = dot(d, e.along), df = dot(d, f.along);
+  share[1] = (f.square * de - t.between * df) * t.inverse;
+  share[2] = (e.square * df - t.between * de) * t.inverse;
+  share[0] = 1.0f - share[1] - share[2];
+  const WideInt above = (t.area > max(kFlat * (e.square * f.square), wide(kTiny))) &
+                        (min(min(share[0], share[1]), share[2]) > -kBeside);
+  const Wide3 off = d - e.along * share[1] - f.along * share[2];
+  return select(above, dot(off, off), wide(kOutOfReach));
+}
+
+// Two edges that pass each other.
+WEFT_INLINE Wide edges_pass(Wide3 p, const Edge& e, Wide3 q, const Edge& f, Wide& s, Wide& t) {
+  const Wide3 r = p - q;
+  const Wide ef = dot(e.along, f.along), er = dot(e.along, r), fr = dot(f.along, r);
+  const Wide both = e.square * f.square, area = both - ef * ef;
+  const Wide inverse = 1.0f / max(area, wide(kTiny));
+  s = (ef * fr - er * f.square) * inverse;
+  t = (e.square * fr - ef * er) * inverse;
+  const WideInt pass = (area > kParallel * both) & (min(s, t) >= 0.0f) & (max(s, t) <= 1.0f) &
+                       (min(e.square, f.square) > 2 * kTiny);
+  const Wide3 off = r + e.along * s - f.along * t;
+  return select(pass, dot(off, off), wide(kOutOfReach));
+}
+
 // A vertex against a triangle: shares of its corners, and the distance squared.
 WEFT_INLINE Wide vertex_face(Wide3 p, const Face& t, Wide (&share)[3]) {
   const Edge &e = t.side[0], &f = t.side[1];
@@ -98,7 +123,7 @@ WEFT_INLINE Wide vertex_face(Wide3 p, const Face& t, Wide (&share)[3]) {
   const WideInt inside =
       (t.area > kTiny) & (share[0] >= 0.0f) & (share[1] >= 0.0f) & (share[2] >= 0.0f);
   const Wide3 above = d - e.along * share[1] - f.along * share[2];
-  Wide best = select(inside, dot(above, above), wide(physics::kOutOfReach));
+  Wide best = select(inside, dot(above, above), wide(kOutOfReach));
   constexpr int kSides[3][2] = {{0, 1}, {0, 2}, {1, 2}};
   for (int n = 0; n < 3; ++n) {
     const auto [i, j] = kSides[n];
@@ -130,34 +155,40 @@ WEFT_INLINE Wide edge_edge(Wide3 p, const Edge& e, Wide3 q, const Edge& f, Wide&
 }
 
 // kLanes pairs of squares.
+template <SurfaceSearch kSearch>
 class Pairs {
  public:
-  WEFT_INLINE Pairs(const SurfacePairs& given, int at) : given_(given) {
+  WEFT_INLINE Pairs(const SurfacePairs& given, int at, SurfaceContact* found)
+      : given_(given), at_(at), found_(found) {
     const std::int32_t* const number[2] = {given.owner + at, given.neighbour + at};
-    Wide4 place[2];
+    Wide3 low = wide3(kOutOfReach, kOutOfReach, kOutOfReach), high = low * wide(-1);
     for (int n = 0; n < 2; ++n) {
       const auto* const corners = (const float*)given.squares->corner;
-      const Wide4 corner = records_at(corners, kSquare, number[n]);
+      const Wide4 corner = records_at(corners, kRecord, number[n]);
       corner_[n][0] = (WideInt)corner.xyz.x;
       corner_[n][1] = (WideInt)corner.xyz.y;
       corner_[n][2] = (WideInt)corner.xyz.z;
       corner_[n][3] = (WideInt)corner.last;
-      place[n] = records_at(given.squares->place, kSquare, number[n]);
-      for (int c = 0; c < 4; ++c) shape_[n].x[c] = vertex_part(&Vertex::x, n, c).xyz;
+      for (int c = 0; c < 4; ++c) {
+        const Wide4 place = record(given.place->x, n, c);
+        shape_[n].x[c] = place.xyz;
+        half_held_[n] = place.last;
+        moved_[n][c] = record(given.moved->u, n, c).xyz;
+        const Wide3 u = moved_[n][c];
+        low = {min(low.x, u.x), min(low.y, u.y), min(low.z, u.z)};
+        high = {max(high.x, u.x), max(high.y, u.y), max(high.z, u.z)};
+      }
     }
-    const Wide3 origin = shape_[0].x[0];
+    const Wide3 origin = shape_[0].x[0], spread = high - low;
     for (int n = 0; n < 2; ++n) {
       for (Wide3& x : shape_[n].x) x = x - origin;
       fill_shape(shape_[n]);
     }
-    const auto &p = place[0], &q = place[1];
-    const WideInt beside = (abs(q.xyz.x - p.xyz.x) < kApart) & (abs(q.xyz.y - p.xyz.y) < kApart);
-    const Wide thickness = 0.5f * (q.xyz.z + p.xyz.z);
-    held_ = select(beside, min(thickness, wide(given.close)), thickness);
-    held_squared_ = held_ * held_;
-    friction_ = 0.5f * (q.last + p.last);
-    near_squared_ = wide(physics::kOutOfReach);
-    valid_ = lanes_below(given.touching ? given.pairs - at : 0);
+    thickness_ = half_held_[0] + half_held_[1];
+    // What is farther apart than that at the start comes nowhere near.
+    const Wide far = thickness_ * given.reach + sqrt(dot(spread, spread));
+    far_squared_ = far * far;
+    valid_ = lanes_below(given.pairs - at);
   }
 
   // The vertex of each against a triangle of the other.
@@ -166,13 +197,17 @@ class Pairs {
       const auto [i, j, k] = kFaces[n];
       const auto joined = same(own, 0, i) | same(own, 0, j) | same(own, 0, k);
       Wide share[3];
-      const Wide square = vertex_face(shape_[own].x[0], shape_[1 - own].face[n], share);
-      const WideInt touch = met(square, joined);
-      if (!any(touch)) continue;
+      const Face& face = shape_[1 - own].face[n];
+      const Wide square = kSearch == SurfaceSearch::contacts
+                              ? vertex_above(shape_[own].x[0], face, share)
+                              : vertex_face(shape_[own].x[0], face, share);
+      const WideInt near = met(square, joined);
+      if (!any(near)) continue;
       Closest c{};
       c.at[own][0] = wide(1);
       c.at[1 - own][i] = share[0], c.at[1 - own][j] = share[1], c.at[1 - own][k] = share[2];
-      push(c, touch);
+      const int body[4][2] = {{own, 0}, {1 - own, i}, {1 - own, j}, {1 - own, k}};
+      add(2 * n + own, 1, body, c, near);
     }
   }
 
@@ -180,36 +215,21 @@ class Pairs {
     const auto [i, j] = kEdges[n];
     const auto [k, l] = kEdges[m];
     Wide s, t;
+    const auto distance = [&](auto measure) {
+      return measure(shape_[0].x[i], shape_[0].edge[n], shape_[1].x[k], shape_[1].edge[m], s, t);
+    };
     const Wide square =
-        edge_edge(shape_[0].x[i], shape_[0].edge[n], shape_[1].x[k], shape_[1].edge[m], s, t);
-    const WideInt touch =
-        met(square, same(0, i, k) | same(0, i, l) | same(0, j, k) | same(0, j, l));
-    if (!any(touch)) return;
+        kSearch == SurfaceSearch::contacts ? distance(edges_pass) : distance(edge_edge);
+    const WideInt near = met(square, same(0, i, k) | same(0, i, l) | same(0, j, k) | same(0, j, l));
+    if (!any(near)) return;
     Closest c{};
     c.at[0][i] = 1.0f - s, c.at[0][j] = s;
     c.at[1][k] = 1.0f - t, c.at[1][l] = t;
-    push(c, touch);
+    const int body[4][2] = {{0, i}, {0, j}, {1, k}, {1, l}};
+    add(4 + 3 * n + m, 2, body, c, near);
   }
 
-  WEFT_INLINE Wide near_squared() const {
-    const Wide reach = held_ + given_.beyond;
-    return select(near_squared_ < reach * reach, near_squared_, wide(physics::kOutOfReach));
-  }
-
-  // Writes what those that touch want, `at` being the number of the first; returns how many.
-  WEFT_INLINE int put_touching(int at, SquaresTouching* to) const {
-    int count = 0;
-    if (!any(touched_)) return count;
-    for (unsigned set = bits(touched_); set != 0; set &= set - 1) {
-      const int lane = __builtin_ctz(set);
-      SquaresTouching& one = to[count++];
-      one.pair = at + lane;
-      float* const out = &one.change[0].push[0][0];
-      const float* const from = (const float*)change_ + lane;
-      for (int f = 0; f < 2 * kFloats; ++f) out[f] = from[f * kLanes];
-    }
-    return count;
-  }
+  SurfaceContact* found() const { return found_; }
 
  private:
   // Whether a corner of one is the same particle as a corner of the other.
@@ -217,67 +237,98 @@ class Pairs {
     return corner_[n][corner] == corner_[1 - n][other];
   }
 
-  // Four floats of a corner's particle: x and w, or v.
-  WEFT_INLINE Wide4 vertex_part(float (Vertex::*part)[3], int n, int c) const {
-    return records_at(given_.vertices->*part, kVertex, (const std::int32_t*)&corner_[n][c]);
+  WEFT_INLINE Wide4 record(const float* records, int n, int c) const {
+    return records_at(records, kRecord, (const std::int32_t*)&corner_[n][c]);
   }
 
-  // Takes a distance squared into account; returns where it is less than the thickness.
-  WEFT_INLINE WideInt met(Wide square, WideInt joined) {
-    const Wide apart = select(joined, wide(physics::kOutOfReach), square);
-    near_squared_ = min(near_squared_, apart);
-    return (apart < held_squared_) & valid_;
+  WEFT_INLINE WideInt met(Wide square, WideInt joined) const {
+    return (select(joined, wide(kOutOfReach), square) < far_squared_) & valid_;
   }
 
-  // Not inlined: few pairs touch, and there are thirteen kinds.
-  __attribute__((noinline)) void push(const Closest& c, WideInt touch) {
-    if (!any(touched_))
-      for (Change& change : change_) change = Change{};
-    touched_ = touched_ | touch;
-    Wide3 off = wide3(0, 0, 0), u = wide3(0, 0, 0);
-    Wide mass{}, w[2][4];
-    for (int n = 0; n < 2; ++n) {
-      const float sign = n == 0 ? 1 : -1;
-      for (int k = 0; k < 4; ++k) {
-        const Wide share = c.at[n][k] * sign;
-        w[n][k] = vertex_part(&Vertex::x, n, k).last;
-        off = off + shape_[n].x[k] * share;
-        u = u + vertex_part(&Vertex::v, n, k).xyz * share;
-        mass = mass + w[n][k] * (share * share);
-      }
-    }
-    // Nothing is pushed where the distance or all inverse masses are 0.
-    const Wide distance = sqrt(dot(off, off));
-    const Wide3 normal = off * (1.0f / max(distance, wide(kTiny)));
-    const Wide depth = held_ - distance;
-    const Wide closeness = held_ / max(distance, held_ * kClosest);
-    const Wide into = dot(u, normal), lost = max(Wide{}, -into);
-    const Wide3 slide = u - normal * into;
-    const Wide sliding = sqrt(dot(slide, slide));
-    const Wide rubbed = select(sliding > 1e-12f, min(wide(1), friction_ * lost / sliding), Wide{});
-    const Wide3 gain = normal * lost - slide * rubbed, moved = normal * depth;
-    const Wide3 nothing = wide3(0, 0, 0);
-    const Wide per_mass = 1.0f / max(mass, wide(kTiny));
+  // The distance on the flat sheet of the two points; far where they are of two sheets.
+  WEFT_INLINE Wide rest_distance(const Closest& c, Wide& friction) const {
+    Wide x{}, y{}, sheet[2];
+    friction = Wide{};
     for (int n = 0; n < 2; ++n)
       for (int k = 0; k < 4; ++k) {
-        const Wide weight = depth * closeness * c.at[n][k];
-        const Wide part = weight * (w[n][k] * c.at[n][k] * per_mass) * (n == 0 ? 1.0f : -1.0f);
-        add(change_[n].push[k], select(touch, moved * part, nothing));
-        add(change_[n].gain[k], select(touch, gain * part, nothing));
-        change_[n].weight[k] = change_[n].weight[k] + select(touch, weight, Wide{});
+        const Wide4 rest = record(&given_.rest->x, n, k);
+        const Wide share = c.at[n][k] * (n == 0 ? 1.0f : -1.0f);
+        x = x + rest.xyz.x * share;
+        y = y + rest.xyz.y * share;
+        sheet[n] = rest.xyz.z;
+        if (k == 0) friction = friction + 0.5f * rest.last;
       }
+    return select(sheet[0] == sheet[1], sqrt(x * x + y * y), wide(kOutOfReach));
   }
 
-  WEFT_INLINE static void add(Wide (&sum)[3], Wide3 more) {
-    sum[0] = sum[0] + more.x, sum[1] = sum[1] + more.y, sum[2] = sum[2] + more.z;
+  // Not inlined: few are near, and there are thirteen kinds. `body` are the four that take part, the
+  // first `owners` of them on one side.
+  __attribute__((noinline)) void add(int kind, int owners, const int (&body)[4][2],
+                                     const Closest& c, WideInt near) {
+    Wide3 off = wide3(0, 0, 0);
+    for (int n = 0; n < 2; ++n)
+      for (int k = 0; k < 4; ++k)
+        off = off + shape_[n].x[k] * (c.at[n][k] * (n == 0 ? 1.0f : -1.0f));
+    // To the side of the first bodies.
+    if (body[0][0] == 1) off = off * wide(-1);
+    const Wide distance = max(sqrt(dot(off, off)), wide(1e-12f));
+    const Wide3 normal = off * (1.0f / distance);
+    Wide nearest[2] = {wide(kOutOfReach), wide(-kOutOfReach)};
+    for (int b = 0; b < 4; ++b) {
+      const Wide u = dot(normal, moved_[body[b][0]][body[b][1]]);
+      if (b < owners)
+        nearest[0] = min(nearest[0], u);
+      else
+        nearest[1] = max(nearest[1], u);
+    }
+    const Wide approach = min(Wide{}, nearest[0] - nearest[1]);
+    Wide friction;
+    const Wide held = min(thickness_, 0.5f * rest_distance(c, friction));
+    const WideInt wanted =
+        kSearch == SurfaceSearch::contacts
+            ? near & (distance + approach < held * given_.reach)
+            : near & (approach < 0.0f) &
+                  (distance + approach < max(distance * kLeastLeft, held * given_.floor));
+    for (unsigned set = bits(wanted); set != 0; set &= set - 1)
+      put(kind, owners, body, c, __builtin_ctz(set), normal, distance, held, friction);
+  }
+
+  void put(int kind, int owners, const int (&body)[4][2], const Closest& c, int lane,
+           const Wide3& normal, const Wide& distance, const Wide& held, const Wide& friction) {
+    SurfaceContact& one = *found_++;
+    one.pair = at_ + lane;
+    one.kind = kind;
+    for (int b = 0; b < 4; ++b) {
+      one.body[b] = corner_[body[b][0]][body[b][1]][lane];
+      one.share[b] = c.at[body[b][0]][body[b][1]][lane] * (b < owners ? 1.0f : -1.0f);
+    }
+    one.normal[0] = normal.x[lane], one.normal[1] = normal.y[lane], one.normal[2] = normal.z[lane];
+    one.distance = distance[lane];
+    one.held = held[lane];
+    one.friction = friction[lane];
   }
 
   const SurfacePairs& given_;
+  const int at_;
+  SurfaceContact* found_;
   Shape shape_[2];
-  WideInt corner_[2][4], valid_, touched_{};
-  Wide held_, held_squared_, friction_, near_squared_;
-  Change change_[2];  // filled where any has touched
+  Wide3 moved_[2][4];
+  WideInt corner_[2][4], valid_;
+  Wide half_held_[2], thickness_, far_squared_;
 };
+
+template <SurfaceSearch kSearch>
+WEFT_INLINE int search(const SurfacePairs& given) {
+  SurfaceContact* found = given.found;
+  for (int k = 0; k < given.pairs; k += kLanes) {
+    Pairs<kSearch> pairs(given, k, found);
+    for (int n = 0; n < 2; ++n) pairs.vertex(n);
+    for (int n = 0; n < 3; ++n)
+      for (int m = 0; m < 3; ++m) pairs.edge(n, m);
+    found = pairs.found();
+  }
+  return int(found - given.found);
+}
 
 }  // namespace
 
@@ -306,16 +357,8 @@ int squares_within(const SquaresWithin& given) {
 }
 
 int surface_pairs(const SurfacePairs& given) {
-  int touching = 0;
-  for (int k = 0; k < given.pairs; k += kLanes) {
-    Pairs pairs(given, k);
-    for (int n = 0; n < 2; ++n) pairs.vertex(n);
-    for (int n = 0; n < 3; ++n)
-      for (int m = 0; m < 3; ++m) pairs.edge(n, m);
-    store(given.near_squared + k, pairs.near_squared());
-    if (given.touching) touching += pairs.put_touching(k, given.touching + touching);
-  }
-  return touching;
+  return given.search == SurfaceSearch::contacts ? search<SurfaceSearch::contacts>(given)
+                                                 : search<SurfaceSearch::passing>(given);
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -59,9 +59,10 @@ std::size_t count_particles(const std::vector<Sheet>& sheets) {
   return n;
 }
 
-Blocks::Blocks(const std::vector<Sheet>& sheets, const KernelTable& kernels)
-    : sheets_(sheets), kernels_(kernels) {
+Blocks::Blocks(const std::vector<Sheet>& sheets, float least_ratio, const KernelTable& kernels)
+    : sheets_(sheets), least_ratio_(least_ratio), kernels_(kernels) {
   cut(sheets);
+  before_.resize(blocks_.size(), nothing());
   bounds_.resize(blocks_.size());
   flat_.resize(blocks_.size());
   edges_.resize(blocks_.size());
@@ -98,6 +99,11 @@ void Blocks::for_each_of_square(std::size_t b, const Visit& visit) const {
   if (along) visit(b + 1);
   if (below) visit(b + across);
   if (along && below) visit(b + across + 1);
+}
+
+void Blocks::begin(Threads& threads) {
+  std::fill(before_.begin(), before_.end(), nothing());
+  measure(threads);
 }
 
 void Blocks::measure(Threads& threads) {
@@ -144,6 +150,9 @@ BlockRows Blocks::rows_of(std::size_t b) {
 
 void Blocks::measure_block(std::size_t b) {
   kernels_.block_bounds(rows_of(b));
+  const Spread now = bounds_[b].x;
+  bounds_[b].x = both(before_[b], now);
+  before_[b] = now;
   for (int k = 0; k < 3; ++k) {
     low_[k][b] = bounds_[b].x.low[k];
     high_[k][b] = bounds_[b].x.high[k];
@@ -172,7 +181,9 @@ Blocks::Flat Blocks::flat(std::size_t b) const {
   Flat f;
   f.ratio = std::sqrt(std::max(0.0f, 1 - askew)) * std::min(lu / ru, lv / rv) -
             root2 * std::max(u.within / ru, v.within / rv);
-  f.needed = sheet.thickness / std::max(sheet.neighbour() * sheet.thickness, std::min(ru, rv));
+  f.needed = least_ratio_ > 0 ? least_ratio_
+                              : sheet.thickness /
+                                    std::max(sheet.neighbour() * sheet.thickness, std::min(ru, rv));
   f.rate = root2 * std::max(std::sqrt(all.change_along) / ru, std::sqrt(all.change_across) / rv);
   return f;
 }

@@ -55,14 +55,18 @@ inline Row3 first_of(const Block& block, Rows& rows) {
 
 class Blocks {
  public:
-  Blocks(const std::vector<Sheet>& sheets, const KernelTable& kernels);
+  // A sheet does not touch itself where it is nearly flat: where ρ is above `least_ratio`, or, where that is
+  // 0, such that pairs come no nearer than a thickness that are no neighbours at rest (Sheet::neighbour).
+  Blocks(const std::vector<Sheet>& sheets, float least_ratio, const KernelTable& kernels);
 
   const std::vector<Block>& all() const { return blocks_; }
   // Where the particles of a sheet were when last remembered.
   const Rows& then(std::size_t sheet) const { return then_[sheet]; }
 
-  // Bounds of every block, as its particles are now. What is not known to be nearly flat counts as not
-  // flat, until all edges are measured again.
+  // An interval begins where all is now.
+  void begin(Threads& threads);
+  // Bounds of every block since the interval before was measured or begun, and as its particles are now.
+  // What is not known to be nearly flat counts as not flat, until all edges are measured again.
   void measure(Threads& threads);
   void measure_edges(Threads& threads);
 
@@ -103,6 +107,7 @@ class Blocks {
   void remember();
 
   const std::vector<Sheet>& sheets_;
+  const float least_ratio_;
   const KernelTable& kernels_;
   std::vector<Block> blocks_;
   struct Extent {
@@ -110,6 +115,7 @@ class Blocks {
   };
   std::vector<Extent> extents_;  // of every sheet, in blocks
   std::vector<BlockBounds> bounds_;
+  std::vector<Spread> before_;  // boxes at the interval's start
   std::vector<Flat> flat_;
   std::vector<std::uint8_t> edges_;       // whether a block is of a square that is nearly flat
   AlignedArray<float> low_[3], high_[3];  // of bounds_.x

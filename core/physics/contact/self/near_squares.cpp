@@ -9,9 +9,9 @@ namespace weft::physics {
 namespace {
 
 constexpr float kBeyond = 0.4f;      // spacings that listed pairs may be farther apart than is held
-constexpr float kClose = 0.25f;      // spacings that neighbours are kept apart
-constexpr float kOverstretched = 2;  // half-diagonals at rest: larger squares are torn and left out
+constexpr float kOverstretched = 3;  // half-diagonals at rest: larger squares are torn and left out
 constexpr std::size_t kFewParticles = 4096;
+constexpr std::size_t kAtOnce = 1024;  // pairs that are looked through in one go
 
 void widen(Spread& spread, int k, float value) {
   spread.low[k] = std::min(spread.low[k], value);
@@ -28,7 +28,6 @@ void SquarePairs::reserve(std::size_t pairs) {
   if (owner.size() >= pairs + kPadding) return;
   owner.resize(2 * pairs + kPadding);
   neighbour.resize(owner.size());
-  near_squared.resize(owner.size());
 }
 
 void SquarePairs::pad() {
@@ -38,89 +37,87 @@ void SquarePairs::pad() {
 }
 
 std::size_t SquarePairs::bytes() const {
-  return owner.capacity() * (2 * sizeof(std::int32_t) + sizeof(float));
+  return owner.capacity() * 2 * sizeof(std::int32_t);
 }
 
-NearSquares::NearSquares(const std::vector<Sheet>& sheets, const KernelTable& kernels)
-    : sheets_(sheets), kernels_(kernels), search_(count_particles(sheets_), {}, kernels) {
+NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<NamedSheet>& named,
+                         std::size_t bodies, const KernelTable& kernels)
+    : sheets_(sheets),
+      named_(named),
+      kernels_(kernels),
+      search_(count_particles(sheets_), {}, kernels) {
   float spacing = 0;
-  close_ = least_ = std::numeric_limits<float>::max();
   for (const Sheet& s : sheets_) {
     spacing = std::max({spacing, std::sqrt(s.uu), std::sqrt(s.vv)});
     most_ = std::max(most_, s.thickness);
-    least_ = std::min(least_, s.thickness);
-    close_ = std::min({close_, kClose * std::sqrt(s.uu), kClose * std::sqrt(s.vv)});
+    all_squares_ += std::size_t(s.lattice->columns) * std::size_t(s.lattice->rows);
   }
-  least_ = std::min(least_, close_);
   beyond_ = kBeyond * spacing;
+  squares_.resize(bodies);
+  origins_.resize(bodies);
+  chosen_.resize(bodies);
+  passing_.resize(bodies);
+  asked_.resize(bodies);
+  boxes_.resize(bodies);
+  lies_.resize(bodies);
+  stride_.resize(bodies);
+  begin_.resize(bodies + 1);
+  sorted_.resize(all_squares_);
+  left_out_.reserve(all_squares_);
+  joined_.reserve(all_squares_);
   make_squares();
-  const std::size_t n = squares_.size();
-  vertices_.resize(n);
-  origins_.resize(n);
-  chosen_.resize(n);
-  passing_.resize(n);
-  asked_.resize(n);
-  sorted_.resize(n);
-  boxes_.resize(n);
-  left_out_.reserve(n);
-  joined_.reserve(n);
+}
+
+// visit(number, sheet, row, column).
+template <class Visit>
+void NearSquares::for_each_square(const Visit& visit) const {
+  for (std::size_t s = 0; s < sheets_.size(); ++s)
+    for (int j = 0; j < sheets_[s].lattice->rows; ++j)
+      for (int i = 0; i < sheets_[s].lattice->columns; ++i) visit(number(s, j, i), s, j, i);
 }
 
 void NearSquares::make_squares() {
-  constexpr float kBetweenSheets = 1e5f;  // columns
-  for (std::size_t n = 0; n < sheets_.size(); ++n) {
-    const Sheet& s = sheets_[n];
-    const Lattice& l = *s.lattice;
-    first_.push_back(squares_.size());
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i) {
-        Square q{};
-        for (int c = 0; c < 4; ++c)
-          q.corner[c] = std::int32_t(
-              number(n, std::min(j + (c >> 1), l.rows - 1), std::min(i + (c & 1), l.columns - 1)));
-        q.place[0] = float(i) + kBetweenSheets * float(n);
-        q.place[1] = float(j);
-        q.thickness = s.thickness;
-        q.friction = s.friction;
-        squares_.push_back(q);
-      }
-  }
+  for_each_square([&](std::size_t n, std::size_t sheet, int j, int i) {
+    const Lattice& l = *sheets_[sheet].lattice;
+    stride_[n] = named_[sheet].stride;
+    for (int c = 0; c < 4; ++c)
+      squares_[n].corner[c] = std::int32_t(
+          number(sheet, std::min(j + (c >> 1), l.rows - 1), std::min(i + (c & 1), l.columns - 1)));
+  });
 }
 
-void NearSquares::update(bool all, const float (&frame)[3], Threads& threads) {
-  read_vertices(threads);
+void NearSquares::leave_out(const std::vector<std::uint8_t>& marked) {
+  std::size_t at = 0;
+  for_each_square([&](std::size_t n, std::size_t, int, int) { passing_[n] = marked[at++]; });
+}
+
+void NearSquares::update(bool all, const Place* now, Threads& threads) {
+  now_ = now;
   joined_.clear();
   if (!all) {
-    look_how_far(frame);
+    look_how_far();
     look_who_joined();
   }
-  if (all || !joined_.empty() || unlisted() <= least_) list(all, frame, threads);
+  if (all || !joined_.empty() || left() <= 0) list(all, threads);
 }
 
-void NearSquares::read_vertices(Threads& threads) {
-  for (std::size_t s = 0; s < sheets_.size(); ++s) {
-    Lattice& l = *sheets_[s].lattice;
-    threads.share(std::size_t(l.rows), vertices_.size() < kFewParticles, [&](std::size_t j) {
-      const Row3 x = l.x.row(int(j)), v = l.v.row(int(j));
-      const float* const w = l.w(int(j));
-      Vertex* const to = &vertices_[number(s, int(j), 0)];
-      for (int i = 0; i < l.columns; ++i)
-        to[i] = {{x.x[i], x.y[i], x.z[i]}, w[i], {v.x[i], v.y[i], v.z[i]}, 0};
-    });
-  }
-}
-
-void NearSquares::look_how_far(const float (&frame)[3]) {
+// The common part of all motion is the middle of what all have moved.
+void NearSquares::look_how_far() {
+  Spread moved = nothing();
+  const auto off = [&](std::size_t n, int k) {
+    return now_[n].x[k] - frame_[k] - origins_[n].x[k];
+  };
+  for_each_square([&](std::size_t n, std::size_t, int, int) {
+    for (int k = 0; k < 3; ++k) widen(moved, k, off(n, k));
+  });
+  for (int k = 0; k < 3; ++k) frame_[k] += 0.5f * (moved.low[k] + moved.high[k]);
   float gone_squared = 0;
-  for (std::size_t n = 0; n < origins_.size(); ++n) {
+  for_each_square([&](std::size_t n, std::size_t, int, int) {
     Origin& origin = origins_[n];
     origin.gone_squared = 0;
-    for (int k = 0; k < 3; ++k) {
-      const float gone = vertices_[n].x[k] - frame[k] - origin.x[k];
-      origin.gone_squared += gone * gone;
-    }
+    for (int k = 0; k < 3; ++k) origin.gone_squared += off(n, k) * off(n, k);
     gone_squared = std::max(gone_squared, origin.gone_squared);
-  }
+  });
   gone_ = std::sqrt(gone_squared);
 }
 
@@ -139,11 +136,11 @@ void NearSquares::look_who_joined() {
 // The pairs of those squares that have a vertex which has gone far; of all where that are many.
 //
 // Vertices that are chosen start anew: they have gone nowhere. The others may have gone kFar beyond_
-// before, so much less is left of what pairs that are not listed are apart (unlisted()).
-void NearSquares::list(bool all, const float (&frame)[3], Threads& threads) {
-  std::size_t asked = all ? squares_.size() : choose(false, frame);
-  if (asked > squares_.size() / 2) {
-    asked = choose(true, frame);
+// before, so much less is left of what pairs that are not listed are apart (left()).
+void NearSquares::list(bool all, Threads& threads) {
+  std::size_t asked = all ? all_squares_ : choose(false);
+  if (asked > all_squares_ / 2) {
+    asked = choose(true);
     listed_.count = 0;
   }
   squares_listed_ += double(asked);
@@ -156,29 +153,30 @@ void NearSquares::list(bool all, const float (&frame)[3], Threads& threads) {
   });
   search_.find(range, threads);
   if (found_.size() < search_.chunks()) found_.resize(search_.chunks());
-  threads.share(search_.chunks(), false, [&](std::size_t k) { find_in(k); });
+  threads.share(search_.chunks(), search_.few(), [&](std::size_t k) { find_in(k); });
   take_found();
+  sort_listed();
 }
 
 // Vertices that start anew, and the squares that they are corners of; returns how many these are.
-std::size_t NearSquares::choose(bool all, const float (&frame)[3]) {
+std::size_t NearSquares::choose(bool all) {
   const float far = kFar * beyond_;
   float gone_squared = 0;
-  for (std::size_t n = 0; n < origins_.size(); ++n) {
+  for_each_square([&](std::size_t n, std::size_t, int, int) {
     Origin& origin = origins_[n];
     chosen_[n] = all || origin.gone_squared > far * far;
     if (chosen_[n]) {
-      for (int k = 0; k < 3; ++k) origin.x[k] = vertices_[n].x[k] - frame[k];
+      for (int k = 0; k < 3; ++k) origin.x[k] = now_[n].x[k] - frame_[k];
       origin.gone_squared = 0;
     }
     gone_squared = std::max(gone_squared, origin.gone_squared);
-  }
+  });
   gone_ = std::sqrt(gone_squared);
   std::size_t asked = 0;
-  for (std::size_t n = 0; n < squares_.size(); ++n) {
+  for_each_square([&](std::size_t n, std::size_t, int, int) {
     asked_[n] = has_corner_in(squares_[n], chosen_);
     asked += asked_[n];
-  }
+  });
   return asked;
 }
 
@@ -187,7 +185,7 @@ float NearSquares::middle_of(std::size_t square, float (&middle)[3]) const {
   float off[4] = {};
   for (int k = 0; k < 3; ++k) {
     float x[4];
-    for (int c = 0; c < 4; ++c) x[c] = vertices_[std::size_t(squares_[square].corner[c])].x[k];
+    for (int c = 0; c < 4; ++c) x[c] = now_[std::size_t(squares_[square].corner[c])].x[k];
     middle[k] = 0.25f * (x[0] + x[1] + x[2] + x[3]);
     for (int c = 0; c < 4; ++c) off[c] += (x[c] - middle[k]) * (x[c] - middle[k]);
   }
@@ -201,27 +199,22 @@ float NearSquares::list_whole(Spread& box, std::size_t& count) {
   left_out_.clear();
   float widest_squared = 0;
   const Row3 to = search_.points();
-  for (std::size_t s = 0; s < sheets_.size(); ++s) {
-    const Lattice& l = *sheets_[s].lattice;
-    const float most = kOverstretched * half_diagonal(sheets_[s]);
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i) {
-        const std::size_t n = number(s, j, i);
-        if (has_corner_in(squares_[n], passing_)) continue;
-        float middle[3];
-        const float radius_squared = middle_of(n, middle);
-        if (!(radius_squared <= most * most)) {
-          left_out_.push_back({std::int32_t(n), most * most});
-          continue;
-        }
-        widest_squared = std::max(widest_squared, radius_squared);
-        to.x[count] = middle[0];
-        to.y[count] = middle[1];
-        to.z[count] = middle[2];
-        for (int k = 0; k < 3; ++k) widen(box, k, middle[k]);
-        search_.names()[count++] = std::int32_t(n);
-      }
-  }
+  for_each_square([&](std::size_t n, std::size_t sheet, int, int) {
+    if (has_corner_in(squares_[n], passing_)) return;
+    const float most = kOverstretched * half_diagonal(sheets_[sheet]);
+    float middle[3];
+    const float radius_squared = middle_of(n, middle);
+    if (!(radius_squared <= most * most)) {
+      left_out_.push_back({std::int32_t(n), most * most});
+      return;
+    }
+    widest_squared = std::max(widest_squared, radius_squared);
+    to.x[count] = middle[0];
+    to.y[count] = middle[1];
+    to.z[count] = middle[2];
+    for (int k = 0; k < 3; ++k) widen(box, k, middle[k]);
+    search_.names()[count++] = std::int32_t(n);
+  });
   return std::sqrt(widest_squared);
 }
 
@@ -231,7 +224,7 @@ void NearSquares::fill_box(std::size_t sorted) {
   sorted_[sorted] = std::int32_t(n);
   SquareBox& box = boxes_[sorted];
   for (int c = 0; c < 4; ++c) {
-    const float* const x = vertices_[std::size_t(squares_[n].corner[c])].x;
+    const float* const x = now_[std::size_t(squares_[n].corner[c])].x;
     for (int k = 0; k < 3; ++k) {
       box.low[k] = c == 0 ? x[k] : std::min(box.low[k], x[k]);
       box.high[k] = c == 0 ? x[k] : std::max(box.high[k], x[k]);
@@ -240,40 +233,30 @@ void NearSquares::fill_box(std::size_t sorted) {
   box.asked = asked_[n];
 }
 
-// The pairs of a chunk of the search that are asked for and within reach.
+// Whether two squares share a corner, p < q: names of a sheet's squares differ as their places do.
+bool NearSquares::beside(std::int32_t p, std::int32_t q) const {
+  const std::int32_t stride = stride_[std::size_t(p)], apart = q - p;
+  return apart <= 1 || (apart >= stride - 1 && apart <= stride + 1);
+}
+
+// The pairs of a chunk of the search that are asked for and within reach, but for those that share a
+// corner.
 void NearSquares::find_in(std::size_t chunk) {
   const PairSearch::Pairs near = search_.pairs(chunk);
-  const std::size_t begin = search_.begin(chunk), end = search_.begin(chunk + 1);
   SquarePairs& found = found_[chunk];
-  found.reserve(near.count + (end - begin));
+  found.reserve(near.count);
   found.count = std::size_t(
       kernels_.squares_within({boxes_.data(), int(near.count), near.owner, near.neighbour,
                                most_ + beyond_, found.owner.data(), found.neighbour.data()}));
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < found.count; ++i) {
-    // In this order, so that a pair is measured to the same bits however it was found.
     const auto [p, q] =
         std::minmax(sorted_[std::size_t(found.owner[i])], sorted_[std::size_t(found.neighbour[i])]);
-    found.owner[i] = p;
-    found.neighbour[i] = q;
+    if (beside(p, q)) continue;
+    found.owner[kept] = p;
+    found.neighbour[kept++] = q;
   }
-  // A square folded along its diagonal: its own A comes near its own BDC.
-  for (std::size_t p = begin; p < end; ++p)
-    if (boxes_[p].asked > 0) {
-      found.owner[found.count] = sorted_[p];
-      found.neighbour[found.count++] = sorted_[p];
-    }
-  found.pad();
-  const std::size_t count = found.count;
-  kernels_.surface_pairs({vertices_.data(), squares_.data(), int(count), found.owner.data(),
-                          found.neighbour.data(), close_, beyond_, found.near_squared.data(),
-                          nullptr});
-  found.count = 0;
-  for (std::size_t i = 0; i < count; ++i)
-    if (found.near_squared[i] < kOutOfReach) {
-      found.owner[found.count] = found.owner[i];
-      found.neighbour[found.count] = found.neighbour[i];
-      found.near_squared[found.count++] = found.near_squared[i];
-    }
+  found.count = kept;
 }
 
 // In place of all listed pairs of the squares asked for.
@@ -283,30 +266,164 @@ void NearSquares::take_found() {
     if (asked_[std::size_t(listed_.owner[i])] || asked_[std::size_t(listed_.neighbour[i])])
       continue;
     listed_.owner[kept] = listed_.owner[i];
-    listed_.neighbour[kept] = listed_.neighbour[i];
-    listed_.near_squared[kept++] = listed_.near_squared[i];
+    listed_.neighbour[kept++] = listed_.neighbour[i];
   }
   for (std::size_t k = 0; k < search_.chunks(); ++k) {
     const SquarePairs& found = found_[k];
     listed_.reserve(kept + found.count);
     std::copy_n(found.owner.data(), found.count, listed_.owner.data() + kept);
     std::copy_n(found.neighbour.data(), found.count, listed_.neighbour.data() + kept);
-    std::copy_n(found.near_squared.data(), found.count, listed_.near_squared.data() + kept);
     kept += found.count;
   }
   listed_.count = kept;
   listed_.pad();
 }
 
+// By their owners, and those of one owner by their neighbours.
+void NearSquares::sort_listed() {
+  std::fill(begin_.begin(), begin_.end(), 0);
+  for (std::size_t i = 0; i < listed_.count; ++i) ++begin_[std::size_t(listed_.owner[i]) + 1];
+  for (std::size_t n = 1; n < begin_.size(); ++n) begin_[n] += begin_[n - 1];
+  within_.reserve(listed_.count);
+  for (std::size_t i = 0; i < listed_.count; ++i) {
+    const auto at = std::size_t(begin_[std::size_t(listed_.owner[i])]++);
+    within_.owner[at] = listed_.owner[i];
+    within_.neighbour[at] = listed_.neighbour[i];
+  }
+  for (std::size_t i = 0; i < listed_.count;) {
+    std::size_t end = i;
+    while (end < listed_.count && within_.owner[end] == within_.owner[i]) ++end;
+    std::sort(within_.neighbour.begin() + std::ptrdiff_t(i),
+              within_.neighbour.begin() + std::ptrdiff_t(end));
+    i = end;
+  }
+  within_.count = listed_.count;
+  within_.pad();
+  std::swap(listed_, within_);
+}
+
+// How a square lies: its mean edges, and whether it is nearly a parallelogram, neither compressed nor
+// sheared much.
+void NearSquares::measure_lie(std::size_t sheet, std::size_t n, const Place* place) {
+  constexpr float kStraight = 0.15f, kShort = 0.8f, kAskew = 0.3f;
+  const Sheet& s = sheets_[sheet];
+  const std::int32_t* const corner = squares_[n].corner;
+  Lie& lie = lies_[n];
+  float uu = 0, vv = 0, uv = 0, bent = 0;
+  for (int k = 0; k < 3; ++k) {
+    const float a = place[corner[0]].x[k], b = place[corner[1]].x[k];
+    const float c = place[corner[2]].x[k], d = place[corner[3]].x[k];
+    lie.u[k] = 0.5f * (b - a + d - c);
+    lie.v[k] = 0.5f * (c - a + d - b);
+    const float off = 0.5f * (a + d - b - c);
+    bent += off * off;
+    uu += lie.u[k] * lie.u[k];
+    vv += lie.v[k] * lie.v[k];
+    uv += lie.u[k] * lie.v[k];
+  }
+  lie.nearly_flat = bent <= kStraight * kStraight * std::min(uu, vv) &&
+                    uu >= kShort * kShort * s.uu && vv >= kShort * kShort * s.vv &&
+                    uv * uv <= kAskew * kAskew * uu * vv;
+}
+
+// Whether two squares that share a corner lie so much alike that they cannot touch: with all edges along
+// rows and along columns within a part of two vectors that are nearly square to each other, points of the
+// two keep half of the distance that they have on the flat sheet (blocks.h has the bound).
+bool NearSquares::lie_alike(std::size_t p, std::size_t q) const {
+  constexpr float kAlike = 0.3f;
+  const Lie &a = lies_[p], &b = lies_[q];
+  if (!a.nearly_flat || !b.nearly_flat) return false;
+  float uu = 0, vv = 0, du = 0, dv = 0;
+  for (int k = 0; k < 3; ++k) {
+    uu += a.u[k] * a.u[k];
+    vv += a.v[k] * a.v[k];
+    du += (a.u[k] - b.u[k]) * (a.u[k] - b.u[k]);
+    dv += (a.v[k] - b.v[k]) * (a.v[k] - b.v[k]);
+  }
+  return du <= kAlike * kAlike * uu && dv <= kAlike * kAlike * vv;
+}
+
+// Pairs of squares that share a corner, and each with itself, unless they lie flat.
+void NearSquares::list_beside(std::size_t sheet, int row, SquarePairs& found) {
+  const Lattice& l = *sheets_[sheet].lattice;
+  found.count = 0;
+  found.reserve(5 * std::size_t(l.columns));
+  const auto add = [&](std::size_t p, std::size_t q) {
+    if (p == q ? lies_[p].nearly_flat : lie_alike(p, q)) return;
+    if (has_corner_in(squares_[p], passing_) || has_corner_in(squares_[q], passing_)) return;
+    found.owner[found.count] = std::int32_t(p);
+    found.neighbour[found.count++] = std::int32_t(q);
+  };
+  for (int i = 0; i < l.columns; ++i) {
+    const std::size_t n = number(sheet, row, i);
+    add(n, n);
+    if (i + 1 < l.columns) add(n, n + 1);
+    if (row + 1 == l.rows) continue;
+    for (int across = i > 0 ? -1 : 0; across <= (i + 1 < l.columns ? 1 : 0); ++across)
+      add(n, number(sheet, row + 1, i + across));
+  }
+}
+
+const SquarePairs& NearSquares::within(float range, const Place* place, const Displacement* moved,
+                                       Threads& threads) {
+  const auto widen_by = [&](std::int32_t corner, SquareBox& box, bool first) {
+    for (int k = 0; k < 3; ++k) {
+      const float from = place[corner].x[k], to = from + moved[corner].u[k];
+      box.low[k] = std::min(first ? from : box.low[k], std::min(from, to));
+      box.high[k] = std::max(first ? from : box.high[k], std::max(from, to));
+    }
+  };
+  std::size_t piece = 0;
+  for (std::size_t s = 0; s < sheets_.size(); ++s)
+    threads.share(std::size_t(sheets_[s].lattice->rows), all_squares_ < kFewParticles,
+                  [&](std::size_t j) {
+                    for (int i = 0; i < sheets_[s].lattice->columns; ++i) {
+                      const std::size_t n = number(s, int(j), i);
+                      for (int c = 0; c < 4; ++c)
+                        widen_by(squares_[n].corner[c], boxes_[n], c == 0);
+                      boxes_[n].asked = 1;
+                      measure_lie(s, n, place);
+                    }
+                  });
+  const std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
+  std::size_t rows = 0;
+  for (const Sheet& s : sheets_) rows += std::size_t(s.lattice->rows);
+  if (found_.size() < pieces + rows) found_.resize(pieces + rows);
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    const auto of_sheet = std::size_t(sheets_[s].lattice->rows);
+    threads.share(of_sheet, all_squares_ < kFewParticles,
+                  [&](std::size_t j) { list_beside(s, int(j), found_[piece + j]); });
+    piece += of_sheet;
+  }
+  threads.share(pieces, pieces < 8, [&](std::size_t k) {
+    const std::size_t first = k * kAtOnce, count = std::min(listed_.count - first, kAtOnce);
+    SquarePairs& found = found_[rows + k];
+    found.reserve(count);
+    found.count = std::size_t(kernels_.squares_within(
+        {boxes_.data(), int(count), listed_.owner.data() + first, listed_.neighbour.data() + first,
+         range, found.owner.data(), found.neighbour.data()}));
+  });
+  within_.count = 0;
+  for (std::size_t k = 0; k < pieces + rows; ++k) {
+    within_.reserve(within_.count + found_[k].count);
+    std::copy_n(found_[k].owner.data(), found_[k].count, within_.owner.data() + within_.count);
+    std::copy_n(found_[k].neighbour.data(), found_[k].count,
+                within_.neighbour.data() + within_.count);
+    within_.count += found_[k].count;
+  }
+  within_.pad();
+  return within_;
+}
+
 double NearSquares::listed() const {
-  return squares_listed_ / double(std::max<std::size_t>(squares_.size(), 1));
+  return squares_listed_ / double(std::max<std::size_t>(all_squares_, 1));
 }
 
 std::size_t NearSquares::bytes() const {
   std::size_t bytes = search_.bytes();
-  bytes += squares_.size() * (sizeof(Square) + sizeof(Vertex) + sizeof(Origin) + sizeof(SquareBox) +
-                              sizeof(LeftOut) + 10);
-  bytes += listed_.bytes();
+  bytes += squares_.size() * (sizeof(Square) + sizeof(Origin) + sizeof(SquareBox) + 3);
+  bytes += all_squares_ * (sizeof(LeftOut) + 8) + 4 * begin_.size();
+  bytes += listed_.bytes() + within_.bytes();
   for (const SquarePairs& p : found_) bytes += p.bytes();
   return bytes;
 }

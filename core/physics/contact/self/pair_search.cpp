@@ -93,7 +93,7 @@ PairSearch::PairSearch(std::size_t most_points, const std::vector<NamedSheet>& s
   const std::size_t n = most_points;
   name_.resize(n);
   for (AlignedArray<float>* a : {&x_, &y_, &z_})
-    *a = AlignedArray<float>(n + 2 * CellGrid::kPadding);
+    *a = AlignedArray<float>(n + 2 * SpatialHash::kPadding);
   grid_.reserve(n);
   chunks_.resize((n + kChunk - 1) / kChunk);
   for (Chunk& c : chunks_) {

@@ -1,4 +1,4 @@
-// Who is within a range of whom: points sorted into cells (cell_grid.h) and searched in shares of the
+// Who is within a range of whom: points sorted into cells (spatial_hash.h) and searched in shares of the
 // sorted order, so that the result is the same for any threads. Points have names. Those of a sheet are
 // named row after row, so that the difference of two names tells whether they lie beside each other there.
 #pragma once
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "physics/contact/self/cell_grid.h"
+#include "physics/contact/self/spatial_hash.h"
 
 namespace weft::physics {
 
@@ -76,7 +76,7 @@ class PairSearch {
   std::vector<std::vector<NameWindow>> windows_;  // of every sheet
   std::vector<std::int32_t> name_;
   AlignedArray<float> x_, y_, z_;
-  CellGrid grid_;
+  SpatialHash grid_;
   std::vector<Chunk> chunks_;
   std::vector<Room> rooms_;
 };

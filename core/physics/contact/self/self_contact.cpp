@@ -1,4 +1,4 @@
-// Self-collision among particles (self_contact.h): when to look, and the list of pairs.
+// Self-contact (self_contact.h): when to run, and the lists of pairs.
 #include "physics/contact/self/self_contact.h"
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "physics/contact/self/held.h"
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/path.h"
 
@@ -15,6 +16,8 @@ namespace {
 
 // Thicknesses at rest: pairs nearer than that that are no neighbours are beside each other.
 constexpr double kBeside = 2.6;
+// Of a sheet's own distances, that surfaces are kept apart at least (kernels/surface.cpp).
+constexpr float kFlatSurface = 0.5f;
 // Of the thickness: wider where the list of pairs was good for a few runs only, narrower where it was
 // for many.
 constexpr float kLeastSkin = 0.45f, kMostSkin = 1.4f;
@@ -22,16 +25,10 @@ constexpr int kFewRuns = 3, kManyRuns = 8;
 constexpr int kRunsToEdges = 16;  // until what was not flat is looked at again
 // Of the thickness, relative motion between two runs: of those that touch; of others, which must
 // not come from a thickness apart to the other side.
-constexpr double kMotion = 0.4, kMotionApart = 0.9;
-constexpr double kFall = 0.0034;   // of the thickness, twice the fall from rest between two runs
+constexpr double kMotion = 0.25, kMotionApart = 0.9;
 constexpr int kMostSubsteps = 32;  // between two looks
-constexpr int kMostSubstepsTouching = 12;
-// Of the distance at which they are held: how deep two may be when looked at, or else the next time comes
-// in half as many substeps, but not in fewer than these.
-constexpr double kSunk = 0.04;
-constexpr int kLeastSubstepsSunk = 2;
-constexpr int kMostSubstepsCourse = 4;  // its push acts like a spring, stable up to here
-constexpr std::size_t kFew = 4096;      // particles that one thread does faster
+constexpr int kMostSubstepsTouching = 4;
+constexpr std::size_t kFew = 4096;  // particles that one thread does faster
 
 // Their names are still to be given. Rows are whole groups of lanes.
 std::vector<NamedSheet> named(const std::vector<Sheet>& sheets) {
@@ -52,9 +49,11 @@ std::unique_ptr<SelfContact> SelfContact::make(const Scene& scene,
                                                const std::vector<const LatticeParts*>& cloths,
                                                const KernelTable& kernels) {
   std::vector<Sheet> sheets;
+  bool surfaces = false;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const SelfCollision& self = scene.cloths[c].self_collision;
     if (self.mode == SelfCollisionMode::off) continue;
+    surfaces |= self.mode == SelfCollisionMode::surface;
     const Grid& g = scene.cloths[c].grid;
     double uu = 0, uv = 0, vv = 0;
     for (int k = 0; k < 3; ++k) {
@@ -67,21 +66,22 @@ std::unique_ptr<SelfContact> SelfContact::make(const Scene& scene,
                       float(uv), float(vv), self.response == SelfCollisionResponse::course});
   }
   if (sheets.empty()) return nullptr;
-  return std::unique_ptr<SelfContact>(new SelfContact(scene, std::move(sheets), kernels));
+  return std::unique_ptr<SelfContact>(new SelfContact(scene, std::move(sheets), surfaces, kernels));
 }
 
-SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const KernelTable& kernels)
+SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool surfaces,
+                         const KernelTable& kernels)
     : scene_(scene),
       sheets_(std::move(sheets)),
       kernels_(kernels),
       particles_(count_particles(sheets_)),
-      blocks_(sheets_, kernels),
       named_(named(sheets_)),
       bodies_(give_names(named_)),
-      search_(particles_, named_, kernels) {
+      blocks_(sheets_, surfaces ? kFlatSurface : 0, kernels),
+      search_(surfaces ? 0 : particles_, named_, kernels) {
   for (const Sheet& s : sheets_) {
     thickness_ = std::max(thickness_, s.thickness);
-    course_ |= s.course;
+    course_ |= s.course && !surfaces;
   }
   for (std::size_t n = 0; n < sheets_.size(); ++n) {
     const float range = sheets_[n].thickness * sheets_[n].neighbour();
@@ -89,38 +89,79 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, const Ke
   }
   beside_.resize(blocks_.all().size());
   first_site_.resize(blocks_.all().size());
-  most_touching_ = kMostSubstepsTouching;
-  for (const Sheet& s : sheets_) {
-    load_.emplace_back(s.lattice->rows, s.lattice->stride);
-    ahead_.emplace_back(s.lattice->rows, s.lattice->stride);
-    loaded_.emplace_back(std::size_t(s.lattice->rows) * std::size_t(s.lattice->stride) / 16);
+  place_.resize(bodies_ + kPacket);
+  now_.resize(bodies_ + kPacket);
+  moved_.resize(bodies_ + kPacket);
+  rest_.resize(bodies_);
+  for (std::size_t n = 0; n < sheets_.size(); ++n) {
+    const Sheet& s = sheets_[n];
+    const float u = std::sqrt(s.uu), shear = s.uv / u;
+    const float height = std::sqrt(std::max(0.0f, s.vv - shear * shear));
+    for (int j = 0; j < s.lattice->rows; ++j)
+      for (int i = 0; i < s.lattice->columns; ++i)
+        rest_[body(n, j, i)] = {float(i) * u + float(j) * shear, float(j) * height, float(n),
+                                s.friction};
   }
-  place_.resize(bodies_);
-  motion_.resize(bodies_);
-  sums_.resize(bodies_);
-  moved_.resize(bodies_ / 16 + 2);
-  const auto friction = [](const Sheet& s) { return s.course ? kCourseRule : s.friction; };
-  friction_alike_ = friction(sheets_[0]);
-  if (std::any_of(sheets_.begin(), sheets_.end(),
-                  [&](const Sheet& s) { return friction(s) != friction_alike_; }))
-    for (std::size_t n = 0; n < sheets_.size(); ++n)
-      friction_.resize(n + 1 < sheets_.size() ? body(n + 1, 0, 0) : bodies_, friction(sheets_[n]));
+  if (surfaces) {
+    near_ = std::make_unique<NearSquares>(sheets_, named_, bodies_, kernels);
+    surfaces_ = std::make_unique<ContactSolver<4>>(bodies_, kernels.contacts_of_four);
+    zone_.resize(bodies_);
+    std::iota(zone_.begin(), zone_.end(), 0);
+  } else {
+    spheres_ = std::make_unique<ContactSolver<2>>(bodies_, kernels.contacts_of_two);
+  }
+  begin_.resize(bodies_ + 1);
 }
 
-void SelfContact::forget_loads(const Block& block) {
+std::size_t SelfContact::body(std::size_t sheet, int row, int column) const {
+  return std::size_t(named_[sheet].first) + std::size_t(row) * std::size_t(named_[sheet].stride) +
+         std::size_t(column);
+}
+
+Site SelfContact::site(std::int32_t body) const {
+  std::size_t sheet = named_.size() - 1;
+  while (body < named_[sheet].first) --sheet;
+  const std::int32_t at = body - named_[sheet].first, stride = named_[sheet].stride;
+  return {std::uint16_t(sheet), std::uint16_t(at / stride), std::uint16_t(at % stride)};
+}
+
+BodyBlock SelfContact::bodies_of(const Block& block) {
   const auto sheet = std::size_t(block.sheet);
-  for (Rows* rows : {&load_[sheet], &ahead_[sheet]}) {
-    const Row3 first = first_of(block, *rows);
-    for (float* component : {first.x, first.y, first.z})
-      for (int j = 0; j < block.rows; ++j)
-        std::fill_n(component + std::ptrdiff_t(j) * sheets_[sheet].lattice->stride, block.columns,
-                    0.0f);
-  }
+  Lattice& l = *sheets_[sheet].lattice;
+  BodyBlock b{};
+  b.columns = block.columns;
+  b.rows = block.rows;
+  b.stride = l.stride;
+  b.body_stride = named_[sheet].stride;
+  b.x = first_of(block, l.x);
+  b.w = l.w(block.row) + block.column;
+  b.half_held = 0.5f * held(sheets_[sheet]);
+  const std::size_t first = body(sheet, block.row, block.column);
+  b.before = place_.data() + first;
+  b.now = now_.data() + first;
+  b.moved = moved_.data() + first;
+  return b;
 }
 
-void SelfContact::forget_loads() {
-  for (auto* sheets : {&load_, &ahead_})
-    for (Rows& rows : *sheets) rows.clear();
+// Where all is now, and how far it has moved in the interval.
+void SelfContact::gather(Threads& threads) {
+  threads.share(blocks_.all().size(), particles_ < kFew,
+                [&](std::size_t b) { kernels_.gather_bodies(bodies_of(blocks_.all()[b])); });
+}
+
+void SelfContact::begin(Threads& threads) {
+  gather(threads);
+  std::swap(place_, now_);
+  blocks_.begin(threads);
+  begun_ = true;
+}
+
+void SelfContact::restart() {
+  begun_ = listed_ = squares_listed_ = may_touch_ = false;
+  skin_ = 0;
+  kept_runs_ = 0;
+  if (spheres_) spheres_->forget();
+  if (surfaces_) surfaces_->forget();
 }
 
 // The particles of active blocks, block by block, and where they are.
@@ -134,10 +175,7 @@ void SelfContact::list_sites(Threads& threads) {
   const Row3 to = search_.points();
   threads.share(blocks.size(), count_ < kFew, [&](std::size_t b) {
     const Block& block = blocks[b];
-    if (!block.active) {
-      forget_loads(block);
-      return put_far_away(block);
-    }
+    if (!block.active) return;
     std::size_t at = first_site_[b];
     for (int j = block.row; j < block.row + block.rows; ++j, at += std::size_t(block.columns)) {
       const Row3 row = sheets_[std::size_t(block.sheet)].lattice->x.row(j);
@@ -150,107 +188,122 @@ void SelfContact::list_sites(Threads& threads) {
   });
 }
 
-// Nothing is found to touch bodies that are not kept up to date.
-void SelfContact::put_far_away(const Block& block) {
-  constexpr Place kFar{{1e18f, 1e18f, 1e18f, 0}};  // its square is still finite
-  for (int j = block.row; j < block.row + block.rows; ++j)
-    std::fill_n(place_.data() + body(std::size_t(block.sheet), j, block.column), block.columns,
-                kFar);
-}
-
 void SelfContact::sort(double margin, Threads& threads) {
   list_sites(threads);
   search_.sort(count_, blocks_.box(), thickness_ + float(margin), threads);
 }
 
-std::size_t SelfContact::body(std::size_t sheet, int row, int column) const {
-  const NamedSheet& s = named_[sheet];
-  return std::size_t(s.first + row * s.stride + column);
-}
-
-Site SelfContact::site(std::int32_t body) const {
-  std::size_t sheet = sheets_.size() - 1;
-  while (body < named_[sheet].first) --sheet;
-  const std::int32_t at = body - named_[sheet].first, stride = named_[sheet].stride;
-  return {std::uint16_t(sheet), std::uint16_t(at / stride), std::uint16_t(at % stride)};
-}
-
 void SelfContact::find(double margin, Threads& threads) {
   search_.find(thickness_ + float(margin), threads);
-  found_ = 0;
-  for (std::size_t k = 0; k < search_.chunks(); ++k) found_ += search_.pairs(k).count;
 }
 
 void SelfContact::search(double margin, Threads& threads) {
-  blocks_.measure(threads);
+  blocks_.begin(threads);
   blocks_.choose_all();
   sort(margin, threads);
   find(margin, threads);
   for (std::size_t b = 0; b < beside_.size(); ++b) list_beside(b, thickness_ + float(margin));
-  valid_ = false;
+  listed_ = false;
 }
 
-void SelfContact::restart() {
-  valid_ = false;
-  may_touch_ = false;
-  skin_ = 0;
+// Chooses the blocks that may touch, and lists pairs within `reach` and `skin`, now.
+void SelfContact::list_pairs(float reach, float skin, Threads& threads) {
+  blocks_.choose(reach + skin);
+  ++record_.searches;
   kept_runs_ = 0;
-  most_touching_ = kMostSubstepsTouching;
-  forget_loads();
+  listed_ = true;
+  if (!surfaces()) {
+    sort(reach - thickness_ + skin, threads);
+    find(reach - thickness_ + skin, threads);
+  }
 }
 
-// Substeps until it has to come again, at most: where sheets touch, by gravity's pull on one of two, too.
-double SelfContact::most_substeps(double dt, double swing) const {
+// Lists those within a range whose first is of this block.
+void SelfContact::list_beside(std::size_t block, float range) {
+  const Block& b = blocks_.all()[block];
+  const auto sheet = std::size_t(b.sheet);
+  Lattice& l = *sheets_[sheet].lattice;
+  PairList& found = beside_[block];
+  BesidePairs p{};
+  p.x = l.x.row(0);
+  p.stride = l.stride;
+  p.columns = l.columns;
+  p.rows = l.rows;
+  p.column = b.column;
+  p.block_columns = b.columns;
+  p.step = steps_[sheet].data();
+  p.steps = int(steps_[sheet].size());
+  p.range_squared = range * range;
+  p.first = named_[sheet].first;
+  p.name_stride = named_[sheet].stride;
+  const int most_in_row = b.columns * p.steps;
+  found.count = 0;
+  for (int done = 0; done < b.rows;) {
+    p.row = b.row + done;
+    p.block_rows = b.rows - done;
+    p.pairs = found.room(std::size_t(found.count + most_in_row)).from(found.count);
+    p.most = int(found.owner.size() - kNearPadding) - found.count - most_in_row;
+    const BesideFound some = kernels_.beside_pairs(p);
+    done += some.rows;
+    found.count += some.pairs;
+  }
+  found.pad();
+}
+
+// Substeps until it has to come again, at most.
+double SelfContact::most_substeps(double dt, double longest) const {
   if (!may_touch_) return kMostSubsteps;
-  if (course_) return kMostSubstepsCourse;
-  const double pull = greatest_gravity(scene_);
-  const double fall = std::sqrt(kFall * thickness_ / std::max(pull, 1e-12));
-  return std::min<double>(std::min(fall, swing) / dt, most_touching_);
+  return std::min<double>(longest / dt, kMostSubstepsTouching);
 }
 
-int SelfContact::run(double dt, int since, double swing, Threads& threads) {
-  const float motion = float(kMotionApart) * thickness_;
-  ++runs_;
+int SelfContact::run(double dt, int since, double longest, Threads& threads) {
+  const float reach = thickness_ * kHeld, motion = float(kMotionApart) * thickness_;
+  ++record_.runs;
   ++kept_runs_;
+  gather(threads);
   blocks_.measure(threads);
-  const bool edges = !valid_ || kept_runs_ % kRunsToEdges == 0;
+  const bool edges = !listed_ || kept_runs_ % kRunsToEdges == 0;
   if (edges) blocks_.measure_edges(threads);
   const Blocks::Outlook now =
-      blocks_.look(thickness_, skin_ * thickness_, motion, most_substeps(dt, swing) * dt);
+      blocks_.look(reach, skin_ * thickness_, motion, most_substeps(dt, longest) * dt);
   may_touch_ = now.touching;
-  if (!valid_ || !now.covered) {
+  if (!listed_ || !now.covered) {
     if (kept_runs_ <= kFewRuns) skin_ *= 1.2f;
     if (kept_runs_ > kManyRuns) skin_ *= 0.8f;
     skin_ = std::clamp(skin_, kLeastSkin, kMostSkin);
-    const float skin = skin_ * thickness_;
     if (!edges) blocks_.measure_edges(threads);
-    blocks_.choose(thickness_ + skin);
-    sort(skin, threads);
-    find(skin, threads);
-    ++searches_;
-    kept_runs_ = 0;
-    valid_ = true;
+    list_pairs(reach, skin_ * thickness_, threads);
   }
-  passed_over_ += std::int64_t(particles_ - count_);
+  record_.passed_over += double(particles_ - blocks_.active());
   const Met met = respond(dt, since, threads);
-  const double touching = kMotion * thickness_ / std::max(met.speed, 1e-12);
-  // What is pressed together sinks in for as long as it is left alone.
-  if (met.deepest > kSunk)
-    most_touching_ = std::max(std::min(since, most_touching_) / 2, kLeastSubstepsSunk);
-  else
-    most_touching_ = std::min(most_touching_ + 1, kMostSubstepsTouching);
-  const int most = clamp_to_int(most_substeps(dt, swing), 1, kMostSubsteps);
+  std::swap(place_, now_);
+  begun_ = true;
+  const double touching = kMotion * thickness_ * since * dt / std::max(met.fastest, 1e-12);
+  const int most = clamp_to_int(most_substeps(dt, longest), 1, kMostSubsteps);
   return clamp_to_int(std::min(now.seconds, touching) / dt, 1, most);
-}
-
-double SelfContact::passed_over() const {
-  return runs_ > 0 ? double(passed_over_) / (double(runs_) * double(particles_)) : 0;
 }
 
 SelfContact::Overlaps SelfContact::overlaps() {
   Threads one(1);
-  search(0, one);
   Overlaps found;
+  const auto add = [&](double missing) {
+    if (missing <= 0) return;
+    ++found.pairs;
+    found.deepest = std::max(found.deepest, missing);
+  };
+  if (surfaces()) {
+    begin(one);
+    gather(one);
+    near_->update(true, now_.data(), one);
+    measure_surfaces(near_->within(thickness_, place_.data(), moved_.data(), one),
+                     SurfaceSearch::contacts, 1, one);
+    for (const auto& piece : measured_)
+      for (const SurfaceContact& c : piece.found())
+        add(double(c.held) / kHeld - double(c.distance));
+    restart();
+    return found;
+  }
+  search(0, one);
   for_each_pair([&](const Site& p, const Site& q) {
     const Sheet &sheet = sheets_[p.cloth], &other = sheets_[q.cloth];
     double square = 0;
@@ -259,26 +312,35 @@ SelfContact::Overlaps SelfContact::overlaps() {
           double(sheet.lattice->x.at(i, p.row, p.column)) - other.lattice->x.at(i, q.row, q.column);
       square += d * d;
     }
-    const double depth = 0.5 * (double(sheet.thickness) + other.thickness) - std::sqrt(square);
-    if (depth <= 0) return;
-    ++found.pairs;
-    found.deepest = std::max(found.deepest, depth);
+    add(0.5 * (double(sheet.thickness) + other.thickness) - std::sqrt(square));
   });
   return found;
 }
 
+PairRoom SelfContact::PairList::room(std::size_t pairs) {
+  if (owner.size() < pairs + kNearPadding) {
+    owner.resize(2 * pairs + kNearPadding);
+    neighbour.resize(owner.size());
+  }
+  return {owner.data(), neighbour.data()};
+}
+
+// What kernels may read beyond the last.
+void SelfContact::PairList::pad() {
+  room(std::size_t(count));
+  std::fill_n(owner.begin() + count, kNearPadding, 0);
+  std::fill_n(neighbour.begin() + count, kNearPadding, 0);
+}
+
 std::size_t SelfContact::bytes() const {
-  std::size_t bytes = search_.bytes() + blocks_.bytes();
-  bytes += bodies_ * (sizeof(Place) + sizeof(Motion) + sizeof(AskedSum)) + 4 * friction_.size();
-  bytes += moved_.size();
-  for (const auto* sheets : {&load_, &ahead_})
-    for (const Rows& rows : *sheets) bytes += rows.bytes();
-  for (const auto& loaded : loaded_) bytes += loaded.size();
-  for (const auto* lists : {&close_, &beside_})
+  std::size_t bytes = search_.bytes() + blocks_.bytes() + 4 * (begin_.size() + zone_.size());
+  bytes += bodies_ * (2 * sizeof(Place) + sizeof(Displacement) + sizeof(RestPlace));
+  for (const auto* lists : {&meeting_, &beside_})
     for (const PairList& c : *lists) bytes += 8 * c.owner.capacity();
-  for (const Touching& t : touching_)
-    bytes += 8 * t.pairs.owner.capacity() + sizeof(Asked) * t.asked.capacity();
-  for (const Part& p : parts_) bytes += 4 * p.bodies.capacity();
+  for (const auto& m : measured_) bytes += m.room.capacity() * sizeof(SurfaceContact);
+  if (near_) bytes += near_->bytes();
+  if (spheres_) bytes += spheres_->bytes();
+  if (surfaces_) bytes += surfaces_->bytes();
   return bytes;
 }
 

@@ -1,25 +1,39 @@
-// Self-collision, mode `particles`: no two particles of any cloths nearer than the thickness, except
-// neighbours, those hardly farther than that from each other on the flat sheet.
+// Contact of cloths with themselves and with each other: among particles (mode `particles`, spheres of the
+// thickness) or among surfaces (mode `surface`, vertices against triangles and edges against edges; if
+// one cloth asks for it, it holds for all that take part). Both follow one rule.
+//
+// Every few substeps, with x₀ where all was the last time, u = x - x₀ what it has moved since, and D the
+// seconds in between:
+//
+//   1. Contacts: pairs nearer than h at x₀ or, by u, now. Normals, distances and sides are those at x₀.
+//   2. Impulses on u (contact_solver.h): things approach until they are h apart, no further when nearer,
+//      and what touches does not slide, or slides against friction. Nothing here pushes apart.
+//   3. v += Δu/D, x += Δu: momentum is kept, and energy is lost or kept.
+//   4. What is nearer than h all the same is put apart by a share of what is missing, in positions
+//      alone: pushing apart makes no speed.
+//   5. Surfaces: what could still pass through moves as one (passing.cpp).
+//
+// (Bridson, Fedkiw, Anderson 2002; friction on displacements is static friction: nothing creeps.) Where
+// nothing touches, nothing is changed, not a bit.
 //
 // Sheets are cut into blocks (blocks.h). Those that nothing can touch, themselves included, are left
-// out; the particles of the others are searched for pairs within the range, the thickness and a skin
-// (cell_grid.h). The list stays complete until blocks that may touch have moved by more than the skin
-// against each other (Verlet 1967), and is made anew then. Particles that lie beside each other in a
-// sheet, a little farther than neighbours, would be on it all the time and hardly ever touch: they are
-// left out, and tested row against row each time (kernels/beside_pairs.cpp).
+// out. Pairs are searched for within h and a skin, by a spatial hash (spatial_hash.h); the list stays
+// complete until blocks that may touch have moved by more than the skin against each other (Verlet
+// 1967). Particles that lie beside each other in a sheet, a little farther than neighbours, would be on
+// the list all the time and hardly ever touch: they are left out, and tested row against row each time
+// (kernels/beside_pairs.cpp).
 //
-// Blocks are looked at, and pairs pushed apart, as often as the motion asks for: never more than a share
-// of the thickness in between, and more often where pairs are found pressed into each other. A pair
-// corrects both its ends, all pairs from the same state (Jacobi); what a particle is asked is summed up
-// in the order of the lists, whatever the threads. What contact takes from a particle's velocity time
-// after time it gives in part beforehand, so that layers that lie on each other do not sink in between
-// two times.
+// The response `course` is the course's own rule (course_response.cpp): among particles of such sheets.
 #pragma once
 
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "physics/contact/self/blocks.h"
+#include "physics/contact/self/contact_solver.h"
+#include "physics/contact/self/near_squares.h"
 #include "physics/contact/self/pair_search.h"
 #include "physics/model/lattice/stages.h"
 #include "weft/scene.h"
@@ -39,12 +53,27 @@ class SelfContact {
                                            const KernelTable& kernels);
   ~SelfContact();
 
-  // Pushes apart what is too near at the end of a substep of dt; `since` substeps after the last
-  // time. Returns after how many substeps to come again, where sheets touch before what presses them
-  // swings: `swing` [s].
-  int run(double dt, int since, double swing, Threads& threads);
+  // An interval begins where all is now; nothing has crossed but what is left alone. Not needed after
+  // run(), which ends one interval and begins the next.
+  void begin(Threads& threads);
+  bool begun() const { return begun_; }
+  // Ends an interval of `since` substeps of dt. Returns after how many substeps to come again, at most
+  // `longest` [s] where sheets touch.
+  int run(double dt, int since, double longest, Threads& threads);
 
-  // Pairs nearer than the thickness now, and by how much at most [m].
+  // Positions or velocities are others than run() left.
+  void restart();
+  // Positions alone are what they were before.
+  void go_back() { begun_ = false; }
+
+  bool surfaces() const { return near_ != nullptr; }
+  // Squares that have a marked particle are left alone from the next restart on (untangle.h).
+  void leave_out(const std::vector<std::uint8_t>& marked) { near_->leave_out(marked); }
+  // Whether something may have crossed all the same since last asked: pins that a path has drawn through.
+  bool forced() { return std::exchange(forced_, false); }
+
+  // Pairs nearer than the thickness now, and by how much at most [m]: of particles, or of vertices and
+  // triangles and of edges.
   struct Overlaps {
     std::int64_t pairs = 0;
     double deepest = 0;
@@ -53,7 +82,7 @@ class SelfContact {
 
   // Searches now for all pairs nearer than the greatest thickness and `margin` [m].
   void search(double margin, Threads& threads);
-  // Calls visit(site, other site) for each pair that was found, once.
+  // Calls visit(site, other site) for each pair of particles that was found, once.
   template <class Visit>
   void for_each_pair(Visit&& visit) const {
     for (std::size_t k = 0; k < search_.chunks(); ++k) {
@@ -65,105 +94,126 @@ class SelfContact {
       for (std::size_t i = 0; i < std::size_t(pairs.count); ++i)
         visit(site(pairs.owner[i]), site(pairs.neighbour[i]));
   }
-
   // One part of a run by itself, for measuring: the sort of what was searched last; its pairs within the
-  // thickness and a margin, but for those beside each other; and finding these and pushing all apart.
+  // thickness and a margin, but for those beside each other.
   void sort(double margin, Threads& threads);
   void find(double margin, Threads& threads);
-  struct Met {
-    double speed = 0;    // greatest relative one of two that touched [m/s]
-    double deepest = 0;  // of the distance at which they are held, before they were pushed apart
-  };
-  Met respond(double dt, int since, Threads& threads);
 
   const std::vector<Sheet>& sheets() const { return sheets_; }
-  void restart();
-  // Share of the times so far that the list of pairs was still complete.
-  double kept() const { return runs_ > 0 ? 1 - double(searches_) / double(runs_) : 0; }
-  // Share of the particles so far that were in blocks that nothing could touch.
-  double passed_over() const;
   std::int64_t particles() const { return std::int64_t(particles_); }
+
+  // So far.
+  struct Record {
+    std::int64_t runs = 0, searches = 0;  // times that contact ran, and lists were made anew
+    double passed_over = 0;  // particles in blocks that nothing could touch, of all runs
+    std::int64_t contacts = 0, sweeps = 0;
+    double energy_taken = 0;    // J, of motion, by impulses
+    std::int64_t held = 0;      // particles whose motion was cut so that nothing passes,
+    double greatest_held = 0;   // by how much at most [m]
+    double least_distance = 1;  // of two that touched, of the distance held
+  };
+  const Record& record() const { return record_; }
+  // Whether contact changed anything the last time.
+  bool touched() const { return touched_; }
+  // Squares whose pairs were listed so far, in times all of them.
+  double listed() const { return near_ ? near_->listed() : 0; }
   std::size_t bytes() const;
 
  private:
-  SelfContact(const Scene& scene, std::vector<Sheet> sheets, const KernelTable& kernels);
+  SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool surfaces,
+              const KernelTable& kernels);
   struct PairList {
     std::vector<std::int32_t> owner, neighbour;
     int count = 0;
     // For so many, and what kernels may write beyond them.
     PairRoom room(std::size_t pairs);
+    void pad();
   };
-  struct Touching {
-    PairList pairs;
-    std::vector<Asked> asked;
+
+  // Contacts of surfaces, in a room that is used again.
+  struct Measured {
+    std::vector<SurfaceContact> room;
+    std::size_t count = 0;
+    std::span<const SurfaceContact> found() const { return {room.data(), count}; }
   };
-  // Of what nothing may touch.
-  void forget_loads(const Block& block);
-  void forget_loads();
-  void list_sites(Threads& threads);
-  void put_far_away(const Block& block);
-  bool few() const { return found_ + 4 * count_ < 8192; }  // one thread pushes them apart faster
+
   std::size_t body(std::size_t sheet, int row, int column) const;
   Site site(std::int32_t body) const;
-  double most_substeps(double dt, double swing) const;
-  BodyBlock bodies_of(const Block& block, double since);
-  // A part of the bodies, and those of it that are asked to move.
-  struct Part {
-    std::vector<std::int32_t> bodies;
-    int count = 0;
-  };
-  // How they are pushed.
-  struct Push {
-    BodyFriction friction;
-    float course_share, inverse_dt;  // MoveBodies
-  };
-  void gather(double since, bool alone, Threads& threads);
-  void push_apart(bool first, const Push& push, bool alone, Threads& threads);
+  BodyBlock bodies_of(const Block& block);
+  void gather(Threads& threads);
+
+  // self_contact.cpp: when, and the lists of pairs.
+  void list_sites(Threads& threads);
+  void list_pairs(float reach, float skin, Threads& threads);
   void list_beside(std::size_t block, float range);
-  void list_touching(const PairSearch::Pairs& all, bool anew, PairList& close, Touching& touching);
-  AskFound ask(const BodyFriction& friction, Touching& touching);
-  void sum_up(std::size_t part, const Touching& touching);
-  // Whole groups of 16 bodies, so that no two parts share one.
-  std::int32_t first_of_part(std::size_t part) const {
-    return part < parts_.size() ? std::int32_t(bodies_ * part / parts_.size() / 16 * 16)
-                                : std::int32_t(bodies_);
-  }
+  double most_substeps(double dt, double longest) const;
+
+  // contact_response.cpp
+  struct Met {
+    double fastest = 0;  // m, relative displacement of two that touch
+    double deepest = 0;  // of the distance at which they are held, that is missing in the end
+  };
+  Met respond(double dt, int since, Threads& threads);
+  void find_among_particles(Threads& threads);
+  void find_among_surfaces(Threads& threads);
+  void measure_surfaces(const SquarePairs& pairs, SurfaceSearch search, float reach,
+                        Threads& threads);
+  template <int N>
+  void sort_contacts(std::vector<Contact<N>>& contacts, std::size_t keys);
+  template <int N>
+  Met solve(ContactSolver<N>& solver, double seconds, Threads& threads);
+  template <int N>
+  void scatter(ContactSolver<N>& solver, double seconds);
+  float friction_of(std::int32_t a, std::int32_t b) const;
+
+  // passing.cpp
+  void hold_together(Threads& threads);
+  std::int32_t zone_of(std::int32_t body);
+  bool join_zones(std::vector<std::int32_t>& members);
+  void move_zones(const std::vector<std::int32_t>& members);
+
+  // course_response.cpp
+  bool by_course(std::int32_t a, std::int32_t b) const;
+  void push_by_course(double dt, int steps);
 
   const Scene& scene_;
   std::vector<Sheet> sheets_;
   const KernelTable& kernels_;
   const std::size_t particles_;
-  Blocks blocks_;
   std::vector<NamedSheet> named_;  // names are the numbers of bodies
   const std::size_t bodies_;
+  Blocks blocks_;
   std::vector<std::vector<SheetStep>> steps_;  // of every sheet, to those beside each other
   PairSearch search_;                          // among the particles of active blocks
+  std::unique_ptr<NearSquares> near_;          // null among particles
   std::vector<std::size_t> first_site_;        // of every block
-  std::size_t found_ = 0;                      // pairs
   std::size_t count_ = 0;                      // particles of active blocks
-  std::vector<Place> place_;                   // those of active blocks are up to date in a run
-  std::vector<Motion> motion_;                 // likewise
-  std::vector<float> friction_;  // of every body, or kCourseRule; empty where all are alike
-  float friction_alike_ = 0;
-  std::vector<Rows> load_, ahead_;                 // of every sheet: BodyBlock
-  std::vector<std::vector<std::uint8_t>> loaded_;  // likewise
-  std::vector<std::uint8_t> moved_;                // likewise, of all bodies
-  std::vector<AskedSum> sums_;                     // of every body; nothing between two rounds
-  // The pairs that may touch in this run: of every chunk of the search, and of every block those beside
-  // each other.
-  std::vector<PairList> close_, beside_;
-  std::vector<std::size_t> lists_;     // of these, chunks first, those still looked at
-  std::vector<Touching> touching_;     // of each of lists_, or of all in turn
-  std::vector<AskFound> found_asked_;  // of every chunk and block
-  std::vector<Part> parts_;            // as many as threads
-  float thickness_ = 0;                // greatest of the sheets [m]
-  bool course_ = false;                // whether any sheet has the course's rule
-  bool valid_ = false;
+  std::vector<RestPlace> rest_;                // of every body
+  // Of every body, and of 16 that stand for none: at the interval's start, now, and in between.
+  std::vector<Place> place_, now_;
+  std::vector<Displacement> moved_;
+  std::vector<PairList> meeting_, beside_;  // of chunks of the search, of blocks
+  std::vector<Measured> measured_;          // of pieces of the list of squares
+  const SquarePairs* pairs_ = nullptr;      // as measured
+  std::vector<std::int32_t> begin_;         // of every key's contacts, to sort them
+  std::unique_ptr<ContactSolver<2>> spheres_;
+  std::unique_ptr<ContactSolver<4>> surfaces_;
+  std::vector<Contact<2>> unsorted_spheres_;
+  std::vector<Contact<4>> unsorted_surfaces_;
+  std::vector<Displacement> asked_;  // of every body, by the course's rule: a sum, and of how many
+  std::vector<std::int32_t> zone_;   // of every body, its own number outside of any (passing.cpp)
+
+  float thickness_ = 0;  // greatest of the sheets [m]
+  bool course_ = false;  // whether any sheet has the course's rule
+  bool begun_ = false;
+  bool listed_ = false;  // whether lists of pairs are there
+  bool squares_listed_ = false;
   bool may_touch_ = false;  // whether any sheets do, as seen the last time
-  float skin_ = 0;          // of the thickness
-  int kept_runs_ = 0;       // since the list of pairs was made
-  int most_touching_ = 0;   // substeps between two looks, where sheets touch
-  std::int64_t runs_ = 0, searches_ = 0, passed_over_ = 0;
+  bool forced_ = false;
+  bool touched_ = false;
+  float skin_ = 0;     // of the thickness
+  int kept_runs_ = 0;  // since the list of pairs was made
+  Record record_;
 };
 
 }  // namespace weft::physics

@@ -19,11 +19,11 @@
 
 namespace weft::physics {
 
-class CellGrid {
+class SpatialHash {
  public:
   static constexpr std::size_t kPadding = 16;
 
-  explicit CellGrid(const KernelTable& kernels) : kernels_(kernels) {}
+  explicit SpatialHash(const KernelTable& kernels) : kernels_(kernels) {}
   // Makes room for this many particles.
   void reserve(std::size_t particles);
   // Sorts particles, which have any names, into cells of `size` [m]; all lie in the box. (Positions of

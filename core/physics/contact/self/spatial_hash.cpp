@@ -1,5 +1,5 @@
-// The grid of cells (cell_grid.h).
-#include "physics/contact/self/cell_grid.h"
+// The grid of cells (spatial_hash.h).
+#include "physics/contact/self/spatial_hash.h"
 
 #include <algorithm>
 #include <bit>
@@ -31,7 +31,7 @@ std::int64_t largest_table(std::size_t particles) {
 
 }  // namespace
 
-void CellGrid::reserve(std::size_t particles) {
+void SpatialHash::reserve(std::size_t particles) {
   key_.resize(particles + kPadding);
   dealt_.resize(particles);
   bucket_.resize(particles);
@@ -42,7 +42,7 @@ void CellGrid::reserve(std::size_t particles) {
 
 // The whole box when it fits the table; else strides for which the nine runs of the 27 cells stay
 // apart modulo the table.
-void CellGrid::choose_strides(const int cells[3]) {
+void SpatialHash::choose_strides(const int cells[3]) {
   const std::int64_t most = largest_table(count_);
   stride_y_ = cells[0] + 2;
   const std::int64_t rows = cells[1] + 2;
@@ -65,8 +65,8 @@ void CellGrid::choose_strides(const int cells[3]) {
   }
 }
 
-void CellGrid::build(ConstRow3 x, const std::int32_t* names, std::size_t particles,
-                     const Spread& box, float size, Threads& threads) {
+void SpatialHash::build(ConstRow3 x, const std::int32_t* names, std::size_t particles,
+                        const Spread& box, float size, Threads& threads) {
   count_ = particles;
   inverse_ = 1 / size;
   int cells[3];
@@ -94,12 +94,12 @@ void CellGrid::build(ConstRow3 x, const std::int32_t* names, std::size_t particl
 }
 
 // Whole groups of lanes, so that no two shares write to the same.
-std::size_t CellGrid::share_begin(std::size_t share) const {
+std::size_t SpatialHash::share_begin(std::size_t share) const {
   return share == kShares ? count_ : share * count_ / kShares / kPadding * kPadding;
 }
 
 // The buckets of a share of the particles, and how many of them are in each part of the table.
-void CellGrid::count(ConstRow3 x, int share) {
+void SpatialHash::count(ConstRow3 x, int share) {
   const std::size_t begin = share_begin(std::size_t(share)),
                     end = share_begin(std::size_t(share) + 1);
   kernels_.cell_keys({x,
@@ -127,7 +127,7 @@ void CellGrid::count(ConstRow3 x, int share) {
 
 // The particles of a share to their parts. Those beside each other are often in the same: where its next
 // goes is kept at hand, since what was just written is slow to read.
-void CellGrid::deal(int share) {
+void SpatialHash::deal(int share) {
   const std::size_t end = share_begin(std::size_t(share) + 1);
   std::int32_t at[kParts], part = 0;
   for (int p = 0; p < kParts; ++p) at[p] = dealt_to_[p][share];
@@ -142,7 +142,7 @@ void CellGrid::deal(int share) {
   }
 }
 
-void CellGrid::sort_part(ConstRow3 x, const std::int32_t* names, int part) {
+void SpatialHash::sort_part(ConstRow3 x, const std::int32_t* names, int part) {
   const std::int64_t first = std::min(std::int64_t(part) << shift_, table_);
   const std::int64_t last = std::min(std::int64_t(part + 1) << shift_, table_);
   const std::int32_t begin = dealt_to_[part][0], end = dealt_to_[part + 1][0];
@@ -165,7 +165,7 @@ void CellGrid::sort_part(ConstRow3 x, const std::int32_t* names, int part) {
   if (first < last) start[first] = begin;
 }
 
-std::size_t CellGrid::bytes() const {
+std::size_t SpatialHash::bytes() const {
   return (3 * key_.size() + start_.capacity() + 4 * x_.size()) * 4;
 }
 

@@ -1,0 +1,187 @@
+// Self-contact (self_contact.h): the contacts of an interval, and what comes of them.
+#include <algorithm>
+#include <cmath>
+
+#include "physics/contact/self/held.h"
+#include "physics/contact/self/self_contact.h"
+
+namespace weft::physics {
+namespace {
+
+// Of the distance held: pairs that end the interval nearer than that, unhindered, may touch once others
+// push them, and so are contacts.
+constexpr float kReach = 1.03f;
+constexpr std::size_t kAtOnce = 256;  // pairs of squares that are measured in one go
+constexpr std::size_t kFewLists = 8;  // that one thread does faster
+
+}  // namespace
+
+float SelfContact::friction_of(std::int32_t a, std::int32_t b) const {
+  return 0.5f * (rest_[std::size_t(a)].friction + rest_[std::size_t(b)].friction);
+}
+
+// By their keys' upper halves, of which there are `keys`, then by all of them.
+template <int N>
+void SelfContact::sort_contacts(std::vector<Contact<N>>& contacts, std::size_t keys) {
+  auto& to = [&]() -> auto& {
+    if constexpr (N == 2)
+      return unsorted_spheres_;
+    else
+      return unsorted_surfaces_;
+  }
+  ();
+  std::fill(begin_.begin(), begin_.begin() + std::ptrdiff_t(keys) + 1, 0);
+  for (const Contact<N>& c : contacts) ++begin_[std::size_t(c.key >> 32) + 1];
+  for (std::size_t n = 1; n <= keys; ++n) begin_[n] += begin_[n - 1];
+  to.resize(contacts.size());
+  for (const Contact<N>& c : contacts) to[std::size_t(begin_[std::size_t(c.key >> 32)]++)] = c;
+  for (std::size_t i = 0; i < to.size();) {
+    std::size_t end = i + 1;
+    while (end < to.size() && to[end].key >> 32 == to[i].key >> 32) ++end;
+    std::sort(to.begin() + std::ptrdiff_t(i), to.begin() + std::ptrdiff_t(end),
+              [](const Contact<N>& a, const Contact<N>& b) { return a.key < b.key; });
+    i = end;
+  }
+  std::swap(contacts, to);
+}
+
+// Pairs of the list that touch in the interval, and of those beside each other.
+void SelfContact::find_among_particles(Threads& threads) {
+  const std::size_t chunks = search_.chunks(), blocks = blocks_.all().size();
+  if (meeting_.size() < chunks + blocks) meeting_.resize(chunks + blocks);
+  const auto meet = [&](const PairSearch::Pairs& pairs, PairList& meeting) {
+    meeting.count = 0;
+    if (pairs.count == 0) return;
+    meeting.count =
+        kernels_.meeting_pairs({place_.data(), moved_.data(), int(pairs.count), pairs.owner,
+                                pairs.neighbour, kReach, meeting.room(pairs.count)});
+  };
+  threads.share(chunks + blocks, chunks + blocks < kFewLists, [&](std::size_t k) {
+    if (k < chunks) return meet(search_.pairs(k), meeting_[k]);
+    const std::size_t b = k - chunks;
+    meeting_[k].count = 0;
+    if (!blocks_.all()[b].active) return;
+    // They end the interval as near, or begin it.
+    list_beside(b, kReach * held(sheets_[std::size_t(blocks_.all()[b].sheet)]));
+    const PairList& beside = beside_[b];
+    meet({beside.owner.data(), beside.neighbour.data(), std::size_t(beside.count)}, meeting_[k]);
+  });
+  std::vector<Contact<2>>& contacts = spheres_->contacts();
+  for (std::size_t k = 0; k < chunks + blocks; ++k)
+    for (std::size_t i = 0; i < std::size_t(meeting_[k].count); ++i) {
+      const auto [a, b] = std::minmax(meeting_[k].owner[i], meeting_[k].neighbour[i]);
+      if (course_ && by_course(a, b)) continue;
+      Contact<2> c{};
+      c.key = std::uint64_t(a) << 32 | std::uint64_t(b);
+      c.body = {a, b};
+      c.friction = friction_of(a, b);
+      contacts.push_back(c);
+    }
+  sort_contacts(contacts, bodies_);
+}
+
+// Of all pairs, piece by piece.
+void SelfContact::measure_surfaces(const SquarePairs& pairs, SurfaceSearch search, float reach,
+                                   Threads& threads) {
+  pairs_ = &pairs;
+  const std::size_t pieces = (pairs.count + kAtOnce - 1) / kAtOnce;
+  if (measured_.size() < pieces) measured_.resize(pieces);
+  for (std::size_t k = pieces; k < measured_.size(); ++k) measured_[k].count = 0;
+  threads.share(pieces, pieces < kFewLists, [&](std::size_t k) {
+    const std::size_t first = k * kAtOnce, count = std::min(pairs.count - first, kAtOnce);
+    Measured& found = measured_[k];
+    if (found.room.size() < count * kKindsOfPair) found.room.resize(count * kKindsOfPair);
+    found.count = std::size_t(kernels_.surface_pairs(
+        {place_.data(), moved_.data(), rest_.data(), near_->squares().data(), int(count),
+         pairs.owner.data() + first, pairs.neighbour.data() + first, search, reach, kLeastApart,
+         found.room.data()}));
+  });
+}
+
+void SelfContact::find_among_surfaces(Threads& threads) {
+  near_->update(!squares_listed_, now_.data(), threads);
+  squares_listed_ = true;
+  measure_surfaces(
+      near_->within(kReach * kHeld * thickness_, place_.data(), moved_.data(), threads),
+      SurfaceSearch::contacts, kReach, threads);
+  std::vector<Contact<4>>& contacts = surfaces_->contacts();
+  for (std::size_t k = 0; k < measured_.size(); ++k)
+    for (const SurfaceContact& found : measured_[k].found()) {
+      const std::size_t pair = k * kAtOnce + std::size_t(found.pair);
+      Contact<4> c;
+      c.key = std::uint64_t(pairs_->owner[pair]) << 34 |
+              std::uint64_t(pairs_->neighbour[pair]) << 4 | std::uint64_t(found.kind);
+      std::copy_n(found.body, 4, c.body.begin());
+      std::copy_n(found.share, 4, c.share.begin());
+      std::copy_n(found.normal, 3, c.normal.begin());
+      c.distance = found.distance;
+      c.held = found.held;
+      c.friction = found.friction;
+      contacts.push_back(c);
+    }
+  std::sort(contacts.begin(), contacts.end(),
+            [](const Contact<4>& a, const Contact<4>& b) { return a.key < b.key; });
+}
+
+// Velocities change with displacements; positions also by what is put apart.
+template <int N>
+void SelfContact::scatter(ContactSolver<N>& solver, double seconds) {
+  const float inverse = float(1 / seconds);
+  touched_ = !solver.touched().empty();
+  double taken = 0;
+  for (const std::int32_t n : solver.touched()) {
+    const Displacement &change = solver.change(n), &lift = solver.lift(n);
+    const float w = change.u[3];
+    if (!(w > 0)) continue;
+    const Site s = site(n);
+    Lattice& l = *sheets_[s.cloth].lattice;
+    double before = 0, after = 0;
+    for (int k = 0; k < 3; ++k) {
+      float& x = l.x.at(k, s.row, s.column);
+      float& v = l.v.at(k, s.row, s.column);
+      before += double(v) * v;
+      v += change.u[k] * inverse;
+      after += double(v) * v;
+      x += change.u[k] + lift.u[k];
+      now_[std::size_t(n)].x[k] = x;
+    }
+    taken += (before - after) / (2 * double(w));
+  }
+  record_.energy_taken += taken;
+}
+
+template <int N>
+auto SelfContact::solve(ContactSolver<N>& solver, double seconds, Threads& threads) -> Met {
+  record_.contacts += std::int64_t(solver.contacts().size());
+  const std::int64_t swept = solver.sweeps();
+  const auto solved = solver.solve(place_.data(), moved_.data(), seconds, threads);
+  record_.sweeps += solver.sweeps() - swept;
+  return {solved.fastest, solved.deepest};
+}
+
+auto SelfContact::respond(double dt, int since, Threads& threads) -> Met {
+  const double seconds = since * dt;
+  Met met;
+  touched_ = false;
+  if (blocks_.active() == 0) {
+    squares_listed_ = false;
+    return met;
+  }
+  if (surfaces()) {
+    find_among_surfaces(threads);
+    met = solve(*surfaces_, seconds, threads);
+    hold_together(threads);
+    scatter(*surfaces_, seconds);
+    surfaces_->clear();
+  } else {
+    find_among_particles(threads);
+    met = solve(*spheres_, seconds, threads);
+    scatter(*spheres_, seconds);
+    spheres_->clear();
+    if (course_) push_by_course(dt, since);
+  }
+  record_.least_distance = std::min(record_.least_distance, 1 - met.deepest);
+  return met;
+}
+
+}  // namespace weft::physics
