@@ -294,6 +294,7 @@ struct ContactKernels {
   float (*separate)(const ContactPackets<N>&);  // returns the greatest depth [of the distance held]
 };
 struct SquaresWithin;
+struct SquaresApart;
 struct SurfacePairs;  // kernels/surface.h
 // Constraints of one stencil in one row: number a joins near + a and far + a. What is longer ends.
 struct TearRow {
@@ -354,6 +355,7 @@ struct KernelTable {
   void (*gather_bodies)(const BodyBlock&);
   int (*meeting_pairs)(const MeetingPairs&);    // returns how many
   int (*squares_within)(const SquaresWithin&);  // returns how many are
+  int (*squares_not_apart)(const SquaresApart&);
   int (*surface_pairs)(const SurfacePairs&);    // returns how many contacts there are
   ContactKernels<2> contacts_of_two;
   ContactKernels<4> contacts_of_four;

@@ -151,6 +151,7 @@ physics::BesideFound beside_pairs(const physics::BesidePairs&);
 void gather_bodies(const physics::BodyBlock&);
 int meeting_pairs(const physics::MeetingPairs&);
 int squares_within(const physics::SquaresWithin&);
+int squares_not_apart(const physics::SquaresApart&);
 int surface_pairs(const physics::SurfacePairs&);
 extern const physics::ContactKernels<2> kContactsOfTwo;
 extern const physics::ContactKernels<4> kContactsOfFour;

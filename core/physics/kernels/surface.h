@@ -35,6 +35,18 @@ struct SquaresWithin {
   std::int32_t *within_owner, *within_neighbour;
 };
 
+// Pairs of squares, and where those of them go that no plane along one of the two keeps more than a range
+// apart all through an interval: the others come nowhere nearer.
+struct SquaresApart {
+  const Place* place;
+  const Displacement* moved;
+  const Square* squares;
+  int pairs;
+  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
+  float range;                            // m
+  std::int32_t *near_owner, *near_neighbour;  // out, and 16 lanes of padding; may be the same as above
+};
+
 // A vertex and a triangle, or two edges, of a pair of squares: bodies and their shares, positive where
 // the normal points to; how far apart they are at the start of the interval, and held [m].
 struct SurfaceContact {

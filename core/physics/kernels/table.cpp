@@ -43,6 +43,7 @@ const physics::KernelTable& table() {
       .gather_bodies = gather_bodies,
       .meeting_pairs = meeting_pairs,
       .squares_within = squares_within,
+      .squares_not_apart = squares_not_apart,
       .surface_pairs = surface_pairs,
       .contacts_of_two = kContactsOfTwo,
       .contacts_of_four = kContactsOfFour,

@@ -20,26 +20,20 @@ float SelfContact::friction_of(std::int32_t a, std::int32_t b) const {
   return 0.5f * (rest_[std::size_t(a)].friction + rest_[std::size_t(b)].friction);
 }
 
-// By their keys' upper halves, of which there are `keys`, then by all of them.
-template <int N>
-void SelfContact::sort_contacts(std::vector<Contact<N>>& contacts, std::size_t keys) {
-  auto& to = [&]() -> auto& {
-    if constexpr (N == 2)
-      return unsorted_spheres_;
-    else
-      return unsorted_surfaces_;
-  }
-  ();
-  std::fill(begin_.begin(), begin_.begin() + std::ptrdiff_t(keys) + 1, 0);
-  for (const Contact<N>& c : contacts) ++begin_[std::size_t(c.key >> 32) + 1];
-  for (std::size_t n = 1; n <= keys; ++n) begin_[n] += begin_[n - 1];
+// By their keys' upper halves, numbers of bodies, then by all of them.
+void SelfContact::sort_spheres() {
+  std::vector<Contact<2>>& contacts = spheres_->contacts();
+  std::vector<Contact<2>>& to = unsorted_spheres_;
+  std::fill(begin_.begin(), begin_.end(), 0);
+  for (const Contact<2>& c : contacts) ++begin_[std::size_t(c.key >> 32) + 1];
+  for (std::size_t n = 1; n < begin_.size(); ++n) begin_[n] += begin_[n - 1];
   to.resize(contacts.size());
-  for (const Contact<N>& c : contacts) to[std::size_t(begin_[std::size_t(c.key >> 32)]++)] = c;
+  for (const Contact<2>& c : contacts) to[std::size_t(begin_[std::size_t(c.key >> 32)]++)] = c;
   for (std::size_t i = 0; i < to.size();) {
     std::size_t end = i + 1;
     while (end < to.size() && to[end].key >> 32 == to[i].key >> 32) ++end;
     std::sort(to.begin() + std::ptrdiff_t(i), to.begin() + std::ptrdiff_t(end),
-              [](const Contact<N>& a, const Contact<N>& b) { return a.key < b.key; });
+              [](const Contact<2>& a, const Contact<2>& b) { return a.key < b.key; });
     i = end;
   }
   std::swap(contacts, to);
@@ -77,7 +71,7 @@ void SelfContact::find_among_particles(Threads& threads) {
       c.friction = friction_of(a, b);
       contacts.push_back(c);
     }
-  sort_contacts(contacts, bodies_);
+  sort_spheres();
 }
 
 // Of all pairs, piece by piece.
@@ -95,6 +89,10 @@ void SelfContact::measure_surfaces(const SquarePairs& pairs, SurfaceSearch searc
         {place_.data(), moved_.data(), rest_.data(), near_->squares().data(), int(count),
          pairs.owner.data() + first, pairs.neighbour.data() + first, search, reach, kLeastApart,
          found.room.data()}));
+    std::sort(found.room.begin(), found.room.begin() + std::ptrdiff_t(found.count),
+              [](const SurfaceContact& a, const SurfaceContact& b) {
+                return a.pair != b.pair ? a.pair < b.pair : a.kind < b.kind;
+              });
   });
 }
 
@@ -119,8 +117,12 @@ void SelfContact::find_among_surfaces(Threads& threads) {
       c.friction = found.friction;
       contacts.push_back(c);
     }
-  std::sort(contacts.begin(), contacts.end(),
-            [](const Contact<4>& a, const Contact<4>& b) { return a.key < b.key; });
+  // Those of squares that share a corner come first; each part is in order.
+  const auto less = [](const Contact<4>& a, const Contact<4>& b) { return a.key < b.key; };
+  const auto part = std::is_sorted_until(contacts.begin(), contacts.end(), less);
+  unsorted_surfaces_.resize(contacts.size());
+  std::merge(contacts.begin(), part, part, contacts.end(), unsorted_surfaces_.begin(), less);
+  std::swap(contacts, unsorted_surfaces_);
 }
 
 // Velocities change with displacements; positions also by what is put apart.

@@ -364,8 +364,8 @@ void NearSquares::list_beside(std::size_t sheet, int row, SquarePairs& found) {
   }
 }
 
-const SquarePairs& NearSquares::within(float range, const Place* place, const Displacement* moved,
-                                       Threads& threads) {
+// The box about every square in an interval, and how it lies at its start.
+void NearSquares::bound(const Place* place, const Displacement* moved, Threads& threads) {
   const auto widen_by = [&](std::int32_t corner, SquareBox& box, bool first) {
     for (int k = 0; k < 3; ++k) {
       const float from = place[corner].x[k], to = from + moved[corner].u[k];
@@ -373,7 +373,6 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
       box.high[k] = std::max(first ? from : box.high[k], std::max(from, to));
     }
   };
-  std::size_t piece = 0;
   for (std::size_t s = 0; s < sheets_.size(); ++s)
     threads.share(std::size_t(sheets_[s].lattice->rows), all_squares_ < kFewParticles,
                   [&](std::size_t j) {
@@ -385,10 +384,29 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
                       measure_lie(s, n, place);
                     }
                   });
+}
+
+// The pairs of pieces, piece after piece.
+void NearSquares::join_found(std::size_t pieces, SquarePairs& to) {
+  to.count = 0;
+  for (std::size_t k = 0; k < pieces; ++k) {
+    const SquarePairs& found = found_[k];
+    to.reserve(to.count + found.count);
+    std::copy_n(found.owner.data(), found.count, to.owner.data() + to.count);
+    std::copy_n(found.neighbour.data(), found.count, to.neighbour.data() + to.count);
+    to.count += found.count;
+  }
+  to.pad();
+}
+
+const SquarePairs& NearSquares::within(float range, const Place* place, const Displacement* moved,
+                                       Threads& threads) {
+  bound(place, moved, threads);
   const std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
   std::size_t rows = 0;
   for (const Sheet& s : sheets_) rows += std::size_t(s.lattice->rows);
   if (found_.size() < pieces + rows) found_.resize(pieces + rows);
+  std::size_t piece = 0;
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     const auto of_sheet = std::size_t(sheets_[s].lattice->rows);
     threads.share(of_sheet, all_squares_ < kFewParticles,
@@ -399,20 +417,31 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
     const std::size_t first = k * kAtOnce, count = std::min(listed_.count - first, kAtOnce);
     SquarePairs& found = found_[rows + k];
     found.reserve(count);
-    found.count = std::size_t(kernels_.squares_within(
-        {boxes_.data(), int(count), listed_.owner.data() + first, listed_.neighbour.data() + first,
-         range, found.owner.data(), found.neighbour.data()}));
+    std::int32_t *const owner = found.owner.data(), *const neighbour = found.neighbour.data();
+    const int near = kernels_.squares_within({boxes_.data(), int(count), listed_.owner.data() + first,
+                                              listed_.neighbour.data() + first, range, owner,
+                                              neighbour});
+    found.count = std::size_t(kernels_.squares_not_apart(
+        {place, moved, squares_.data(), near, owner, neighbour, range, owner, neighbour}));
   });
-  within_.count = 0;
-  for (std::size_t k = 0; k < pieces + rows; ++k) {
-    within_.reserve(within_.count + found_[k].count);
-    std::copy_n(found_[k].owner.data(), found_[k].count, within_.owner.data() + within_.count);
-    std::copy_n(found_[k].neighbour.data(), found_[k].count,
-                within_.neighbour.data() + within_.count);
-    within_.count += found_[k].count;
-  }
-  within_.pad();
+  join_found(pieces + rows, within_);
   return within_;
+}
+
+const SquarePairs& NearSquares::still_within(float range, const Place* place,
+                                             const Displacement* moved, Threads& threads) {
+  const std::size_t pieces = (within_.count + kAtOnce - 1) / kAtOnce;
+  if (found_.size() < pieces) found_.resize(pieces);
+  threads.share(pieces, pieces < 8, [&](std::size_t k) {
+    const std::size_t first = k * kAtOnce, count = std::min(within_.count - first, kAtOnce);
+    SquarePairs& found = found_[k];
+    found.reserve(count);
+    found.count = std::size_t(kernels_.squares_not_apart(
+        {place, moved, squares_.data(), int(count), within_.owner.data() + first,
+         within_.neighbour.data() + first, range, found.owner.data(), found.neighbour.data()}));
+  });
+  join_found(pieces, still_);
+  return still_;
 }
 
 double NearSquares::listed() const {
@@ -423,7 +452,7 @@ std::size_t NearSquares::bytes() const {
   std::size_t bytes = search_.bytes();
   bytes += squares_.size() * (sizeof(Square) + sizeof(Origin) + sizeof(SquareBox) + 3);
   bytes += all_squares_ * (sizeof(LeftOut) + 8) + 4 * begin_.size();
-  bytes += listed_.bytes() + within_.bytes();
+  bytes += listed_.bytes() + within_.bytes() + still_.bytes();
   for (const SquarePairs& p : found_) bytes += p.bytes();
   return bytes;
 }

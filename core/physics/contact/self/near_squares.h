@@ -55,6 +55,10 @@ class NearSquares {
   // that share a corner what does not lie flat.
   const SquarePairs& within(float range, const Place* place, const Displacement* moved,
                             Threads& threads);
+  // Of those found last what comes within a shorter range in the same interval, when nothing moves
+  // otherwise by more than half of the difference.
+  const SquarePairs& still_within(float range, const Place* place, const Displacement* moved,
+                                  Threads& threads);
 
   // Squares whose pairs were listed so far, in times all of them.
   double listed() const;
@@ -81,6 +85,8 @@ class NearSquares {
   bool beside(std::int32_t p, std::int32_t q) const;
   void measure_lie(std::size_t sheet, std::size_t n, const Place* place);
   bool lie_alike(std::size_t p, std::size_t q) const;
+  void bound(const Place* place, const Displacement* moved, Threads& threads);
+  void join_found(std::size_t pieces, SquarePairs& to);
   void list_beside(std::size_t sheet, int row, SquarePairs& found);
   template <class Visit>
   void for_each_square(const Visit& visit) const;
@@ -118,7 +124,7 @@ class NearSquares {
   std::vector<std::uint8_t> passing_;  // vertices of squares that are left out
   std::vector<std::int32_t>
       joined_;  // squares that were torn at the last update and are whole at this
-  SquarePairs listed_, within_;
+  SquarePairs listed_, within_, still_;
   std::vector<std::int32_t> begin_;  // of every owner's pairs, to sort them
   float most_ = 0, beyond_ = 0;      // m: the most that any pair is kept apart
   double squares_listed_ = 0;

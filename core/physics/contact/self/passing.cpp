@@ -15,6 +15,8 @@ namespace weft::physics {
 namespace {
 
 constexpr int kRounds = 12;
+// Nearer than that two may pass through each other [of the distance held].
+constexpr float kNear = 2 * kLeastApart;
 
 }  // namespace
 
@@ -77,6 +79,25 @@ void SelfContact::move_zones(const std::vector<std::int32_t>& members) {
   }
 }
 
+// What may pass in the interval: of what was found for contacts, unless those have moved things so far that
+// others may have come near.
+const SquarePairs& SelfContact::near_passing(Threads& threads) {
+  const float held = kHeld * thickness_, most = 0.5f * (1 - kNear) * held;
+  float farthest = 0;
+  for (const std::int32_t body : surfaces_->touched()) {
+    const Displacement &change = surfaces_->change(body), &lift = surfaces_->lift(body);
+    float square = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float by = change.u[k] + lift.u[k];
+      square += by * by;
+    }
+    farthest = std::max(farthest, square);
+  }
+  return farthest < most * most
+             ? near_->still_within(kNear * held, place_.data(), moved_.data(), threads)
+             : near_->within(kNear * held, place_.data(), moved_.data(), threads);
+}
+
 // (From here on `moved_` is what bodies do move, not what they would.)
 void SelfContact::hold_together(Threads& threads) {
   for (const std::int32_t body : surfaces_->touched()) {
@@ -86,9 +107,7 @@ void SelfContact::hold_together(Threads& threads) {
   }
   std::vector<std::int32_t> members;
   for (int round = 0;; ++round) {
-    measure_surfaces(
-        near_->within(2 * kLeastApart * kHeld * thickness_, place_.data(), moved_.data(), threads),
-        SurfaceSearch::passing, 1, threads);
+    measure_surfaces(near_passing(threads), SurfaceSearch::passing, 1, threads);
     if (!join_zones(members)) break;
     if (round == kRounds) {
       forced_ = true;

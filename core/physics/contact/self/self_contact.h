@@ -158,8 +158,7 @@ class SelfContact {
   void find_among_surfaces(Threads& threads);
   void measure_surfaces(const SquarePairs& pairs, SurfaceSearch search, float reach,
                         Threads& threads);
-  template <int N>
-  void sort_contacts(std::vector<Contact<N>>& contacts, std::size_t keys);
+  void sort_spheres();
   template <int N>
   Met solve(ContactSolver<N>& solver, double seconds, Threads& threads);
   template <int N>
@@ -167,6 +166,7 @@ class SelfContact {
   float friction_of(std::int32_t a, std::int32_t b) const;
 
   // passing.cpp
+  const SquarePairs& near_passing(Threads& threads);
   void hold_together(Threads& threads);
   std::int32_t zone_of(std::int32_t body);
   bool join_zones(std::vector<std::int32_t>& members);
