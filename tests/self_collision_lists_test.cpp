@@ -30,9 +30,9 @@ struct Pair {
           std::make_unique<ClothStep>(scene, c, Method::spring, 1, kernel_table(Simd::best)));
       if (pinned) sheet(std::size_t(c)).set_inverse_mass(0, 0, 0);
     }
-    contact = SelfContact::make(scene, parts_of(steps), kernel_table(Simd::best));
+    contact = SelfContact::make(scene, lattices_of(steps), kernel_table(Simd::best));
   }
-  Lattice& sheet(std::size_t s) { return steps[s]->lattice(); }
+  Lattice& sheet(std::size_t s) { return lattices_of(steps)[s]->lattice; }
   void copy_state(Pair& from) {
     for (std::size_t s = 0; s < 2; ++s) {
       sheet(s).x.copy(from.sheet(s).x);
@@ -167,8 +167,8 @@ TEST(SurfaceSquare, DoesNotFoldThroughItself) {
   std::vector<std::unique_ptr<ClothStep>> steps;
   steps.push_back(
       std::make_unique<ClothStep>(scene, 0, Method::spring, 1, kernel_table(Simd::best)));
-  Lattice& sheet = steps[0]->lattice();
-  const auto contact = SelfContact::make(scene, parts_of(steps), kernel_table(Simd::best));
+  Lattice& sheet = lattices_of(steps)[0]->lattice;
+  const auto contact = SelfContact::make(scene, lattices_of(steps), kernel_table(Simd::best));
   Threads threads(1);
   contact->begin(threads);
   // Square A(0, 0), B(0.5, 0), C(0, 0.5), D(0.5, 0.5) in x and z, as it was made; y is up.

@@ -1,10 +1,12 @@
-// Squares of a surface against each other, kernel by kernel: distances against the same found plainly
-// in double precision, for every instruction set and any number of pairs.
+// Squares of a surface against each other, kernel by kernel: contacts, what may pass and what a plane keeps
+// apart, against distances found plainly in double precision, for every instruction set and any number
+// of pairs.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -17,7 +19,7 @@ namespace {
 using Vector = Eigen::Vector3d;
 
 constexpr int kPadding = 16;
-constexpr float kClose = 0.05f, kBeyond = 0.4f, kThickness = 0.3f;
+constexpr float kThickness = 0.3f, kMoved = 0.5f, kFloor = 0.02f;  // m, m, of the thickness
 
 double to_segment(const Vector& p, const Vector& a, const Vector& b) {
   const Vector e = b - a;
@@ -47,7 +49,7 @@ double between_segments(const Vector& a, const Vector& b, const Vector& c, const
   return least;
 }
 
-// Squares at random, each beside the next where they share corners, and all pairs of them.
+// Squares at random, each beside the next where they share corners, all pairs of them, and how they move.
 struct Squares {
   explicit Squares(int count) {
     Random random(std::uint64_t(count), 1);
@@ -59,18 +61,19 @@ struct Squares {
           s.corner[c] = square.back().corner[c + 1];
           continue;
         }
-        Vertex v{};
+        Place x{};
+        Displacement u{};
         for (int k = 0; k < 3; ++k) {
-          v.x[k] = next() + (k == 0 ? 0.3f * float(c) : 0);
-          v.v[k] = next();
+          x.x[k] = next() + (k == 0 ? 0.3f * float(c) : 0);
+          u.u[k] = kMoved * next();
         }
-        v.w = (q + c) % 6 == 0 ? 0 : 1 + 0.5f * next();
-        s.corner[c] = std::int32_t(vertex.size());
-        vertex.push_back(v);
+        x.x[3] = kThickness / 2;
+        u.u[3] = (q + c) % 6 == 0 ? 0 : 1 + 0.5f * next();
+        s.corner[c] = std::int32_t(place.size());
+        place.push_back(x);
+        moved.push_back(u);
+        rest.push_back({0, 0, float(q), 0.5f});  // each a sheet of its own
       }
-      s.place[0] = float(q / 5 * 100 + q % 5);
-      s.thickness = kThickness;
-      s.friction = 0.5f;
       square.push_back(s);
     }
     for (int a = 0; a < count; ++a)
@@ -83,37 +86,38 @@ struct Squares {
     neighbour.resize(owner.size());
   }
 
-  Vector at(int q, int corner) const {
-    const float* const x = vertex[std::size_t(square[std::size_t(q)].corner[corner])].x;
-    return {x[0], x[1], x[2]};
+  Vector at(int q, int corner, double time = 0) const {
+    return body(square[std::size_t(q)].corner[corner], time);
   }
-  Vertex& of(std::size_t q, int corner) { return vertex[std::size_t(square[q].corner[corner])]; }
+  Vector body(std::int32_t n, double time = 0) const {
+    const float *const x = place[std::size_t(n)].x, *const u = moved[std::size_t(n)].u;
+    return {x[0] + time * u[0], x[1] + time * u[1], x[2] + time * u[2]};
+  }
   bool same(int a, int corner, int b, int other) const {
     return square[std::size_t(a)].corner[corner] == square[std::size_t(b)].corner[other];
   }
   // Of what a owns from what b owns, parts that share a corner apart.
-  double distance(int a, int b) const {
+  double distance(int a, int b, double time = 0) const {
     constexpr int kFaces[2][3] = {{0, 1, 2}, {1, 3, 2}}, kEdges[3][2] = {{0, 1}, {0, 2}, {1, 2}};
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, a}})
       for (const auto& f : kFaces)
         if (!same(p, 0, q, f[0]) && !same(p, 0, q, f[1]) && !same(p, 0, q, f[2]))
-          least = std::min(least, to_triangle(at(p, 0), at(q, f[0]), at(q, f[1]), at(q, f[2])));
+          least = std::min(least, to_triangle(at(p, 0, time), at(q, f[0], time), at(q, f[1], time),
+                                              at(q, f[2], time)));
     for (const auto& e : kEdges)
       for (const auto& f : kEdges)
         if (!same(a, e[0], b, f[0]) && !same(a, e[0], b, f[1]) && !same(a, e[1], b, f[0]) &&
             !same(a, e[1], b, f[1]))
-          least =
-              std::min(least, between_segments(at(a, e[0]), at(a, e[1]), at(b, f[0]), at(b, f[1])));
+          least = std::min(least, between_segments(at(a, e[0], time), at(a, e[1], time),
+                                                   at(b, f[0], time), at(b, f[1], time)));
     return least;
-  }
-  double held(int a, int b) const {
-    const float apart = square[std::size_t(a)].place[0] - square[std::size_t(b)].place[0];
-    return std::abs(apart) < 2.5f ? kClose : kThickness;
   }
 
   int pairs = 0;
-  std::vector<Vertex> vertex;
+  std::vector<Place> place;
+  std::vector<Displacement> moved;
+  std::vector<RestPlace> rest;
   std::vector<Square> square;
   std::vector<std::int32_t> owner, neighbour;
 };
@@ -123,108 +127,112 @@ class Surfaces : public testing::TestWithParam<Simd> {
   void SetUp() override {
     if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
   }
-  struct Result {
-    std::vector<float> near_squared;
-    std::vector<SquaresTouching> touching;
-  };
-  static Result measured(const Squares& s, Simd simd, bool touching = true) {
-    Result r;
-    r.near_squared.resize(s.owner.size());
-    r.touching.resize(s.owner.size());
-    const int found = kernel_table(simd).surface_pairs(
-        {s.vertex.data(), s.square.data(), s.pairs, s.owner.data(), s.neighbour.data(), kClose,
-         kBeyond, r.near_squared.data(), touching ? r.touching.data() : nullptr});
-    r.touching.resize(std::size_t(found));
-    r.near_squared.resize(std::size_t(s.pairs));
-    return r;
+  static std::vector<SurfaceContact> found(const Squares& s, Simd simd, SurfaceSearch search) {
+    std::vector<SurfaceContact> room(s.owner.size() * kKindsOfPair);
+    const int count = kernel_table(simd).surface_pairs(
+        {s.place.data(), s.moved.data(), s.rest.data(), s.square.data(), s.pairs, s.owner.data(),
+         s.neighbour.data(), search, 1, kFloor, room.data()});
+    room.resize(std::size_t(count));
+    return room;
+  }
+  static std::vector<int> not_apart(const Squares& s, Simd simd, float range) {
+    std::vector<std::int32_t> owner(s.owner.size()), neighbour(s.owner.size());
+    const int count = kernel_table(simd).squares_not_apart(
+        {s.place.data(), s.moved.data(), s.square.data(), s.pairs, s.owner.data(),
+         s.neighbour.data(), range, owner.data(), neighbour.data()});
+    std::vector<int> pairs;
+    for (int k = 0, at = 0; k < s.pairs && at < count; ++k)
+      if (s.owner[std::size_t(k)] == owner[std::size_t(at)] &&
+          s.neighbour[std::size_t(k)] == neighbour[std::size_t(at)]) {
+        pairs.push_back(k);
+        ++at;
+      }
+    EXPECT_EQ(int(pairs.size()), count) << "pairs keep their order";
+    return pairs;
   }
 };
 
-TEST_P(Surfaces, MeasuresDistancesAndFindsWhatTouches) {
+TEST_P(Surfaces, ContactsAreAsFarApartAsTheySay) {
+  std::size_t all = 0;
   for (const int count : {2, 3, 7, 30}) {
     const Squares s(count);
-    const Result r = measured(s, GetParam());
-    std::size_t t = 0;
-    for (int k = 0; k < s.pairs; ++k) {
-      const int a = s.owner[std::size_t(k)], b = s.neighbour[std::size_t(k)];
-      const double distance = s.distance(a, b);
-      const float squared = r.near_squared[std::size_t(k)];
-      const double reach = s.held(a, b) + kBeyond;
-      if (distance < reach - 1e-5) {
-        EXPECT_NEAR(std::sqrt(squared), distance, 1e-5) << a << ' ' << b;
-      } else if (distance > reach + 1e-5) {
-        EXPECT_EQ(squared, kOutOfReach) << a << ' ' << b;
+    for (const SurfaceContact& c : found(s, GetParam(), SurfaceSearch::contacts)) {
+      Vector off = Vector::Zero();
+      double sum = 0;
+      for (int b = 0; b < 4; ++b) {
+        off += double(c.share[b]) * s.body(c.body[b]);
+        sum += double(c.share[b]);
       }
-      const bool touches = t < r.touching.size() && r.touching[t].pair == k;
-      EXPECT_EQ(touches, distance < s.held(a, b)) << a << ' ' << b;
-      t += touches;
+      const Vector normal(c.normal[0], c.normal[1], c.normal[2]);
+      EXPECT_NEAR(sum, 0, 1e-5);
+      EXPECT_NEAR(off.norm(), c.distance, 2e-5);
+      EXPECT_NEAR(off.dot(normal), c.distance, 2e-5);
+      const auto k = std::size_t(c.pair);
+      // (A vertex counts as above a triangle a little beside it, too.)
+      EXPECT_GE(c.distance, s.distance(s.owner[k], s.neighbour[k]) - 0.05);
+      ++all;
     }
-    EXPECT_EQ(t, r.touching.size());
-    EXPECT_TRUE(count < 30 || t > 10) << t;
-    const Result alone = measured(s, GetParam(), false);
-    EXPECT_EQ(alone.near_squared, r.near_squared);
-    EXPECT_TRUE(alone.touching.empty());
   }
+  EXPECT_GT(all, 50u);
 }
 
-// A corner comes down on the middle of a square, across it: what one is pushed and loses, times its
-// mass, the other is pushed and gains, whatever their masses and frictions.
-TEST_P(Surfaces, PushesBothApartByOneImpulse) {
-  Squares s(2);
-  const float corners[2][4][3] = {{{0, 0.1f, 0}, {1, 1, 0}, {-1, 1, 1}, {0, 2, 1}},
-                                  {{-2, 0, -2}, {3, 0, -2}, {-2, 0, 3}, {3, 0, 3}}};
-  for (std::size_t q = 0; q < 2; ++q) {
-    s.square[q].place[0] = 100 * float(q);
-    s.square[q].friction = 0.2f + 0.4f * float(q);
-    for (int c = 0; c < 4; ++c) {
-      Vertex& v = s.of(q, c) = {};
-      std::copy_n(corners[q][c], 3, v.x);
-      v.w = 1 + 0.5f * float(q) + 0.1f * float(c);
-      if (q == 0) v.v[0] = 2, v.v[1] = -1;
-    }
+TEST_P(Surfaces, WhatIsTooCloseAtTheStartIsFoundWhateverMoves) {
+  Squares s(30);
+  for (Displacement& u : s.moved) u.u[0] = u.u[1] = u.u[2] = 0;
+  const auto contacts = found(s, GetParam(), SurfaceSearch::contacts);
+  for (const SurfaceContact& c : contacts) EXPECT_LT(c.distance, kThickness);
+  EXPECT_GT(contacts.size(), 50u);
+  EXPECT_TRUE(found(s, GetParam(), SurfaceSearch::passing).empty()) << "nothing moves";
+}
+
+TEST_P(Surfaces, WhatPassesIsFound) {
+  const Squares s(30);
+  std::vector<bool> named(std::size_t(s.pairs));
+  for (const SurfaceContact& c : found(s, GetParam(), SurfaceSearch::passing))
+    named[std::size_t(c.pair)] = true;
+  int touching = 0;
+  for (int k = 0; k < s.pairs; ++k) {
+    const int a = s.owner[std::size_t(k)], b = s.neighbour[std::size_t(k)];
+    double least = s.distance(a, b);
+    const double start = least;
+    for (double time = 0.01; time <= 1; time += 0.01)
+      least = std::min(least, s.distance(a, b, time));
+    if (least > 1e-3 || start < 1e-2) continue;
+    ++touching;
+    EXPECT_TRUE(named[std::size_t(k)]) << a << ' ' << b << " start " << start;
   }
-  const Result r = measured(s, GetParam());
-  ASSERT_EQ(r.touching.size(), 1u);
-  Vector pushed[2], gained[2];
-  for (int n = 0; n < 2; ++n) {
-    pushed[n] = gained[n] = Vector::Zero();
-    const SquareChange& change = r.touching[0].change[n];
-    for (int c = 0; c < 4; ++c) {
-      if (change.weight[c] == 0) continue;
-      const double of = 1 / (double(change.weight[c]) * s.of(std::size_t(n), c).w);
-      for (int k = 0; k < 3; ++k) {
-        pushed[n][k] += change.push[c][k] * of;
-        gained[n][k] += change.gain[c][k] * of;
-      }
-    }
+  EXPECT_GT(touching, 0);
+}
+
+TEST_P(Surfaces, WhatComesNearIsNotLeftOut) {
+  constexpr float kRange = 0.05f;
+  const Squares s(30);
+  const std::vector<int> near = not_apart(s, GetParam(), kRange);
+  EXPECT_LT(int(near.size()), s.pairs) << "some are apart";
+  for (int k = 0; k < s.pairs; ++k) {
+    double least = std::numeric_limits<double>::infinity();
+    for (double time = 0; time <= 1; time += 0.05)
+      least =
+          std::min(least, s.distance(s.owner[std::size_t(k)], s.neighbour[std::size_t(k)], time));
+    EXPECT_TRUE(least >= kRange || std::binary_search(near.begin(), near.end(), k)) << k;
   }
-  EXPECT_NEAR((pushed[0] + pushed[1]).norm(), 0, 1e-6);
-  EXPECT_NEAR((gained[0] + gained[1]).norm(), 0, 1e-5);
-  EXPECT_GT(pushed[0].y(), 0.01);
-  EXPECT_NEAR(pushed[0].x(), 0, 1e-6);
-  EXPECT_GT(gained[0].y(), 0.1);
-  EXPECT_NEAR(gained[0].x(), -0.4 * gained[0].y(), 1e-5) << "the mean of both frictions";
-  // What is pinned stays where it is.
-  for (int c = 0; c < 4; ++c) s.of(1, c).w = 0;
-  const SquareChange held = measured(s, GetParam()).touching.at(0).change[1];
-  for (const auto& change : {held.push, held.gain})
-    for (int c = 0; c < 4; ++c)
-      for (int k = 0; k < 3; ++k) EXPECT_EQ(change[c][k], 0);
 }
 
 TEST_P(Surfaces, HasTheBitsOfTheScalarKernel) {
   const Squares s(30);
-  const Result r = measured(s, GetParam()), expected = measured(s, Simd::scalar);
-  EXPECT_EQ(r.near_squared, expected.near_squared);
-  ASSERT_EQ(r.touching.size(), expected.touching.size());
-  for (std::size_t t = 0; t < r.touching.size(); ++t) {
-    EXPECT_EQ(r.touching[t].pair, expected.touching[t].pair);
-    for (int n = 0; n < 2; ++n) {
-      const auto floats = [&](const Result& of) { return &of.touching[t].change[n].push[0][0]; };
-      constexpr std::size_t kFloats = sizeof(SquareChange) / sizeof(float);
-      EXPECT_TRUE(std::equal(floats(r), floats(r) + kFloats, floats(expected))) << t;
-    }
+  for (const SurfaceSearch search : {SurfaceSearch::contacts, SurfaceSearch::passing}) {
+    const auto order = [](std::vector<SurfaceContact> of) {
+      std::sort(of.begin(), of.end(), [](const SurfaceContact& a, const SurfaceContact& b) {
+        return a.pair != b.pair ? a.pair < b.pair : a.kind < b.kind;
+      });
+      return of;
+    };
+    const auto one = order(found(s, GetParam(), search)),
+               other = order(found(s, Simd::scalar, search));
+    ASSERT_EQ(one.size(), other.size());
+    EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(SurfaceContact)), 0);
   }
+  EXPECT_EQ(not_apart(s, GetParam(), 0.05f), not_apart(s, Simd::scalar, 0.05f));
 }
 
 INSTANTIATE_TEST_SUITE_P(, Surfaces,

@@ -262,8 +262,8 @@ double Simulation::State::limit_share() const {
 // for or, where those are too few, a multiple.
 int Simulation::State::substeps_within(double limit) const {
   const int asked = scene.time.substeps;
-  const int needed =
-      clamp_to_int(std::ceil(scene.time.frame / (limit_share() * limit)), 1, kFinest * kMostSubsteps);
+  const int needed = clamp_to_int(std::ceil(scene.time.frame / (limit_share() * limit)), 1,
+                                  kFinest * kMostSubsteps);
   if (asked == kAutoSubsteps) return guard_.finer() * needed;
   if (scene.time.frame / asked <= limit) return guard_.finer() * asked;
   return guard_.finer() * asked * ((needed + asked - 1) / asked);

@@ -44,7 +44,8 @@ struct SquaresApart {
   int pairs;
   const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
   float range;                            // m
-  std::int32_t *near_owner, *near_neighbour;  // out, and 16 lanes of padding; may be the same as above
+  std::int32_t *near_owner,
+      *near_neighbour;  // out, and 16 lanes of padding; may be the same as above
 };
 
 // A vertex and a triangle, or two edges, of a pair of squares: bodies and their shares, positive where

@@ -418,9 +418,9 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
     SquarePairs& found = found_[rows + k];
     found.reserve(count);
     std::int32_t *const owner = found.owner.data(), *const neighbour = found.neighbour.data();
-    const int near = kernels_.squares_within({boxes_.data(), int(count), listed_.owner.data() + first,
-                                              listed_.neighbour.data() + first, range, owner,
-                                              neighbour});
+    const int near =
+        kernels_.squares_within({boxes_.data(), int(count), listed_.owner.data() + first,
+                                 listed_.neighbour.data() + first, range, owner, neighbour});
     found.count = std::size_t(kernels_.squares_not_apart(
         {place, moved, squares_.data(), near, owner, neighbour, range, owner, neighbour}));
   });
