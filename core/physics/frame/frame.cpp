@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "physics/frame/state.h"
 
@@ -13,9 +14,10 @@ using namespace physics;
 
 namespace {
 
-// Of the springs' stability limit, between two runs of self-collision. Their shortest period is π of it:
-// with more than that in between, they push what lies on each other ever livelier.
-constexpr double kSwing = 2.5;
+// Of the springs' stability limit, between two runs of self-collision: half of their shortest period. Over
+// longer ones what a particle has been moved by says nothing of its velocity in the end, and impulses that
+// stop the one may feed the other: folds go on shaking.
+constexpr double kSwing = std::numbers::pi / 2;
 // Share of the time that threads with a cloth each must be busy for: about what several make of one.
 constexpr double kBusy = 0.9;
 constexpr std::int64_t kManyParticles = 8192;  // for whose contact threads stand by all frame
@@ -125,6 +127,7 @@ void Simulation::State::run_with_contact() {
         is_explicit(method) ? kSwing * limit_ : std::numeric_limits<double>::infinity();
     until_collision_ = self_collision->run(dt, count, longest, threads);
     if (scene.solver.order == 2 && self_collision->touched()) start_anew();
+    if (untangle->due()) untangle->calm(count * dt);
     const auto spent = std::chrono::steady_clock::now() - start;
     self_collision_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
     ++self_collision_runs;

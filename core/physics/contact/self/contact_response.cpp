@@ -1,5 +1,6 @@
 // Self-contact (self_contact.h): the contacts of an interval, and what comes of them.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "physics/contact/self/held.h"
@@ -122,6 +123,7 @@ void SelfContact::find_among_surfaces(Threads& threads) {
   const auto part = std::is_sorted_until(contacts.begin(), contacts.end(), less);
   unsorted_surfaces_.resize(contacts.size());
   std::merge(contacts.begin(), part, part, contacts.end(), unsorted_surfaces_.begin(), less);
+  assert(std::is_sorted(unsorted_surfaces_.begin(), unsorted_surfaces_.end(), less));
   std::swap(contacts, unsorted_surfaces_);
 }
 

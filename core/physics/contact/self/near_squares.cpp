@@ -2,6 +2,7 @@
 #include "physics/contact/self/near_squares.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -13,9 +14,28 @@ constexpr float kOverstretched = 3;  // half-diagonals at rest: larger squares a
 constexpr std::size_t kFewParticles = 4096;
 constexpr std::size_t kAtOnce = 1024;  // pairs that are looked through in one go
 
+// Adds the pairs of pieces, piece after piece.
+void join(const std::vector<SquarePairs>& pieces, std::size_t count, SquarePairs& to) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const SquarePairs& found = pieces[k];
+    to.reserve(to.count + found.count);
+    std::copy_n(found.owner.data(), found.count, to.owner.data() + to.count);
+    std::copy_n(found.neighbour.data(), found.count, to.neighbour.data() + to.count);
+    to.count += found.count;
+  }
+  to.pad();
+}
+
 void widen(Spread& spread, int k, float value) {
   spread.low[k] = std::min(spread.low[k], value);
   spread.high[k] = std::max(spread.high[k], value);
+}
+
+// The least length of a mean of two vectors, by their squares and their product.
+float least_between(float aa, float bb, float ab) {
+  const float least = std::min(aa, bb);
+  if (ab >= least) return std::sqrt(least);
+  return std::sqrt(std::max(0.0f, aa * bb - ab * ab) / (aa + bb - 2 * ab));
 }
 
 float half_diagonal(const Sheet& s) {
@@ -61,6 +81,8 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<Nam
   boxes_.resize(bodies);
   lies_.resize(bodies);
   stride_.resize(bodies);
+  beside_.resize(row_number(sheets_.size(), 0));
+  row_moved_.resize(beside_.size());
   begin_.resize(bodies + 1);
   sorted_.resize(all_squares_);
   left_out_.reserve(all_squares_);
@@ -94,7 +116,9 @@ void NearSquares::leave_out(const std::vector<std::uint8_t>& marked) {
 void NearSquares::update(bool all, const Place* now, Threads& threads) {
   now_ = now;
   joined_.clear();
-  if (!all) {
+  if (all) {
+    std::fill(row_moved_.begin(), row_moved_.end(), std::uint8_t{1});
+  } else {
     look_how_far();
     look_who_joined();
   }
@@ -302,54 +326,102 @@ void NearSquares::sort_listed() {
   std::swap(listed_, within_);
 }
 
-// How a square lies: its mean edges, and whether it is nearly a parallelogram, neither compressed nor
-// sheared much.
-void NearSquares::measure_lie(std::size_t sheet, std::size_t n, const Place* place) {
-  constexpr float kStraight = 0.15f, kShort = 0.8f, kAskew = 0.3f;
-  const Sheet& s = sheets_[sheet];
+// How a square lies: its mean edges, and how far its edges are off them.
+auto NearSquares::lie_of(std::size_t n, const Place* place) const -> Lie {
   const std::int32_t* const corner = squares_[n].corner;
-  Lie& lie = lies_[n];
-  float uu = 0, vv = 0, uv = 0, bent = 0;
+  Lie lie{};
+  float warp = 0;
   for (int k = 0; k < 3; ++k) {
     const float a = place[corner[0]].x[k], b = place[corner[1]].x[k];
     const float c = place[corner[2]].x[k], d = place[corner[3]].x[k];
     lie.u[k] = 0.5f * (b - a + d - c);
     lie.v[k] = 0.5f * (c - a + d - b);
     const float off = 0.5f * (a + d - b - c);
-    bent += off * off;
-    uu += lie.u[k] * lie.u[k];
-    vv += lie.v[k] * lie.v[k];
-    uv += lie.u[k] * lie.v[k];
+    warp += off * off;
+    lie.uu += lie.u[k] * lie.u[k];
+    lie.vv += lie.v[k] * lie.v[k];
   }
-  lie.nearly_flat = bent <= kStraight * kStraight * std::min(uu, vv) &&
-                    uu >= kShort * kShort * s.uu && vv >= kShort * kShort * s.vv &&
-                    uv * uv <= kAskew * kAskew * uu * vv;
+  lie.warp = std::sqrt(warp);
+  return lie;
 }
 
-// Whether two squares that share a corner lie so much alike that they cannot touch: with all edges along
-// rows and along columns within a part of two vectors that are nearly square to each other, points of the
-// two keep half of the distance that they have on the flat sheet (blocks.h has the bound).
-bool NearSquares::lie_alike(std::size_t p, std::size_t q) const {
-  constexpr float kAlike = 0.3f;
-  const Lie &a = lies_[p], &b = lies_[q];
-  if (!a.nearly_flat || !b.nearly_flat) return false;
-  float uu = 0, vv = 0, du = 0, dv = 0;
-  for (int k = 0; k < 3; ++k) {
-    uu += a.u[k] * a.u[k];
-    vv += a.v[k] * a.v[k];
-    du += (a.u[k] - b.u[k]) * (a.u[k] - b.u[k]);
-    dv += (a.v[k] - b.v[k]) * (a.v[k] - b.v[k]);
+// A row is measured anew where edges have changed by so much that it may matter.
+void NearSquares::measure_row(std::size_t sheet, int row, const Place* place) {
+  constexpr float kChange = 0.03f;  // of the shorter edge at rest
+  const Sheet& s = sheets_[sheet];
+  const float most = kChange * kChange * std::min(s.uu, s.vv);
+  std::uint8_t& moved = row_moved_[row_number(sheet, row)];
+  const std::size_t begin = number(sheet, row, 0), end = begin + std::size_t(s.lattice->columns);
+  for (std::size_t n = begin; n < end && !moved; ++n) {
+    const Lie now = lie_of(n, place), &then = lies_[n];
+    float du = 0, dv = 0;
+    for (int k = 0; k < 3; ++k) {
+      du += (now.u[k] - then.u[k]) * (now.u[k] - then.u[k]);
+      dv += (now.v[k] - then.v[k]) * (now.v[k] - then.v[k]);
+    }
+    const float warped = now.warp - then.warp;
+    moved = !(std::max({du, dv, warped * warped}) <= most);
   }
-  return du <= kAlike * kAlike * uu && dv <= kAlike * kAlike * vv;
+  for (std::size_t n = begin; moved && n < end; ++n) lies_[n] = lie_of(n, place);
+}
+
+std::size_t NearSquares::row_number(std::size_t sheet, int row) const {
+  std::size_t first = 0;
+  for (std::size_t s = 0; s < sheet; ++s) first += std::size_t(sheets_[s].lattice->rows);
+  return first + std::size_t(row);
+}
+
+// Lists of rows that have changed, or the row after them has.
+void NearSquares::list_rows_beside(Threads& threads) {
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    const int rows = sheets_[s].lattice->rows;
+    threads.share(std::size_t(rows), all_squares_ < kFewParticles, [&](std::size_t j) {
+      const std::size_t n = row_number(s, int(j));
+      if (row_moved_[n] || (int(j) + 1 < rows && row_moved_[n + 1]))
+        list_beside(s, int(j), beside_[n]);
+    });
+  }
+  std::fill(row_moved_.begin(), row_moved_.end(), std::uint8_t{0});
+}
+
+// Whether two squares that share a corner, or one with itself, lie so much alike that they cannot touch.
+//
+// Two points of them that are a columns and b rows apart are a A + b B from each other, with A a mean of
+// their edges along rows and B of those along columns. So they are at least ρ times as far apart as on the
+// flat sheet, with
+//
+//   ρ² (1 + |u·v|/(|u||v|)) = min(min |A|²/|u|², min |B|²/|v|²) - max |A·B|/(|u||v|)
+//
+// where u and v are the edges at rest. Contact keeps half of that distance.
+bool NearSquares::lie_alike(const Sheet& sheet, std::size_t p, std::size_t q) const {
+  constexpr float kApart = 0.6f;  // ρ, with what an interval may change
+  const Lie &a = lies_[p], &b = lies_[q];
+  float uu = 0, vv = 0, askew[4] = {};
+  for (int k = 0; k < 3; ++k) {
+    uu += a.u[k] * b.u[k];
+    vv += a.v[k] * b.v[k];
+    askew[0] += a.u[k] * a.v[k], askew[1] += a.u[k] * b.v[k];
+    askew[2] += b.u[k] * a.v[k], askew[3] += b.u[k] * b.v[k];
+  }
+  const float warp = std::max(a.warp, b.warp);
+  const float u = least_between(a.uu, b.uu, uu) - warp, v = least_between(a.vv, b.vv, vv) - warp;
+  if (!(u > 0) || !(v > 0)) return false;
+  const float longest = std::sqrt(std::max({a.uu, b.uu, a.vv, b.vv}));
+  float most = 0;
+  for (const float s : askew) most = std::max(most, std::abs(s));
+  most += warp * (2 * longest + warp);
+  const float rest = std::sqrt(sheet.uu * sheet.vv);
+  const float needed = kApart * kApart * (1 + std::abs(sheet.uv) / rest) + most / rest;
+  return u * u >= needed * sheet.uu && v * v >= needed * sheet.vv;
 }
 
 // Pairs of squares that share a corner, and each with itself, unless they lie flat.
-void NearSquares::list_beside(std::size_t sheet, int row, SquarePairs& found) {
+void NearSquares::list_beside(std::size_t sheet, int row, SquarePairs& found) const {
   const Lattice& l = *sheets_[sheet].lattice;
   found.count = 0;
   found.reserve(5 * std::size_t(l.columns));
   const auto add = [&](std::size_t p, std::size_t q) {
-    if (p == q ? lies_[p].nearly_flat : lie_alike(p, q)) return;
+    if (lie_alike(sheets_[sheet], p, q)) return;
     if (has_corner_in(squares_[p], passing_) || has_corner_in(squares_[q], passing_)) return;
     found.owner[found.count] = std::int32_t(p);
     found.neighbour[found.count++] = std::int32_t(q);
@@ -381,41 +453,21 @@ void NearSquares::bound(const Place* place, const Displacement* moved, Threads& 
                       for (int c = 0; c < 4; ++c)
                         widen_by(squares_[n].corner[c], boxes_[n], c == 0);
                       boxes_[n].asked = 1;
-                      measure_lie(s, n, place);
                     }
+                    measure_row(s, int(j), place);
                   });
-}
-
-// The pairs of pieces, piece after piece.
-void NearSquares::join_found(std::size_t pieces, SquarePairs& to) {
-  to.count = 0;
-  for (std::size_t k = 0; k < pieces; ++k) {
-    const SquarePairs& found = found_[k];
-    to.reserve(to.count + found.count);
-    std::copy_n(found.owner.data(), found.count, to.owner.data() + to.count);
-    std::copy_n(found.neighbour.data(), found.count, to.neighbour.data() + to.count);
-    to.count += found.count;
-  }
-  to.pad();
 }
 
 const SquarePairs& NearSquares::within(float range, const Place* place, const Displacement* moved,
                                        Threads& threads) {
+  within_range_ = range;
   bound(place, moved, threads);
+  list_rows_beside(threads);
   const std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
-  std::size_t rows = 0;
-  for (const Sheet& s : sheets_) rows += std::size_t(s.lattice->rows);
-  if (found_.size() < pieces + rows) found_.resize(pieces + rows);
-  std::size_t piece = 0;
-  for (std::size_t s = 0; s < sheets_.size(); ++s) {
-    const auto of_sheet = std::size_t(sheets_[s].lattice->rows);
-    threads.share(of_sheet, all_squares_ < kFewParticles,
-                  [&](std::size_t j) { list_beside(s, int(j), found_[piece + j]); });
-    piece += of_sheet;
-  }
+  if (found_.size() < pieces) found_.resize(pieces);
   threads.share(pieces, pieces < 8, [&](std::size_t k) {
     const std::size_t first = k * kAtOnce, count = std::min(listed_.count - first, kAtOnce);
-    SquarePairs& found = found_[rows + k];
+    SquarePairs& found = found_[k];
     found.reserve(count);
     std::int32_t *const owner = found.owner.data(), *const neighbour = found.neighbour.data();
     const int near =
@@ -424,12 +476,15 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
     found.count = std::size_t(kernels_.squares_not_apart(
         {place, moved, squares_.data(), near, owner, neighbour, range, owner, neighbour}));
   });
-  join_found(pieces + rows, within_);
+  within_.count = 0;
+  join(beside_, beside_.size(), within_);
+  join(found_, pieces, within_);
   return within_;
 }
 
 const SquarePairs& NearSquares::still_within(float range, const Place* place,
                                              const Displacement* moved, Threads& threads) {
+  assert(range <= within_range_);
   const std::size_t pieces = (within_.count + kAtOnce - 1) / kAtOnce;
   if (found_.size() < pieces) found_.resize(pieces);
   threads.share(pieces, pieces < 8, [&](std::size_t k) {
@@ -440,7 +495,8 @@ const SquarePairs& NearSquares::still_within(float range, const Place* place,
         {place, moved, squares_.data(), int(count), within_.owner.data() + first,
          within_.neighbour.data() + first, range, found.owner.data(), found.neighbour.data()}));
   });
-  join_found(pieces, still_);
+  still_.count = 0;
+  join(found_, pieces, still_);
   return still_;
 }
 
@@ -453,7 +509,9 @@ std::size_t NearSquares::bytes() const {
   bytes += squares_.size() * (sizeof(Square) + sizeof(Origin) + sizeof(SquareBox) + 3);
   bytes += all_squares_ * (sizeof(LeftOut) + 8) + 4 * begin_.size();
   bytes += listed_.bytes() + within_.bytes() + still_.bytes();
-  for (const SquarePairs& p : found_) bytes += p.bytes();
+  for (const auto* lists : {&found_, &beside_})
+    for (const SquarePairs& p : *lists) bytes += p.bytes();
+  bytes += lies_.size() * sizeof(Lie) + row_moved_.size();
   return bytes;
 }
 

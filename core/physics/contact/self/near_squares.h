@@ -6,7 +6,7 @@
 // are many. Motion that is common to all is left out of account.
 //
 // Squares that share a corner, and each with itself (folded along its diagonal, its A comes near its own
-// BDC), are not listed but looked at each time: most lie too flat to touch.
+// BDC), are listed row by row, unless they lie too flat to touch: anew where their edges have changed.
 #pragma once
 
 #include <vector>
@@ -78,16 +78,19 @@ class NearSquares {
 
   struct Lie {
     float u[3], v[3];  // m, mean edges along the row and the column
-    bool nearly_flat;
+    float uu, vv;      // m², their squares
+    float warp;        // m, how far edges are off them
   };
 
   void make_squares();
   bool beside(std::int32_t p, std::int32_t q) const;
-  void measure_lie(std::size_t sheet, std::size_t n, const Place* place);
-  bool lie_alike(std::size_t p, std::size_t q) const;
+  Lie lie_of(std::size_t n, const Place* place) const;
+  void measure_row(std::size_t sheet, int row, const Place* place);
+  void list_rows_beside(Threads& threads);
+  bool lie_alike(const Sheet& sheet, std::size_t p, std::size_t q) const;
   void bound(const Place* place, const Displacement* moved, Threads& threads);
-  void join_found(std::size_t pieces, SquarePairs& to);
-  void list_beside(std::size_t sheet, int row, SquarePairs& found);
+  void list_beside(std::size_t sheet, int row, SquarePairs& found) const;
+  std::size_t row_number(std::size_t sheet, int row) const;
   template <class Visit>
   void for_each_square(const Visit& visit) const;
   void look_how_far();
@@ -107,8 +110,10 @@ class NearSquares {
   const std::vector<NamedSheet>& named_;
   const KernelTable& kernels_;
   std::vector<Square> squares_;
-  std::vector<std::int32_t> stride_;  // of every square's sheet
-  std::vector<Lie> lies_;
+  std::vector<std::int32_t> stride_;     // of every square's sheet
+  std::vector<Lie> lies_;                // of every square, as beside_ was listed
+  std::vector<SquarePairs> beside_;      // of every row and the next, of all sheets in turn
+  std::vector<std::uint8_t> row_moved_;  // whether edges in it have changed
   const Place* now_ = nullptr;
   std::vector<Origin> origins_;
   float frame_[3] = {};  // m: what has been common so far
@@ -126,6 +131,7 @@ class NearSquares {
       joined_;  // squares that were torn at the last update and are whole at this
   SquarePairs listed_, within_, still_;
   std::vector<std::int32_t> begin_;  // of every owner's pairs, to sort them
+  float within_range_ = 0;           // m: of within_
   float most_ = 0, beyond_ = 0;      // m: the most that any pair is kept apart
   double squares_listed_ = 0;
   std::size_t all_squares_ = 0;

@@ -25,7 +25,7 @@ constexpr int kFewRuns = 3, kManyRuns = 8;
 constexpr int kRunsToEdges = 16;  // until what was not flat is looked at again
 // Of the thickness, relative motion between two runs: of those that touch; of others, which must
 // not come from a thickness apart to the other side.
-constexpr double kMotion = 0.25, kMotionApart = 0.9;
+constexpr double kMotion = 0.5, kMotionApart = 0.9;
 constexpr int kMostSubsteps = 32;  // between two looks
 constexpr int kMostSubstepsTouching = 4;
 constexpr std::size_t kFew = 4096;  // particles that one thread does faster

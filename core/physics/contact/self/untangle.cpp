@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "physics/contact/colliders/shapes.h"
 #include "physics/model/lattice/stages.h"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr int kRowsAFrame = 8;   // that the line where sheets meet moves by
 constexpr int kMostFrames = 90;  // what has not come apart by then stays as it is
+constexpr double kCalm = 2e-3;   // s, until velocities within sheets that cross are a third
 constexpr int kFold = 4;  // columns or rows: what is nearer on a sheet crosses in a fold of it
 constexpr std::size_t kMostOfLine = 1 << 15;  // particles that are looked at
 // Times the area that it has: of a pinned particle, and of one that is an end of a crossing edge, too.
@@ -86,7 +88,7 @@ Untangle::Untangle(const Scene& scene, const std::vector<const LatticeParts*>& c
     const SelfCollision& self = scene.cloths[c].self_collision;
     if (self.mode == SelfCollisionMode::off) continue;
     const Grid& g = scene.cloths[c].grid;
-    sheets_.push_back({cloths[c], self.thickness, spacing_u(g) * spacing_v(g), count});
+    sheets_.push_back({cloths[c], self.thickness, spacing_u(g) * spacing_v(g), count, false});
     const Lattice& l = cloths[c]->lattice;
     count += std::size_t(l.columns) * std::size_t(l.rows);
   }
@@ -140,6 +142,7 @@ void Untangle::pull_apart() {
   std::fill(passing_.begin(), passing_.end(), std::uint8_t{0});
   since_ = crossings() > 0 ? since_ + 1 : 0;
   due_ = since_ > 0 && since_ <= kMostFrames;
+  if (!due_) came_apart_ = false;
   if (!due_) return;
   // Where all crosses all, which takes long to tell, one a frame.
   const int rows = crossings_.size() > x_.size() ? 1 : kRowsAFrame;
@@ -148,7 +151,43 @@ void Untangle::pull_apart() {
     move_ends();
     crossings_ = find_crossings(x_, faces_, edges_);
   }
+  for (Sheet& s : sheets_) s.crosses = passes(s);
+  // What has come apart may settle for a frame; where it crosses again, contact keeps it apart at once.
+  if (crossings_.empty() && std::exchange(came_apart_, true))
+    std::fill(passing_.begin(), passing_.end(), std::uint8_t{0});
   put_back();
+}
+
+// Whether any of a sheet's particles has to pass.
+bool Untangle::passes(const Sheet& s) const {
+  const auto first = passing_.begin() + std::ptrdiff_t(s.first);
+  const auto last = first + s.cloth->lattice.rows * s.cloth->lattice.columns;
+  return std::find(first, last, 1) != last;
+}
+
+void Untangle::calm(double seconds) {
+  const double keep = std::exp(-seconds / kCalm);
+  for (const Sheet& s : sheets_) {
+    Lattice& l = s.cloth->lattice;
+    if (!s.crosses) continue;
+    Vec3 momentum{};
+    double mass = 0;
+    const auto for_each_free = [&](const auto& visit) {
+      for (int j = 0; j < l.rows; ++j)
+        for (int i = 0; i < l.columns; ++i)
+          if (l.w(j, i) > 0) visit(j, i, 1 / double(l.w(j, i)));
+    };
+    for_each_free([&](int j, int i, double m) {
+      mass += m;
+      for (int k = 0; k < 3; ++k) momentum[std::size_t(k)] += m * double(l.v.at(k, j, i));
+    });
+    for_each_free([&](int j, int i, double) {
+      for (int k = 0; k < 3; ++k) {
+        const double mean = momentum[std::size_t(k)] / mass;
+        l.v.at(k, j, i) = float(mean + keep * (double(l.v.at(k, j, i)) - mean));
+      }
+    });
+  }
 }
 
 // Crossings along one line where sheets meet: from an edge through a triangle the line goes on to the

@@ -39,6 +39,9 @@ class Untangle {
   // Moves a few rows of what has to pass; nothing is due any more when nothing crosses, or when that
   // has gone on for long: pins may hold what cannot come apart.
   void pull_apart();
+  // Taking through stretches sheets, which would fly apart: while anything is due, velocities within each
+  // that crosses anything go to their mean, within some milliseconds. Its momentum is kept.
+  void calm(double seconds);
   // Particles that have to pass, row by row of every sheet in turn: contact leaves them out.
   const std::vector<std::uint8_t>& passing() const { return passing_; }
 
@@ -48,6 +51,7 @@ class Untangle {
     double thickness;   // m
     double area;        // m², of a particle
     std::size_t first;  // number of its first particle
+    bool crosses;       // something of it had to pass the last time
   };
 
   // Of an edge that crosses, with all that it crosses along one line.
@@ -77,6 +81,7 @@ class Untangle {
   void choose_part(std::span<const std::int32_t> ends);
   void list_neighbours();
   double area(std::int32_t particle, double pinned) const;
+  bool passes(const Sheet& sheet) const;
   bool passes(std::int32_t particle, std::int32_t line) const;
   bool in_a_fold(std::int32_t a, std::int32_t b) const;
   Vec3 to_neighbours(std::int32_t particle) const;
@@ -90,7 +95,8 @@ class Untangle {
 
   std::vector<Sheet> sheets_;
   bool due_;
-  int since_ = 0;  // frames in which something crossed, without a break
+  int since_ = 0;            // frames in which something crossed, without a break
+  bool came_apart_ = false;  // in one of them all of it did
   std::vector<std::uint8_t> passing_;
 
   // As found last.
