@@ -64,7 +64,8 @@ void add_outcome(Json& json, const Report& report) {
                          {"self_pairs", report.penetration.self_pairs},
                          {"self_max", report.penetration.self_max},
                          {"crossings", report.penetration.crossings}};
-  json["contact"] = {{"energy_taken", report.contact.energy_taken},
+  json["contact"] = {{"contacts", report.contact.contacts},
+                     {"energy_taken", report.contact.energy_taken},
                      {"greatest_clamp", report.contact.greatest_clamp},
                      {"least_distance", report.contact.least_distance}};
   json["torn"] = report.torn;

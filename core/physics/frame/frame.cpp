@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "physics/frame/state.h"
+#include "physics/model/path.h"
+#include "physics/model/vector.h"
 
 namespace weft {
 
@@ -14,10 +14,6 @@ using namespace physics;
 
 namespace {
 
-// Of the springs' stability limit, between two runs of self-collision: half of their shortest period. Over
-// longer ones what a particle has been moved by says nothing of its velocity in the end, and impulses that
-// stop the one may feed the other: folds go on shaking.
-constexpr double kSwing = std::numbers::pi / 2;
 // Share of the time that threads with a cloth each must be busy for: about what several make of one.
 constexpr double kBusy = 0.9;
 constexpr std::int64_t kManyParticles = 8192;  // for whose contact threads stand by all frame
@@ -56,6 +52,7 @@ void Simulation::State::advance_frame() {
   total_substeps += substeps;
   check_strain_limits();
   note_clamps();
+  note_stretch();
 
   if (sleeping) sleeping->end_frame([&](std::size_t c) -> const Rows& { return records_[c].x(); });
   if (is_explicit(method) && !(sleeping && sleeping->all_asleep())) follow_stretch(limit_);
@@ -117,21 +114,26 @@ void Simulation::State::tell_of_limits() {
 }
 
 // A frame ends with a run of contact, so that what was put back to a frame's start, or set, begins anew.
+// Intervals are powers of two and begin at multiples of their length: so where frames end matters little.
 void Simulation::State::run_with_contact() {
   for (int s = 0; s < substeps;) {
-    const int count = std::min(until_collision_, substeps - s);
+    const int count = std::min({until_collision_, s == 0 ? substeps : s & -s, substeps - s});
     run_substeps(s, count);
     s += count;
     const auto start = std::chrono::steady_clock::now();
-    const double longest =
-        is_explicit(method) ? kSwing * limit_ : std::numeric_limits<double>::infinity();
-    until_collision_ = self_collision->run(dt, count, longest, threads);
+    until_collision_ = self_collision->run(contact_interval(s, count), threads);
     if (scene.solver.order == 2 && self_collision->touched()) start_anew();
     if (untangle->due()) untangle->calm(count * dt);
     const auto spent = std::chrono::steady_clock::now() - start;
     self_collision_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
     ++self_collision_runs;
   }
+}
+
+SelfContact::Interval Simulation::State::contact_interval(int end, int count) const {
+  const Vec3 g = gravity_at(scene, double(frame) * scene.time.frame + end * dt);
+  const double gravity = std::sqrt(dot(g, g));
+  return {dt, count, gravity};
 }
 
 // Motion that contact had to cut short is told of once.
@@ -148,6 +150,23 @@ void Simulation::State::note_clamps() {
 void Simulation::State::start_anew() {
   for (auto& step : cloths)
     for (const auto& stage : step->stages()) stage->restart();
+}
+
+// Nothing passes through, so that what is drawn against something stretches instead. Told of once a cloth.
+void Simulation::State::note_stretch() {
+  constexpr double kDoubled = 1;
+  if (!self_collision || !self_collision->touched()) return;
+  stretch_noted_.resize(cloths.size());
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    if (stretch_noted_[c] || asleep(c)) continue;
+    const double strain = cloths[c]->model().strain().max;
+    if (strain < kDoubled) continue;
+    stretch_noted_[c] = 1;
+    plan.notes.push_back("frame " + std::to_string(frame) + ": cloth " + std::to_string(c) +
+                         " is drawn against what it cannot pass, to " + number(1 + strain) +
+                         " times its length (other ways of its pins, a strain limit or tear_strain "
+                         "avoid that)");
+  }
 }
 
 // Surfaces begin with what does not cross; what does comes apart first.

@@ -84,7 +84,8 @@ void add_self_contact(const Simulation::State& s, Report& r) {
   const SelfContact::Overlaps overlaps =
       SelfContact::make(s.scene, lattices_of(s.cloths), kernel_table(s.simd))->overlaps();
   const SelfContact::Record& record = s.self_collision->record();
-  r.contact = {record.energy_taken, record.greatest_held, record.least_distance};
+  r.contact = {record.contacts_now, record.energy_taken, record.greatest_held,
+               record.least_distance};
   r.penetration.self_pairs = overlaps.pairs;
   r.penetration.self_max = overlaps.deepest;
 }
@@ -112,13 +113,12 @@ void add_idle(const Simulation::State& s, Report& r) {
     const SelfContact::Record& of = s.self_collision->record();
     const double runs = double(std::max<std::int64_t>(of.runs, 1));
     char why[240];
-    std::snprintf(
-        why, sizeof why,
-        "ran after %.1f %% of the substeps, searched in %.1f %% of those; %.1f %% of the "
-        "particles had nothing near; %.1f contacts, swept %.1f times",
-        percent_of_substeps(s.self_collision_runs), 100 * double(of.searches) / runs,
-        100 * of.passed_over / (runs * double(s.self_collision->particles())),
-        double(of.contacts) / runs, double(of.sweeps) / runs);
+    std::snprintf(why, sizeof why,
+                  "ran after %.1f %% of the substeps, searched in %.1f %% of those; %.1f %% of the "
+                  "particles had nothing near; %.1f contacts, swept %.1f times",
+                  percent_of_substeps(s.self_collision_runs), 100 * double(of.searches) / runs,
+                  100 * of.passed_over / (runs * double(s.self_collision->particles())),
+                  double(of.contacts) / runs, double(of.sweeps) / runs);
     r.skipped.push_back({"self_collision", why});
     if (s.self_collision->surfaces()) {
       std::snprintf(why, sizeof why, "pairs listed %.1f times; %lld moves of particles cut short",

@@ -217,9 +217,10 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
   if (const std::size_t crossings = untangle->due() ? untangle->crossings() : 0; crossings > 0)
     notes.push_back(
         std::to_string(crossings) + " edges pass through triangles of cloth at the start; " +
-        (self_collision->surfaces() ? "the smaller part of what meets is taken through, row by row"
-                 : "their particles are kept apart on the sides where they are (mode surface takes "
-                   "such sheets apart)"));
+        (self_collision->surfaces()
+             ? "the smaller part of what meets is taken through, row by row"
+             : "their particles are kept apart on the sides where they are (mode surface takes "
+               "such sheets apart)"));
 }
 
 // What a cloth's particles are accelerated by as they lie, bodies that they touch included [m/s²].

@@ -112,6 +112,7 @@ struct Simulation::State {
   std::vector<physics::Carry*> carried_;           // in the plan of each cloth; null while it rests
   int until_collision_ = 1;                        // substeps from one run of contact to the next
   bool clamps_noted_ = false;
+  std::vector<std::uint8_t> stretch_noted_;  // of every cloth
   physics::StepGuard guard_;
   bool was_driven_ = false;  // in the frame before
   double limit_ = 0;         // s; the stability limit at the end of the last frame (explicit)
@@ -158,9 +159,11 @@ struct Simulation::State {
   void run_frame();
   void check_strain_limits();
   void run_with_contact();
+  physics::SelfContact::Interval contact_interval(int end, int count) const;
   void begin_contact();
   void start_anew();
   void note_clamps();
+  void note_stretch();
   physics::ClothStep& step_with(int cloth, int particle);
   void plan_changed();
   Plan describe_stages() const;

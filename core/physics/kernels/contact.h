@@ -198,7 +198,8 @@ struct ContactPackets {
   const Place* place;
   const Displacement* moved;
   Displacement* change;  // of displacements by contact, and inverse masses again
-  float share;           // of what is too close, that is put apart at once
+  float share;           // of what is too close, that is put apart at once,
+  float most;            // but no more than that [m]
 };
 
 }  // namespace weft::physics

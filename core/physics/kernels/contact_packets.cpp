@@ -149,7 +149,7 @@ WEFT_INLINE Wide separate_lanes(ContactPacket<N>& p, const ContactPackets<N>& gi
   const Wide held = load(p.held + l), distance = load(p.distance + l);
   const Wide left = dot(load_each(p.normal, l), relative(p, change, l)) + load(p.gap + l) +
                     (min(distance, held) - held);
-  store(p.gap + l, select(left < 0.0f, left * given.share, left));
+  store(p.gap + l, select(left < 0.0f, max(left * given.share, wide(-given.most)), left));
   for (int k = 0; k < 3; ++k) store(p.rubbed[k] + l, Wide{});
   store(p.pressed + l, Wide{});
   store(p.friction + l, Wide{});
@@ -209,8 +209,9 @@ int meeting_pairs(const MeetingPairs& given) {
     const Wide square = dot(d.xyz, d.xyz), near = d.last * s.reach;
     // d + min(0, n·u) < near, times d.
     const Wide distance = sqrt(square);
-    const LaneBits meet = where_less(square + min(Wide{}, dot(d.xyz, u.xyz)), near * distance) &
-                          first_lanes(s.pairs - k);
+    const LaneBits meet =
+        where_less(square + min(Wide{}, dot(d.xyz, u.xyz)), near * distance) &
+        first_lanes(s.pairs - k);
     if (meet == 0) continue;
     store_lanes(s.meeting.owner + found, meet, lanes_at(s.owner + k));
     found += store_lanes(s.meeting.neighbour + found, meet, lanes_at(s.neighbour + k));

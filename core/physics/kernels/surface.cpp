@@ -63,10 +63,6 @@ WEFT_INLINE Wide clamp01(Wide s) {
   return min(max(s, Wide{}), wide(1));
 }
 
-WEFT_INLINE Wide3 cross(Wide3 a, Wide3 b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 WEFT_INLINE void fill_shape(Shape& s) {
   const auto edge = [&](int i, int j) {
     const Wide3 along = s.x[j] - s.x[i];

@@ -9,9 +9,6 @@
 namespace weft::physics {
 namespace {
 
-// Of the distance held: pairs that end the interval nearer than that, unhindered, may touch once others
-// push them, and so are contacts.
-constexpr float kReach = 1.03f;
 constexpr std::size_t kAtOnce = 256;  // pairs of squares that are measured in one go
 constexpr std::size_t kFewLists = 8;  // that one thread does faster
 
@@ -155,34 +152,38 @@ void SelfContact::scatter(ContactSolver<N>& solver, double seconds) {
 }
 
 template <int N>
-auto SelfContact::solve(ContactSolver<N>& solver, double seconds, Threads& threads) -> Met {
-  record_.contacts += std::int64_t(solver.contacts().size());
+auto SelfContact::solve(ContactSolver<N>& solver, const Interval& interval, Threads& threads)
+    -> Met {
+  record_.contacts_now = std::int64_t(solver.contacts().size());
+  record_.contacts += record_.contacts_now;
   const std::int64_t swept = solver.sweeps();
-  const auto solved = solver.solve(place_.data(), moved_.data(), seconds, threads);
+  const auto solved = solver.solve(place_.data(), moved_.data(),
+                                   {interval.substeps * interval.dt, interval.substeps, interval.gravity}, threads);
   record_.sweeps += solver.sweeps() - swept;
   return {solved.fastest, solved.deepest};
 }
 
-auto SelfContact::respond(double dt, int since, Threads& threads) -> Met {
-  const double seconds = since * dt;
+auto SelfContact::respond(const Interval& interval, Threads& threads) -> Met {
+  const double seconds = interval.substeps * interval.dt;
   Met met;
   touched_ = false;
+  record_.contacts_now = 0;
   if (blocks_.active() == 0) {
     squares_listed_ = false;
     return met;
   }
   if (surfaces()) {
     find_among_surfaces(threads);
-    met = solve(*surfaces_, seconds, threads);
+    met = solve(*surfaces_, interval, threads);
     hold_together(threads);
     scatter(*surfaces_, seconds);
     surfaces_->clear();
   } else {
     find_among_particles(threads);
-    met = solve(*spheres_, seconds, threads);
+    met = solve(*spheres_, interval, threads);
     scatter(*spheres_, seconds);
     spheres_->clear();
-    if (course_) push_by_course(dt, since);
+    if (course_) push_by_course(interval.dt, interval.substeps);
   }
   record_.least_distance = std::min(record_.least_distance, 1 - met.deepest);
   return met;

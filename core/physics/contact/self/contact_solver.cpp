@@ -13,6 +13,11 @@ constexpr float kEnough = 0.02f, kEnoughOfHeld = 1e-5f;
 // Of what is missing of a distance, that is put right in one run; nothing where less is missing than so
 // much of it.
 constexpr float kShare = 0.3f, kShallow = 0.002f;
+// Thicknesses a second: positions alone move no faster. Faster, they would stretch what does not move along,
+// and that makes energy.
+constexpr float kSlow = 2;
+// Times its weight, that presses a sheet on another: positions alone undo what that moves it by.
+constexpr double kPressed = 4;
 constexpr std::int32_t kPacketsAtOnce = 8, kFewPackets = 64;
 
 }  // namespace
@@ -147,7 +152,7 @@ float ContactSolver<N>::sweep(Displacement* change, float enough, int most) {
   for (int s = 0; s < most; ++s) {
     for_each_part([&](std::int32_t from, std::int32_t count) {
       corrections[std::size_t(from)] =
-          kernels_.sweep({&packets_[std::size_t(from)], count, places_, moved_, change, 0});
+          kernels_.sweep({&packets_[std::size_t(from)], count, places_, moved_, change, 0, 0});
     });
     ++sweeps_;
     greatest = *std::max_element(corrections.begin(), corrections.end());
@@ -159,11 +164,11 @@ float ContactSolver<N>::sweep(Displacement* change, float enough, int most) {
 
 // Returns the greatest part of the distance held that was missing.
 template <int N>
-float ContactSolver<N>::separate() {
+float ContactSolver<N>::separate(float most) {
   corrections_.assign(packets_.size(), 0);
   for_each_part([&](std::int32_t from, std::int32_t count) {
     corrections_[std::size_t(from)] = kernels_.separate(
-        {&packets_[std::size_t(from)], count, places_, moved_, change_.data(), kShare});
+        {&packets_[std::size_t(from)], count, places_, moved_, change_.data(), kShare, most});
   });
   const float deepest = *std::max_element(corrections_.begin(), corrections_.end());
   if (deepest > kShallow) sweep(lift_.data(), kEnoughOfHeld * held_, kSeparatingSweeps);
@@ -184,7 +189,7 @@ void ContactSolver<N>::keep_impulses() {
 }
 
 template <int N>
-auto ContactSolver<N>::solve(const Place* place, const Displacement* moved, double seconds,
+auto ContactSolver<N>::solve(const Place* place, const Displacement* moved, Interval interval,
                              Threads& threads) -> Solved {
   places_ = place;
   moved_ = moved;
@@ -194,16 +199,31 @@ auto ContactSolver<N>::solve(const Place* place, const Displacement* moved, doub
     return {0, 0};
   }
   colour();
-  fill(seconds);
+  fill(interval.seconds);
   corrections_.assign(packets_.size(), 0);
   for_each_part([&](std::int32_t from, std::int32_t count) {
-    corrections_[std::size_t(from)] =
-        kernels_.prepare({&packets_[std::size_t(from)], count, places_, moved_, change_.data(), 0});
+    corrections_[std::size_t(from)] = kernels_.prepare(
+        {&packets_[std::size_t(from)], count, places_, moved_, change_.data(), 0, 0});
   });
   const float fastest = *std::max_element(corrections_.begin(), corrections_.end());
   sweep(change_.data(), kEnoughOfHeld * held_, kSweeps);
   keep_impulses();
-  return {fastest, separate()};
+  const double most =
+      (kSlow * double(held_) + kPressed * interval.gravity * interval.seconds) * interval.seconds;
+  const float deepest = separate(float(most));
+  settle(interval.substeps);
+  return {fastest, deepest};
+}
+
+// Where things met in an interval of several substeps, impulses act in the last of them: it moves positions
+// by that part of the displacement.
+template <int N>
+void ContactSolver<N>::settle(int substeps) {
+  const float beyond = 1 - 1 / float(substeps);
+  if (!(beyond > 0)) return;
+  for (const std::int32_t body : touched_)
+    for (std::size_t k = 0; k < 3; ++k)
+      lift_[std::size_t(body)].u[k] -= beyond * change_[std::size_t(body)].u[k];
 }
 
 template <int N>

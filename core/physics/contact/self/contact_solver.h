@@ -38,8 +38,13 @@ class ContactSolver {
     float fastest;  // m, relative displacement of two that touch
     float deepest;  // of the distance held, that is missing after all
   };
-  // Displacements in an interval of so many seconds, from these places.
-  Solved solve(const Place* place, const Displacement* moved, double seconds, Threads& threads);
+  struct Interval {
+    double seconds;
+    int substeps;
+    double gravity;  // m/s²
+  };
+  // Displacements in an interval, from these places.
+  Solved solve(const Place* place, const Displacement* moved, Interval interval, Threads& threads);
 
   // What comes of it: bodies, each once, with the displacement by which their velocities change, and
   // what their positions alone do.
@@ -71,7 +76,8 @@ class ContactSolver {
   template <class Work>
   void for_each_part(const Work& work);
   float sweep(Displacement* change, float enough, int most);
-  float separate();
+  float separate(float most);
+  void settle(int substeps);
 
   const ContactKernels<N>& kernels_;
   const std::size_t bodies_;

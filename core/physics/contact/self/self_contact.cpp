@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -23,11 +24,9 @@ constexpr float kFlatSurface = 0.5f;
 constexpr float kLeastSkin = 0.45f, kMostSkin = 1.4f;
 constexpr int kFewRuns = 3, kManyRuns = 8;
 constexpr int kRunsToEdges = 16;  // until what was not flat is looked at again
-// Of the thickness, relative motion between two runs: of those that touch; of others, which must
-// not come from a thickness apart to the other side.
-constexpr double kMotion = 0.5, kMotionApart = 0.9;
-constexpr int kMostSubsteps = 32;  // between two looks
-constexpr int kMostSubstepsTouching = 4;
+// Of the thickness, that what does not touch, but may, moves against each other between two runs.
+constexpr float kMotion = 0.1f;
+constexpr int kMostSubsteps = 32;   // between two looks
 constexpr std::size_t kFew = 4096;  // particles that one thread does faster
 
 // Their names are still to be given. Rows are whole groups of lanes.
@@ -157,7 +156,8 @@ void SelfContact::begin(Threads& threads) {
 }
 
 void SelfContact::restart() {
-  begun_ = listed_ = squares_listed_ = may_touch_ = false;
+  begun_ = listed_ = squares_listed_ = false;
+  record_.contacts_now = 0;
   skin_ = 0;
   kept_runs_ = 0;
   if (spheres_) spheres_->forget();
@@ -250,14 +250,9 @@ void SelfContact::list_beside(std::size_t block, float range) {
   found.pad();
 }
 
-// Substeps until it has to come again, at most.
-double SelfContact::most_substeps(double dt, double longest) const {
-  if (!may_touch_) return kMostSubsteps;
-  return std::min<double>(longest / dt, kMostSubstepsTouching);
-}
-
-int SelfContact::run(double dt, int since, double longest, Threads& threads) {
-  const float reach = thickness_ * kHeld, motion = float(kMotionApart) * thickness_;
+int SelfContact::run(const Interval& interval, Threads& threads) {
+  const double dt = interval.dt;
+  const float reach = thickness_ * kHeld, motion = kMotion * thickness_;
   ++record_.runs;
   ++kept_runs_;
   gather(threads);
@@ -265,8 +260,7 @@ int SelfContact::run(double dt, int since, double longest, Threads& threads) {
   const bool edges = !listed_ || kept_runs_ % kRunsToEdges == 0;
   if (edges) blocks_.measure_edges(threads);
   const Blocks::Outlook now =
-      blocks_.look(reach, skin_ * thickness_, motion, most_substeps(dt, longest) * dt);
-  may_touch_ = now.touching;
+      blocks_.look(reach, skin_ * thickness_, motion, (touches() ? 1 : kMostSubsteps) * dt);
   if (!listed_ || !now.covered) {
     if (kept_runs_ <= kFewRuns) skin_ *= 1.2f;
     if (kept_runs_ > kManyRuns) skin_ *= 0.8f;
@@ -275,12 +269,11 @@ int SelfContact::run(double dt, int since, double longest, Threads& threads) {
     list_pairs(reach, skin_ * thickness_, threads);
   }
   record_.passed_over += double(particles_ - blocks_.active());
-  const Met met = respond(dt, since, threads);
+  respond(interval, threads);
   std::swap(place_, now_);
   begun_ = true;
-  const double touching = kMotion * thickness_ * since * dt / std::max(met.fastest, 1e-12);
-  const int most = clamp_to_int(most_substeps(dt, longest), 1, kMostSubsteps);
-  return clamp_to_int(std::min(now.seconds, touching) / dt, 1, most);
+  if (touches()) return 1;
+  return int(std::bit_floor(unsigned(clamp_to_int(now.seconds / dt, 1, kMostSubsteps))));
 }
 
 SelfContact::Overlaps SelfContact::overlaps() {

@@ -2,15 +2,17 @@
 // thickness) or among surfaces (mode `surface`, vertices against triangles and edges against edges; if
 // one cloth asks for it, it holds for all that take part). Both follow one rule.
 //
-// Every few substeps, with x₀ where all was the last time, u = x - x₀ what it has moved since, and D the
-// seconds in between:
+// After every substep where anything touches, else every few, with x₀ where all was the last time, u =
+// x - x₀ what it has moved since, and D the seconds in between:
 //
 //   1. Contacts: pairs nearer than h at x₀ or, by u, now. Normals, distances and sides are those at x₀.
 //   2. Impulses on u (contact_solver.h): things approach until they are h apart, no further when nearer,
 //      and what touches does not slide, or slides against friction. Nothing here pushes apart.
-//   3. v += Δu/D, x += Δu: momentum is kept, and energy is lost or kept.
+//   3. v += Δu/D, x += Δu: momentum is kept, and energy is lost or kept. In one substep that is what an
+//      impulse on velocities before it does; of several it is the last that it acts in, or positions would
+//      leave those behind that have not been touched, and stretch what is between.
 //   4. What is nearer than h all the same is put apart by a share of what is missing, in positions
-//      alone: pushing apart makes no speed.
+//      alone, and slowly: pushing apart makes no speed.
 //   5. Surfaces: what could still pass through moves as one (passing.cpp).
 //
 // (Bridson, Fedkiw, Anderson 2002; friction on displacements is static friction: nothing creeps.) Where
@@ -57,9 +59,13 @@ class SelfContact {
   // run(), which ends one interval and begins the next.
   void begin(Threads& threads);
   bool begun() const { return begun_; }
-  // Ends an interval of `since` substeps of dt. Returns after how many substeps to come again, at most
-  // `longest` [s] where sheets touch.
-  int run(double dt, int since, double longest, Threads& threads);
+  struct Interval {
+    double dt;  // s
+    int substeps;
+    double gravity;  // m/s²
+  };
+  // Ends an interval. Returns after how many substeps to come again, a power of two.
+  int run(const Interval& interval, Threads& threads);
 
   // Positions or velocities are others than run() left.
   void restart();
@@ -106,8 +112,9 @@ class SelfContact {
   struct Record {
     std::int64_t runs = 0, searches = 0;  // times that contact ran, and lists were made anew
     double passed_over = 0;  // particles in blocks that nothing could touch, of all runs
-    std::int64_t contacts = 0, sweeps = 0;
-    double energy_taken = 0;    // J, of motion, by impulses
+    std::int64_t contacts = 0, sweeps = 0;  // of all runs
+    std::int64_t contacts_now = 0;          // of the last
+    double energy_taken = 0;                // J, of motion, by impulses
     std::int64_t held = 0;      // particles whose motion was cut so that nothing passes,
     double greatest_held = 0;   // by how much at most [m]
     double least_distance = 1;  // of two that touched, of the distance held
@@ -146,21 +153,21 @@ class SelfContact {
   void list_sites(Threads& threads);
   void list_pairs(float reach, float skin, Threads& threads);
   void list_beside(std::size_t block, float range);
-  double most_substeps(double dt, double longest) const;
+  bool touches() const { return record_.contacts_now > 0; }
 
   // contact_response.cpp
   struct Met {
     double fastest = 0;  // m, relative displacement of two that touch
     double deepest = 0;  // of the distance at which they are held, that is missing in the end
   };
-  Met respond(double dt, int since, Threads& threads);
+  Met respond(const Interval& interval, Threads& threads);
   void find_among_particles(Threads& threads);
   void find_among_surfaces(Threads& threads);
   void measure_surfaces(const SquarePairs& pairs, SurfaceSearch search, float reach,
                         Threads& threads);
   void sort_spheres();
   template <int N>
-  Met solve(ContactSolver<N>& solver, double seconds, Threads& threads);
+  Met solve(ContactSolver<N>& solver, const Interval& interval, Threads& threads);
   template <int N>
   void scatter(ContactSolver<N>& solver, double seconds);
   float friction_of(std::int32_t a, std::int32_t b) const;
@@ -208,7 +215,6 @@ class SelfContact {
   bool begun_ = false;
   bool listed_ = false;  // whether lists of pairs are there
   bool squares_listed_ = false;
-  bool may_touch_ = false;  // whether any sheets do, as seen the last time
   bool forced_ = false;
   bool touched_ = false;
   float skin_ = 0;     // of the thickness
