@@ -36,6 +36,16 @@ Vec3 plus(const Vec3& a, const Vec3& b, double times) {
   return {a[0] + times * b[0], a[1] + times * b[1], a[2] + times * b[2]};
 }
 
+double size(const Vec3& v) {
+  return std::hypot(v[0], v[1], v[2]);
+}
+
+double greatest_side(const Scene& scene) {
+  double side = 0;
+  for (const Cloth& c : scene.cloths) side = std::max({side, size(c.grid.u), size(c.grid.v)});
+  return side;
+}
+
 bool projects(const Scene& scene) {
   return scene.solver.method == Method::compliant || scene.solver.method == Method::positional;
 }
@@ -144,12 +154,10 @@ Meeting run_meeting(const Scene& scene, int threads) {
   options.threads = threads;
   weft::Simulation simulation(scene, options);
   const weft::Report start = simulation.report();
-  double motion = 0, side = 0;
-  for (const Cloth& c : scene.cloths) {
-    const auto size = [](const Vec3& v) { return std::hypot(v[0], v[1], v[2]); };
+  double motion = 0;
+  for (const Cloth& c : scene.cloths)
     motion += c.density * size(c.grid.u) * size(c.grid.v) * size(c.velocity);
-    side = std::max({side, size(c.grid.u), size(c.grid.v)});
-  }
+  const double side = greatest_side(scene);
   Meeting m;
   while (m.finite && simulation.time() < scene.time.seconds - 1e-9) {
     simulation.advance_frame();
@@ -180,19 +188,22 @@ std::string broken_laws(const Scene& scene, const Meeting& m) {
     std::snprintf(text, sizeof text, "%s%s %.3g", broken.empty() ? "" : ", ", what, figure);
     broken += text;
   };
-  // The sweeps of `positional` do not keep momentum themselves once a sheet deforms, and those of lines to
-  // single precision of forces that are much greater than the blow. What moves as one, so that nothing
-  // passes, keeps its turn alone.
+  // The sweeps of `positional` do not keep momentum and energy themselves once a sheet deforms, and those of
+  // lines momentum to single precision of forces that are much greater than the blow. What moves as one, so
+  // that nothing passes, keeps its turn alone; and so do positions that are put apart, by two thicknesses a
+  // second at most, while the things slide on each other.
   const weft::Solver& solver = scene.solver;
   const bool positional = solver.method == Method::positional;
   const bool lines = solver.method == Method::compliant && solver.sweep == Sweep::line;
+  const weft::SelfCollision& self = scene.cloths[0].self_collision;
   expect(m.finite, "not finite", 0);
   expect(m.met, "does not meet", 0);
-  expect(m.gain <= 1e-3, "energy gained", m.gain);
+  expect(m.gain <= (positional ? 2e-2 : 1e-3), "energy gained", m.gain);
   expect(m.linear <= (positional ? 2e-2 : lines ? 5e-4 : 2e-6), "linear momentum", m.linear);
-  if (scene.cloths[0].self_collision.friction == 0 && !m.clamped)
-    expect(m.angular <= (positional ? 2e-2 : 2e-3), "angular momentum", m.angular);
-  if (scene.cloths[0].self_collision.mode == SelfCollisionMode::surface)
+  const double slid = 2 * self.thickness * scene.time.seconds / greatest_side(scene);
+  if (self.friction == 0 && !m.clamped)
+    expect(m.angular <= (positional ? 2e-2 : 1e-3 + slid), "angular momentum", m.angular);
+  if (self.mode == SelfCollisionMode::surface)
     expect(m.crossings == 0, "crossings", double(m.crossings));
   return broken;
 }

@@ -66,6 +66,7 @@ void SelfContact::find_among_particles(Threads& threads) {
       Contact<2> c{};
       c.key = std::uint64_t(a) << 32 | std::uint64_t(b);
       c.body = {a, b};
+      c.held = place_[std::size_t(a)].x[3] + place_[std::size_t(b)].x[3];
       c.friction = friction_of(a, b);
       contacts.push_back(c);
     }

@@ -22,7 +22,7 @@ struct Contact {
   std::uint64_t key;  // the same two things have the same; contacts come in its order
   std::array<std::int32_t, N> body;
   std::array<float, N> share;   // of four; two bodies have 1 and -1,
-  std::array<float, 3> normal;  // and are measured by their places
+  std::array<float, 3> normal;  // and are measured by their places, but for held
   float distance, held;         // m
   float friction;
 };

@@ -25,7 +25,7 @@ constexpr float kLeastSkin = 0.45f, kMostSkin = 1.4f;
 constexpr int kFewRuns = 3, kManyRuns = 8;
 constexpr int kRunsToEdges = 16;  // until what was not flat is looked at again
 // Of the thickness, that what does not touch, but may, moves against each other between two runs.
-constexpr float kMotion = 0.1f;
+constexpr float kMotion = 0.03f;
 constexpr int kMostSubsteps = 32;   // between two looks
 constexpr std::size_t kFew = 4096;  // particles that one thread does faster
 
