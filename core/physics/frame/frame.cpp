@@ -133,7 +133,8 @@ void Simulation::State::run_with_contact() {
 SelfContact::Interval Simulation::State::contact_interval(int end, int count) const {
   const Vec3 g = gravity_at(scene, double(frame) * scene.time.frame + end * dt);
   const double gravity = std::sqrt(dot(g, g));
-  return {dt, count, gravity};
+  // The second order begins anew with each change, so that it comes into its own in between.
+  return {dt, count, scene.solver.order == 2 && !is_explicit(method) ? 4 : 1, gravity};
 }
 
 // Motion that contact had to cut short is told of once.

@@ -158,8 +158,11 @@ auto SelfContact::solve(ContactSolver<N>& solver, const Interval& interval, Thre
   record_.contacts_now = std::int64_t(solver.contacts().size());
   record_.contacts += record_.contacts_now;
   const std::int64_t swept = solver.sweeps();
-  const auto solved = solver.solve(place_.data(), moved_.data(),
-                                   {interval.substeps * interval.dt, interval.substeps, interval.gravity}, threads);
+  const auto solved = solver.solve(
+      place_.data(), moved_.data(),
+      {interval.substeps * interval.dt,
+       interval.substeps <= interval.touching ? 1 : interval.substeps, interval.gravity},
+      threads);
   record_.sweeps += solver.sweeps() - swept;
   return {solved.fastest, solved.deepest};
 }

@@ -40,7 +40,7 @@ class ContactSolver {
   };
   struct Interval {
     double seconds;
-    int substeps;
+    int substeps;    // that impulses act in the last of
     double gravity;  // m/s²
   };
   // Displacements in an interval, from these places.

@@ -62,6 +62,7 @@ class SelfContact {
   struct Interval {
     double dt;  // s
     int substeps;
+    int touching;    // substeps that the next may have where things touch
     double gravity;  // m/s²
   };
   // Ends an interval. Returns after how many substeps to come again, a power of two.
