@@ -128,11 +128,12 @@ WEFT_INLINE Wide sweep_lanes(ContactPacket<N>& p, Displacement* changes, int l) 
     const Wide3 slide = load_each(p.slide, l) + (r - normal * along);
     const Wide3 asked = rubbed - slide * per;
     const Wide size = sqrt(dot(asked, asked)), most = friction * pressed;
-    const Wide3 given = asked * select(size > most, most / max(size, wide(1e-30f)), wide(1));
+    const Wide3 given = asked * select(size >= most, most / max(size, wide(1e-30f)), wide(1));
     const Wide3 rub = given - rubbed;
     impulse = impulse + rub;
     store_each(p.rubbed, l, given);
-    greatest = max(greatest, sqrt(dot(rub, rub)));
+    // (Its length may be 0 where it is not.)
+    greatest = max(greatest, max(abs(rub.x), max(abs(rub.y), abs(rub.z))));
   }
   if (!any(greatest > 0.0f)) return Wide{};
   store(p.pressed + l, pressed);
@@ -209,9 +210,8 @@ int meeting_pairs(const MeetingPairs& given) {
     const Wide square = dot(d.xyz, d.xyz), near = d.last * s.reach;
     // d + min(0, n·u) < near, times d.
     const Wide distance = sqrt(square);
-    const LaneBits meet =
-        where_less(square + min(Wide{}, dot(d.xyz, u.xyz)), near * distance) &
-        first_lanes(s.pairs - k);
+    const LaneBits meet = where_less(square + min(Wide{}, dot(d.xyz, u.xyz)), near * distance) &
+                          first_lanes(s.pairs - k);
     if (meet == 0) continue;
     store_lanes(s.meeting.owner + found, meet, lanes_at(s.owner + k));
     found += store_lanes(s.meeting.neighbour + found, meet, lanes_at(s.neighbour + k));

@@ -212,11 +212,10 @@ class Pairs {
     const auto [i, j] = kEdges[n];
     const auto [k, l] = kEdges[m];
     Wide s, t;
-    const auto distance = [&](auto measure) {
-      return measure(shape_[0].x[i], shape_[0].edge[n], shape_[1].x[k], shape_[1].edge[m], s, t);
-    };
-    const Wide square =
-        kSearch == SurfaceSearch::contacts ? distance(edges_pass) : distance(edge_edge);
+    const Wide3 p = shape_[0].x[i], q = shape_[1].x[k];
+    const Edge &e = shape_[0].edge[n], &f = shape_[1].edge[m];
+    const Wide square = kSearch == SurfaceSearch::contacts ? edges_pass(p, e, q, f, s, t)
+                                                           : edge_edge(p, e, q, f, s, t);
     const WideInt near = met(square, same(0, i, k) | same(0, i, l) | same(0, j, k) | same(0, j, l));
     if (!any(near)) return;
     Closest c{};

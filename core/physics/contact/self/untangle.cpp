@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kRowsAFrame = 8;   // that the line where sheets meet moves by
 constexpr int kMostFrames = 90;  // what has not come apart by then stays as it is
-constexpr double kCalm = 2e-3;   // s, until velocities within sheets that cross are a third
+constexpr double kCalm = 4e-3;   // s, until velocities within sheets that cross are a third
 constexpr int kFold = 4;  // columns or rows: what is nearer on a sheet crosses in a fold of it
 constexpr std::size_t kMostOfLine = 1 << 15;  // particles that are looked at
 // Times the area that it has: of a pinned particle, and of one that is an end of a crossing edge, too.
@@ -144,6 +144,7 @@ void Untangle::pull_apart() {
   due_ = since_ > 0 && since_ <= kMostFrames;
   if (!due_) came_apart_ = false;
   if (!due_) return;
+  mark_what_crosses();
   // Where all crosses all, which takes long to tell, one a frame.
   const int rows = crossings_.size() > x_.size() ? 1 : kRowsAFrame;
   for (int row = 0; row < rows && !crossings_.empty(); ++row) {
@@ -151,18 +152,18 @@ void Untangle::pull_apart() {
     move_ends();
     crossings_ = find_crossings(x_, faces_, edges_);
   }
-  for (Sheet& s : sheets_) s.crosses = passes(s);
   // What has come apart may settle for a frame; where it crosses again, contact keeps it apart at once.
   if (crossings_.empty() && std::exchange(came_apart_, true))
     std::fill(passing_.begin(), passing_.end(), std::uint8_t{0});
   put_back();
 }
 
-// Whether any of a sheet's particles has to pass.
-bool Untangle::passes(const Sheet& s) const {
-  const auto first = passing_.begin() + std::ptrdiff_t(s.first);
-  const auto last = first + s.cloth->lattice.rows * s.cloth->lattice.columns;
-  return std::find(first, last, 1) != last;
+// Sheets that cross another, or themselves.
+void Untangle::mark_what_crosses() {
+  for (Sheet& s : sheets_) s.crosses = false;
+  for (const Crossing& c : crossings_)
+    for (const std::int32_t particle : {c.edge[0], faces_[std::size_t(c.face)][0]})
+      sheets_[std::size_t(&sheet_of(particle) - sheets_.data())].crosses = true;
 }
 
 void Untangle::calm(double seconds) {

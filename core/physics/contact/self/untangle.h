@@ -51,7 +51,7 @@ class Untangle {
     double thickness;   // m
     double area;        // m², of a particle
     std::size_t first;  // number of its first particle
-    bool crosses;       // something of it had to pass the last time
+    bool crosses;       // anything, the last time
   };
 
   // Of an edge that crosses, with all that it crosses along one line.
@@ -74,6 +74,7 @@ class Untangle {
   };
 
   bool may_cross(const Scene& scene) const;
+  void mark_what_crosses();
   void find_lines();
   void list_ends();
   std::size_t first_end(std::int32_t particle) const;
@@ -81,7 +82,6 @@ class Untangle {
   void choose_part(std::span<const std::int32_t> ends);
   void list_neighbours();
   double area(std::int32_t particle, double pinned) const;
-  bool passes(const Sheet& sheet) const;
   bool passes(std::int32_t particle, std::int32_t line) const;
   bool in_a_fold(std::int32_t a, std::int32_t b) const;
   Vec3 to_neighbours(std::int32_t particle) const;
