@@ -119,8 +119,8 @@ void register_self_collision(bool quick) {
     for (int threads : {1, 2}) {
       add_part("sort", n, threads, true, [](Sheet& s) { s.self->sort(s.margin(), s.threads); });
       add_part("search", n, threads, true, [](Sheet& s) { s.self->find(s.margin(), s.threads); });
-      add_part("run", n, threads, true, [](Sheet& s) { s.self->run({dt, 1, 1, 0}, s.threads); });
-      add_part("look", n, threads, false, [](Sheet& s) { s.self->run({dt, 1, 1, 0}, s.threads); });
+      add_part("run", n, threads, true, [](Sheet& s) { s.self->run({dt, 1, 0}, s.threads); });
+      add_part("look", n, threads, false, [](Sheet& s) { s.self->run({dt, 1, 0}, s.threads); });
     }
 }
 

@@ -122,7 +122,6 @@ void Simulation::State::run_with_contact() {
     s += count;
     const auto start = std::chrono::steady_clock::now();
     until_collision_ = self_collision->run(contact_interval(s, count), threads);
-    if (scene.solver.order == 2 && self_collision->touched()) start_anew();
     if (untangle->due()) untangle->calm(count * dt);
     const auto spent = std::chrono::steady_clock::now() - start;
     self_collision_ns += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
@@ -133,8 +132,7 @@ void Simulation::State::run_with_contact() {
 SelfContact::Interval Simulation::State::contact_interval(int end, int count) const {
   const Vec3 g = gravity_at(scene, double(frame) * scene.time.frame + end * dt);
   const double gravity = std::sqrt(dot(g, g));
-  // The second order begins anew with each change, so that it comes into its own in between.
-  return {dt, count, scene.solver.order == 2 && !is_explicit(method) ? 4 : 1, gravity};
+  return {dt, count, gravity};
 }
 
 // Motion that contact had to cut short is told of once.
@@ -144,13 +142,6 @@ void Simulation::State::note_clamps() {
   plan.notes.push_back("frame " + std::to_string(frame) +
                        ": sheets would have passed through each other; what met moves as one until "
                        "it comes apart (shorter substeps or a greater thickness avoid that)");
-}
-
-// The second-order substep goes on from a smooth past. Where contact has changed a part of a sheet, the
-// whole begins anew: particles that begin anew beside others that do not would not keep momentum.
-void Simulation::State::start_anew() {
-  for (auto& step : cloths)
-    for (const auto& stage : step->stages()) stage->restart();
 }
 
 // Nothing passes through, so that what is drawn against something stretches instead. Told of once a cloth.

@@ -161,7 +161,6 @@ struct Simulation::State {
   void run_with_contact();
   physics::SelfContact::Interval contact_interval(int end, int count) const;
   void begin_contact();
-  void start_anew();
   void note_clamps();
   void note_stretch();
   physics::ClothStep& step_with(int cloth, int particle);

@@ -20,7 +20,7 @@ inline constexpr double kLeastSubstep = 1e-6;  // s; below, single precision los
 // Of the stability limit, taken by automatic substeps; by those of sheets that may meet. Leapfrog keeps
 // E + O((dt ω)²): what a blow puts into motion of frequency ω comes to 1/(1 - (dt ω/2)²) times as much as
 // it swings, which sheets that meet would show as energy from nowhere (5 times at 0.9, 2 times at 0.7).
-inline constexpr double kLimitShare = 0.9, kLimitShareOfContact = 0.7;
+inline constexpr double kLimitShare = 0.9, kLimitShareOfContact = 0.9;
 inline constexpr float kFarAway = 1e7f;          // m; nothing in a sane scene gets there
 inline constexpr double kInteractionPasses = 1;  // s; what a person did has passed by then
 

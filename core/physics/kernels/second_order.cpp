@@ -6,7 +6,7 @@
 //   v_{n+1} = 3 (x_{n+1} - x*)/(2h)                           v' and the corrections over ⅔h
 //
 // (Hairer, Wanner, "Solving Ordinary Differential Equations II", V.1.) A particle whose
-// velocity is no longer what the substep before left, because contact or a limit has changed it,
+// velocity is no longer what the substep before left, because a body or a limit has changed it,
 // has no smooth past to extrapolate: it takes this substep by implicit Euler, x* = x_n, with h² for
 // its share of every correction. Before the first substep of all, and the first after a change of h, lies
 // free flight, x_{n-1} = x_n - h v_n + ½h² a, v_{n-1} = v_n - h a, a = g - c v_n. Both kinds go through the

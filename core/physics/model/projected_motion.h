@@ -33,6 +33,11 @@ struct History {
     return v_before.bytes() + v_end.bytes() + predicted.bytes() +
            inverse_mass.size() * sizeof(float);
   }
+  // Whether a particle's velocity is what the last substep left, so that it has a smooth past.
+  bool goes_on(const Particles& particles, int row, int column) const;
+  // A change of velocity that was so all along: the past is another one by that, and by so much in one
+  // component of the position before [m].
+  void shift(Particles& particles, int component, int row, int column, float previous, float v);
   Rows v_before, v_end, predicted;
   AlignedArray<float> inverse_mass;
 };

@@ -107,6 +107,20 @@ History::History(const Particles& l)
   std::copy_n(l.inverse_mass.data(), l.inverse_mass.size(), inverse_mass.data());
 }
 
+bool History::goes_on(const Particles& particles, int row, int column) const {
+  const auto same = [&](int k) {
+    return particles.v.at(k, row, column) == v_end.at(k, row, column);
+  };
+  return same(0) && same(1) && same(2);
+}
+
+void History::shift(Particles& particles, int component, int row, int column, float previous,
+                    float v) {
+  particles.previous.at(component, row, column) += previous;
+  v_before.at(component, row, column) += v;
+  v_end.at(component, row, column) += v;
+}
+
 std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
                                                     Multipliers* multipliers) {
   return std::make_unique<Predict>(parts, history, multipliers);

@@ -22,8 +22,11 @@
 
 namespace weft::physics {
 
+struct LatticeParts;
+
 // One cloth that takes part.
 struct Sheet {
+  const LatticeParts* parts;
   Lattice* lattice;
   float thickness, friction;
   float uu, uv, vv;  // rest metric: |di u + dj v|² [m²]

@@ -127,8 +127,9 @@ void SelfContact::find_among_surfaces(Threads& threads) {
 
 // Velocities change with displacements; positions also by what is put apart.
 template <int N>
-void SelfContact::scatter(ContactSolver<N>& solver, double seconds) {
-  const float inverse = float(1 / seconds);
+void SelfContact::scatter(ContactSolver<N>& solver, const Interval& interval) {
+  const double dt = interval.dt;
+  const float inverse = float(1 / (interval.substeps * dt));
   touched_ = !solver.touched().empty();
   double taken = 0;
   for (const std::int32_t n : solver.touched()) {
@@ -137,15 +138,19 @@ void SelfContact::scatter(ContactSolver<N>& solver, double seconds) {
     if (!(w > 0)) continue;
     const Site s = site(n);
     Lattice& l = *sheets_[s.cloth].lattice;
+    History* const history = sheets_[s.cloth].parts->history;
+    const bool goes_on = history && history->goes_on(l, s.row, s.column);
     double before = 0, after = 0;
     for (int k = 0; k < 3; ++k) {
       float& x = l.x.at(k, s.row, s.column);
       float& v = l.v.at(k, s.row, s.column);
+      const float dv = change.u[k] * inverse, dx = change.u[k] + lift.u[k];
       before += double(v) * v;
-      v += change.u[k] * inverse;
+      v += dv;
       after += double(v) * v;
-      x += change.u[k] + lift.u[k];
+      x += dx;
       now_[std::size_t(n)].x[k] = x;
+      if (goes_on) history->shift(l, k, s.row, s.column, dx - dv * float(dt), dv);
     }
     taken += (before - after) / (2 * double(w));
   }
@@ -158,17 +163,14 @@ auto SelfContact::solve(ContactSolver<N>& solver, const Interval& interval, Thre
   record_.contacts_now = std::int64_t(solver.contacts().size());
   record_.contacts += record_.contacts_now;
   const std::int64_t swept = solver.sweeps();
-  const auto solved = solver.solve(
-      place_.data(), moved_.data(),
-      {interval.substeps * interval.dt,
-       interval.substeps <= interval.touching ? 1 : interval.substeps, interval.gravity},
-      threads);
+  const auto solved =
+      solver.solve(place_.data(), moved_.data(),
+                   {interval.substeps * interval.dt, interval.substeps, interval.gravity}, threads);
   record_.sweeps += solver.sweeps() - swept;
   return {solved.fastest, solved.deepest};
 }
 
 auto SelfContact::respond(const Interval& interval, Threads& threads) -> Met {
-  const double seconds = interval.substeps * interval.dt;
   Met met;
   touched_ = false;
   record_.contacts_now = 0;
@@ -180,12 +182,12 @@ auto SelfContact::respond(const Interval& interval, Threads& threads) -> Met {
     find_among_surfaces(threads);
     met = solve(*surfaces_, interval, threads);
     hold_together(threads);
-    scatter(*surfaces_, seconds);
+    scatter(*surfaces_, interval);
     surfaces_->clear();
   } else {
     find_among_particles(threads);
     met = solve(*spheres_, interval, threads);
-    scatter(*spheres_, seconds);
+    scatter(*spheres_, interval);
     spheres_->clear();
     if (course_) push_by_course(interval.dt, interval.substeps);
   }

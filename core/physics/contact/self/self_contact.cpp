@@ -24,9 +24,8 @@ constexpr float kFlatSurface = 0.5f;
 constexpr float kLeastSkin = 0.45f, kMostSkin = 1.4f;
 constexpr int kFewRuns = 3, kManyRuns = 8;
 constexpr int kRunsToEdges = 16;  // until what was not flat is looked at again
-// Of the thickness, that what does not touch, but may, and what does, move against each other between two
-// runs.
-constexpr float kMotion = 0.03f, kMotionTouching = 0.3f;
+// Of the thickness, that what does not touch, but may, moves against each other between two runs.
+constexpr float kMotion = 0.03f;
 constexpr int kMostSubsteps = 32;   // between two looks
 constexpr std::size_t kFew = 4096;  // particles that one thread does faster
 
@@ -62,8 +61,9 @@ std::unique_ptr<SelfContact> SelfContact::make(const Scene& scene,
       uv += u * v;
       vv += v * v;
     }
-    sheets.push_back({&cloths[c]->lattice, float(self.thickness), float(self.friction), float(uu),
-                      float(uv), float(vv), self.response == SelfCollisionResponse::course});
+    sheets.push_back({cloths[c], &cloths[c]->lattice, float(self.thickness), float(self.friction),
+                      float(uu), float(uv), float(vv),
+                      self.response == SelfCollisionResponse::course});
   }
   if (sheets.empty()) return nullptr;
   return std::unique_ptr<SelfContact>(new SelfContact(scene, std::move(sheets), surfaces, kernels));
@@ -260,8 +260,8 @@ int SelfContact::run(const Interval& interval, Threads& threads) {
   blocks_.measure(threads);
   const bool edges = !listed_ || kept_runs_ % kRunsToEdges == 0;
   if (edges) blocks_.measure_edges(threads);
-  const Blocks::Outlook now = blocks_.look(reach, skin_ * thickness_, motion,
-                                           (touches() ? interval.touching : kMostSubsteps) * dt);
+  const Blocks::Outlook now =
+      blocks_.look(reach, skin_ * thickness_, motion, (touches() ? 1 : kMostSubsteps) * dt);
   if (!listed_ || !now.covered) {
     if (kept_runs_ <= kFewRuns) skin_ *= 1.2f;
     if (kept_runs_ > kManyRuns) skin_ *= 0.8f;
@@ -273,9 +273,8 @@ int SelfContact::run(const Interval& interval, Threads& threads) {
   respond(interval, threads);
   std::swap(place_, now_);
   begun_ = true;
-  const double seconds = now.seconds * (touches() ? kMotionTouching / kMotion : 1);
-  const int most = touches() ? interval.touching : kMostSubsteps;
-  return int(std::bit_floor(unsigned(clamp_to_int(seconds / dt, 1, most))));
+  if (touches()) return 1;
+  return int(std::bit_floor(unsigned(clamp_to_int(now.seconds / dt, 1, kMostSubsteps))));
 }
 
 SelfContact::Overlaps SelfContact::overlaps() {

@@ -62,7 +62,6 @@ class SelfContact {
   struct Interval {
     double dt;  // s
     int substeps;
-    int touching;    // substeps that the next may have where things touch
     double gravity;  // m/s²
   };
   // Ends an interval. Returns after how many substeps to come again, a power of two.
@@ -170,7 +169,7 @@ class SelfContact {
   template <int N>
   Met solve(ContactSolver<N>& solver, const Interval& interval, Threads& threads);
   template <int N>
-  void scatter(ContactSolver<N>& solver, double seconds);
+  void scatter(ContactSolver<N>& solver, const Interval& interval);
   float friction_of(std::int32_t a, std::int32_t b) const;
 
   // passing.cpp
