@@ -31,40 +31,19 @@ void widen(Spread& spread, int k, float value) {
   spread.high[k] = std::max(spread.high[k], value);
 }
 
-// The least length of a mean of two vectors, by their squares and their product.
-float least_between(float aa, float bb, float ab) {
-  const float least = std::min(aa, bb);
-  if (ab >= least) return std::sqrt(least);
-  return std::sqrt(std::max(0.0f, aa * bb - ab * ab) / (aa + bb - 2 * ab));
-}
-
 float half_diagonal(const Sheet& s) {
   return 0.5f * std::sqrt(s.uu + s.vv + 2 * std::abs(s.uv));
 }
 
 }  // namespace
 
-void SquarePairs::reserve(std::size_t pairs) {
-  if (owner.size() >= pairs + kPadding) return;
-  owner.resize(2 * pairs + kPadding);
-  neighbour.resize(owner.size());
-}
-
-void SquarePairs::pad() {
-  reserve(count);
-  for (std::vector<std::int32_t>* of : {&owner, &neighbour})
-    std::fill_n(of->data() + count, kPadding, 0);
-}
-
-std::size_t SquarePairs::bytes() const {
-  return owner.capacity() * 2 * sizeof(std::int32_t);
-}
-
 NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<NamedSheet>& named,
                          std::size_t bodies, const KernelTable& kernels)
     : sheets_(sheets),
       named_(named),
       kernels_(kernels),
+      squares_(bodies),
+      beside_(sheets, named, squares_),
       search_(count_particles(sheets_), {}, kernels) {
   float spacing = 0;
   for (const Sheet& s : sheets_) {
@@ -73,16 +52,12 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<Nam
     all_squares_ += std::size_t(s.lattice->columns) * std::size_t(s.lattice->rows);
   }
   beyond_ = kBeyond * spacing;
-  squares_.resize(bodies);
   origins_.resize(bodies);
   chosen_.resize(bodies);
   passing_.resize(bodies);
   asked_.resize(bodies);
   boxes_.resize(bodies);
-  lies_.resize(bodies);
   stride_.resize(bodies);
-  beside_.resize(row_number(sheets_.size(), 0));
-  row_moved_.resize(beside_.size());
   begin_.resize(bodies + 1);
   sorted_.resize(all_squares_);
   left_out_.reserve(all_squares_);
@@ -95,7 +70,8 @@ template <class Visit>
 void NearSquares::for_each_square(const Visit& visit) const {
   for (std::size_t s = 0; s < sheets_.size(); ++s)
     for (int j = 0; j < sheets_[s].lattice->rows; ++j)
-      for (int i = 0; i < sheets_[s].lattice->columns; ++i) visit(number(s, j, i), s, j, i);
+      for (int i = 0; i < sheets_[s].lattice->columns; ++i)
+        visit(std::size_t(named_[s].name(j, i)), s, j, i);
 }
 
 void NearSquares::make_squares() {
@@ -103,8 +79,8 @@ void NearSquares::make_squares() {
     const Lattice& l = *sheets_[sheet].lattice;
     stride_[n] = named_[sheet].stride;
     for (int c = 0; c < 4; ++c)
-      squares_[n].corner[c] = std::int32_t(
-          number(sheet, std::min(j + (c >> 1), l.rows - 1), std::min(i + (c & 1), l.columns - 1)));
+      squares_[n].corner[c] = named_[sheet].name(std::min(j + (c >> 1), l.rows - 1),
+                                                 std::min(i + (c & 1), l.columns - 1));
   });
 }
 
@@ -117,7 +93,7 @@ void NearSquares::update(bool all, const Place* now, Threads& threads) {
   now_ = now;
   joined_.clear();
   if (all) {
-    std::fill(row_moved_.begin(), row_moved_.end(), std::uint8_t{1});
+    beside_.forget();
   } else {
     look_how_far();
     look_who_joined();
@@ -326,116 +302,6 @@ void NearSquares::sort_listed() {
   std::swap(listed_, within_);
 }
 
-// How a square lies: its mean edges, and how far its edges are off them.
-auto NearSquares::lie_of(std::size_t n, const Place* place) const -> Lie {
-  const std::int32_t* const corner = squares_[n].corner;
-  Lie lie{};
-  float warp = 0;
-  for (int k = 0; k < 3; ++k) {
-    const float a = place[corner[0]].x[k], b = place[corner[1]].x[k];
-    const float c = place[corner[2]].x[k], d = place[corner[3]].x[k];
-    lie.u[k] = 0.5f * (b - a + d - c);
-    lie.v[k] = 0.5f * (c - a + d - b);
-    const float off = 0.5f * (a + d - b - c);
-    warp += off * off;
-    lie.uu += lie.u[k] * lie.u[k];
-    lie.vv += lie.v[k] * lie.v[k];
-  }
-  lie.warp = std::sqrt(warp);
-  return lie;
-}
-
-// A row is measured anew where edges have changed by so much that it may matter.
-void NearSquares::measure_row(std::size_t sheet, int row, const Place* place) {
-  constexpr float kChange = 0.03f;  // of the shorter edge at rest
-  const Sheet& s = sheets_[sheet];
-  const float most = kChange * kChange * std::min(s.uu, s.vv);
-  std::uint8_t& moved = row_moved_[row_number(sheet, row)];
-  const std::size_t begin = number(sheet, row, 0), end = begin + std::size_t(s.lattice->columns);
-  for (std::size_t n = begin; n < end && !moved; ++n) {
-    const Lie now = lie_of(n, place), &then = lies_[n];
-    float du = 0, dv = 0;
-    for (int k = 0; k < 3; ++k) {
-      du += (now.u[k] - then.u[k]) * (now.u[k] - then.u[k]);
-      dv += (now.v[k] - then.v[k]) * (now.v[k] - then.v[k]);
-    }
-    const float warped = now.warp - then.warp;
-    moved = !(std::max({du, dv, warped * warped}) <= most);
-  }
-  for (std::size_t n = begin; moved && n < end; ++n) lies_[n] = lie_of(n, place);
-}
-
-std::size_t NearSquares::row_number(std::size_t sheet, int row) const {
-  std::size_t first = 0;
-  for (std::size_t s = 0; s < sheet; ++s) first += std::size_t(sheets_[s].lattice->rows);
-  return first + std::size_t(row);
-}
-
-// Lists of rows that have changed, or the row after them has.
-void NearSquares::list_rows_beside(Threads& threads) {
-  for (std::size_t s = 0; s < sheets_.size(); ++s) {
-    const int rows = sheets_[s].lattice->rows;
-    threads.share(std::size_t(rows), all_squares_ < kFewParticles, [&](std::size_t j) {
-      const std::size_t n = row_number(s, int(j));
-      if (row_moved_[n] || (int(j) + 1 < rows && row_moved_[n + 1]))
-        list_beside(s, int(j), beside_[n]);
-    });
-  }
-  std::fill(row_moved_.begin(), row_moved_.end(), std::uint8_t{0});
-}
-
-// Whether two squares that share a corner, or one with itself, lie so much alike that they cannot touch.
-//
-// Two points of them that are a columns and b rows apart are a A + b B from each other, with A a mean of
-// their edges along rows and B of those along columns. So they are at least ρ times as far apart as on the
-// flat sheet, with
-//
-//   ρ² (1 + |u·v|/(|u||v|)) = min(min |A|²/|u|², min |B|²/|v|²) - max |A·B|/(|u||v|)
-//
-// where u and v are the edges at rest. Contact keeps half of that distance.
-bool NearSquares::lie_alike(const Sheet& sheet, std::size_t p, std::size_t q) const {
-  constexpr float kApart = 0.6f;  // ρ, with what an interval may change
-  const Lie &a = lies_[p], &b = lies_[q];
-  float uu = 0, vv = 0, askew[4] = {};
-  for (int k = 0; k < 3; ++k) {
-    uu += a.u[k] * b.u[k];
-    vv += a.v[k] * b.v[k];
-    askew[0] += a.u[k] * a.v[k], askew[1] += a.u[k] * b.v[k];
-    askew[2] += b.u[k] * a.v[k], askew[3] += b.u[k] * b.v[k];
-  }
-  const float warp = std::max(a.warp, b.warp);
-  const float u = least_between(a.uu, b.uu, uu) - warp, v = least_between(a.vv, b.vv, vv) - warp;
-  if (!(u > 0) || !(v > 0)) return false;
-  const float longest = std::sqrt(std::max({a.uu, b.uu, a.vv, b.vv}));
-  float most = 0;
-  for (const float s : askew) most = std::max(most, std::abs(s));
-  most += warp * (2 * longest + warp);
-  const float rest = std::sqrt(sheet.uu * sheet.vv);
-  const float needed = kApart * kApart * (1 + std::abs(sheet.uv) / rest) + most / rest;
-  return u * u >= needed * sheet.uu && v * v >= needed * sheet.vv;
-}
-
-// Pairs of squares that share a corner, and each with itself, unless they lie flat.
-void NearSquares::list_beside(std::size_t sheet, int row, SquarePairs& found) const {
-  const Lattice& l = *sheets_[sheet].lattice;
-  found.count = 0;
-  found.reserve(5 * std::size_t(l.columns));
-  const auto add = [&](std::size_t p, std::size_t q) {
-    if (lie_alike(sheets_[sheet], p, q)) return;
-    if (has_corner_in(squares_[p], passing_) || has_corner_in(squares_[q], passing_)) return;
-    found.owner[found.count] = std::int32_t(p);
-    found.neighbour[found.count++] = std::int32_t(q);
-  };
-  for (int i = 0; i < l.columns; ++i) {
-    const std::size_t n = number(sheet, row, i);
-    add(n, n);
-    if (i + 1 < l.columns) add(n, n + 1);
-    if (row + 1 == l.rows) continue;
-    for (int across = i > 0 ? -1 : 0; across <= (i + 1 < l.columns ? 1 : 0); ++across)
-      add(n, number(sheet, row + 1, i + across));
-  }
-}
-
 // The box about every square in an interval, and how it lies at its start.
 void NearSquares::bound(const Place* place, const Displacement* moved, Threads& threads) {
   const auto widen_by = [&](std::int32_t corner, SquareBox& box, bool first) {
@@ -449,12 +315,12 @@ void NearSquares::bound(const Place* place, const Displacement* moved, Threads& 
     threads.share(std::size_t(sheets_[s].lattice->rows), all_squares_ < kFewParticles,
                   [&](std::size_t j) {
                     for (int i = 0; i < sheets_[s].lattice->columns; ++i) {
-                      const std::size_t n = number(s, int(j), i);
+                      const std::size_t n = std::size_t(named_[s].name(int(j), i));
                       for (int c = 0; c < 4; ++c)
                         widen_by(squares_[n].corner[c], boxes_[n], c == 0);
                       boxes_[n].asked = 1;
                     }
-                    measure_row(s, int(j), place);
+                    beside_.measure_row(s, int(j), place);
                   });
 }
 
@@ -462,7 +328,7 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
                                        Threads& threads) {
   within_range_ = range;
   bound(place, moved, threads);
-  list_rows_beside(threads);
+  beside_.list(passing_, threads);
   const std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
   if (found_.size() < pieces) found_.resize(pieces);
   threads.share(pieces, pieces < 8, [&](std::size_t k) {
@@ -477,7 +343,7 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
         {place, moved, squares_.data(), near, owner, neighbour, range, owner, neighbour}));
   });
   within_.count = 0;
-  join(beside_, beside_.size(), within_);
+  join(beside_.pairs(), beside_.pairs().size(), within_);
   join(found_, pieces, within_);
   return within_;
 }
@@ -509,10 +375,8 @@ std::size_t NearSquares::bytes() const {
   bytes += squares_.size() * (sizeof(Square) + sizeof(Origin) + sizeof(SquareBox) + 3);
   bytes += all_squares_ * (sizeof(LeftOut) + 8) + 4 * begin_.size();
   bytes += listed_.bytes() + within_.bytes() + still_.bytes();
-  for (const auto* lists : {&found_, &beside_})
-    for (const SquarePairs& p : *lists) bytes += p.bytes();
-  bytes += lies_.size() * sizeof(Lie) + row_moved_.size();
-  return bytes;
+  for (const SquarePairs& p : found_) bytes += p.bytes();
+  return bytes + beside_.bytes();
 }
 
 }  // namespace weft::physics

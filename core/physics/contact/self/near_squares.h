@@ -5,33 +5,15 @@
 // search as particles (pair_search.h), for those squares alone that have moved far; for all where these
 // are many. Motion that is common to all is left out of account.
 //
-// Squares that share a corner, and each with itself (folded along its diagonal, its A comes near its own
-// BDC), are listed row by row, unless they lie too flat to touch: anew where their edges have changed.
+// Those that share a corner are looked at apart (beside_squares.h).
 #pragma once
 
 #include <vector>
 
-#include "physics/contact/self/blocks.h"
+#include "physics/contact/self/beside_squares.h"
 #include "physics/contact/self/pair_search.h"
-#include "physics/kernels/surface.h"
 
 namespace weft::physics {
-
-// Numbers of squares, two by two, with what kernels may read and write beyond the last.
-struct SquarePairs {
-  static constexpr std::size_t kPadding = 32;
-  std::vector<std::int32_t> owner, neighbour;
-  std::size_t count = 0;
-  void reserve(std::size_t pairs);
-  void pad();
-  std::size_t bytes() const;
-};
-
-// Whether one of a square's four vertices is marked.
-inline bool has_corner_in(const Square& square, const std::vector<std::uint8_t>& marked) {
-  const auto at = [&](int c) { return marked[std::size_t(square.corner[c])]; };
-  return (at(0) | at(1) | at(2) | at(3)) != 0;
-}
 
 class NearSquares {
  public:
@@ -40,10 +22,6 @@ class NearSquares {
   NearSquares(const std::vector<Sheet>& sheets, const std::vector<NamedSheet>& named,
               std::size_t bodies, const KernelTable& kernels);
 
-  std::size_t number(std::size_t sheet, int row, int column) const {
-    return std::size_t(named_[sheet].first) + std::size_t(row) * std::size_t(named_[sheet].stride) +
-           std::size_t(column);
-  }
   const std::vector<Square>& squares() const { return squares_; }
 
   // Squares with a particle that is marked, row by row of every sheet in turn, are left out from the
@@ -76,21 +54,9 @@ class NearSquares {
     float most_squared;  // m², of a corner's distance from the middle: nearer, it is whole
   };
 
-  struct Lie {
-    float u[3], v[3];  // m, mean edges along the row and the column
-    float uu, vv;      // m², their squares
-    float warp;        // m, how far edges are off them
-  };
-
   void make_squares();
   bool beside(std::int32_t p, std::int32_t q) const;
-  Lie lie_of(std::size_t n, const Place* place) const;
-  void measure_row(std::size_t sheet, int row, const Place* place);
-  void list_rows_beside(Threads& threads);
-  bool lie_alike(const Sheet& sheet, std::size_t p, std::size_t q) const;
   void bound(const Place* place, const Displacement* moved, Threads& threads);
-  void list_beside(std::size_t sheet, int row, SquarePairs& found) const;
-  std::size_t row_number(std::size_t sheet, int row) const;
   template <class Visit>
   void for_each_square(const Visit& visit) const;
   void look_how_far();
@@ -110,10 +76,8 @@ class NearSquares {
   const std::vector<NamedSheet>& named_;
   const KernelTable& kernels_;
   std::vector<Square> squares_;
-  std::vector<std::int32_t> stride_;     // of every square's sheet
-  std::vector<Lie> lies_;                // of every square, as beside_ was listed
-  std::vector<SquarePairs> beside_;      // of every row and the next, of all sheets in turn
-  std::vector<std::uint8_t> row_moved_;  // whether edges in it have changed
+  std::vector<std::int32_t> stride_;  // of every square's sheet
+  BesideSquares beside_;
   const Place* now_ = nullptr;
   std::vector<Origin> origins_;
   float frame_[3] = {};  // m: what has been common so far

@@ -11,11 +11,12 @@
 namespace weft::physics {
 
 // A flat sheet of points, where two at (i, j) and (i + a, j + b) are left out of the search when
-// a² uu + 2 a b uv + b² vv < range². That at (i, j) is named first + stride j + i.
+// a² uu + 2 a b uv + b² vv < range².
 struct NamedSheet {
   int columns, rows;
   float uu, uv, vv, range_squared;  // m²
   std::int32_t stride, first;
+  std::int32_t name(int row, int column) const { return first + row * stride + column; }
 };
 // The steps of which that holds, but not with so much less a range [m²].
 std::vector<SheetStep> steps_beyond(const NamedSheet& sheet, float range_squared);

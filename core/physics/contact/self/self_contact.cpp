@@ -114,8 +114,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool sur
 }
 
 std::size_t SelfContact::body(std::size_t sheet, int row, int column) const {
-  return std::size_t(named_[sheet].first) + std::size_t(row) * std::size_t(named_[sheet].stride) +
-         std::size_t(column);
+  return std::size_t(named_[sheet].name(row, column));
 }
 
 Site SelfContact::site(std::int32_t body) const {

@@ -1,0 +1,27 @@
+// Lists of pairs of squares, and squares by their marked corners.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "physics/kernels/surface.h"
+
+namespace weft::physics {
+
+// Numbers of squares, two by two, with what kernels may read and write beyond the last.
+struct SquarePairs {
+  static constexpr std::size_t kPadding = 32;
+  std::vector<std::int32_t> owner, neighbour;
+  std::size_t count = 0;
+  void reserve(std::size_t pairs);
+  void pad();
+  std::size_t bytes() const;
+};
+
+// Whether one of a square's four vertices is marked.
+inline bool has_corner_in(const Square& square, const std::vector<std::uint8_t>& marked) {
+  const auto at = [&](int c) { return marked[std::size_t(square.corner[c])]; };
+  return (at(0) | at(1) | at(2) | at(3)) != 0;
+}
+
+}  // namespace weft::physics
