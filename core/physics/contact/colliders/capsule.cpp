@@ -73,7 +73,7 @@ Vec3 support_of(const Capsule& capsule, const Vec3& way) {
 // The axis cuts a triangle when its ends lie on both sides of it, and the point between inside. Out
 // is the way of the end that is nearer.
 Overlap overlap_of(const Capsule& capsule, const Triangle& t) {
-  const Vec3 n = cross(minus(t[1], t[0]), minus(t[2], t[0]));
+  const Vec3 n = normal_of(t[0], t[1], t[2]);
   const double size = std::sqrt(dot(n, n));
   if (size == 0) return {};
   const Vec3 e = minus(capsule.b, capsule.a);

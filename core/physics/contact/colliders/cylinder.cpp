@@ -166,7 +166,7 @@ Overlap overlap_of(const Cylinder& cylinder, const Triangle& t) {
       best = up < down ? Overlap{up, n} : Overlap{down, times(n, -1)};
     return up <= 0 || down <= 0;
   };
-  if (separates(f.axis) || separates(cross(minus(t[1], t[0]), minus(t[2], t[0])))) return {};
+  if (separates(f.axis) || separates(normal_of(t[0], t[1], t[2]))) return {};
   for (int k = 0; k < 3; ++k) {
     const Vec3 edge = minus(t[(k + 1) % 3], t[k]);
     if (separates(cross(f.axis, edge)) || separates(polar_of(f, t[k]).side)) return {};

@@ -149,7 +149,7 @@ void bend(const RestTriangle& r, const MeshMaterial& m, const Corners& c, Pulled
     };
     return plus(off(3 + k, r.away_at[k], r.away[k]), off((k + 2) % 3, r.own_at[k], r.own[k]));
   };
-  const Vec3 normal = cross(minus(c.x[1], c.x[0]), minus(c.x[2], c.x[0]));
+  const Vec3 normal = normal_of(c.x[0], c.x[1], c.x[2]);
   const double scale = m.bend_damping / std::max(dot(normal, normal), 1e-30);
   std::array<Vec3, 3> h, felt;
   for (std::size_t k = 0; k < 3; ++k) {
