@@ -129,7 +129,7 @@ void Simulation::State::run_with_contact() {
   }
 }
 
-SelfContact::Interval Simulation::State::contact_interval(int end, int count) const {
+ContactInterval Simulation::State::contact_interval(int end, int count) const {
   const Vec3 g = gravity_at(scene, double(frame) * scene.time.frame + end * dt);
   const double gravity = std::sqrt(dot(g, g));
   return {dt, count, gravity};

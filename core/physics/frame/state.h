@@ -109,8 +109,8 @@ struct Simulation::State {
   double saved_lag_ = 0;
   physics::Grab* grab_ = nullptr;  // in the plan of cloth grabbed_
   int grabbed_ = 0;
-  std::vector<physics::Carry*> carried_;           // in the plan of each cloth; null while it rests
-  int until_collision_ = 1;                        // substeps from one run of contact to the next
+  std::vector<physics::Carry*> carried_;  // in the plan of each cloth; null while it rests
+  int until_collision_ = 1;               // substeps from one run of contact to the next
   bool clamps_noted_ = false;
   std::vector<std::uint8_t> stretch_noted_;  // of every cloth
   physics::StepGuard guard_;
@@ -159,7 +159,7 @@ struct Simulation::State {
   void run_frame();
   void check_strain_limits();
   void run_with_contact();
-  physics::SelfContact::Interval contact_interval(int end, int count) const;
+  physics::ContactInterval contact_interval(int end, int count) const;
   void begin_contact();
   void note_clamps();
   void note_stretch();

@@ -89,7 +89,7 @@ WEFT_INLINE void measure_two(ContactPacket<2>& p, const ContactPackets<2>& given
 }
 
 template <int N>
-WEFT_INLINE Wide prepare_lanes(ContactPacket<N>& p, const ContactPackets<N>& given, int l) {
+WEFT_INLINE void prepare_lanes(ContactPacket<N>& p, const ContactPackets<N>& given, int l) {
   if constexpr (N == 2) measure_two(p, given, l);
   const Wide3 normal = load_each(p.normal, l);
   Wide4 moved[N], change[N];
@@ -109,7 +109,6 @@ WEFT_INLINE Wide prepare_lanes(ContactPacket<N>& p, const ContactPackets<N>& giv
   const Wide pressed = load(p.pressed + l);
   if (any(pressed > 0.0f))
     give(p, l, normal * pressed + load_each(p.rubbed, l), change, given.change);
-  return select(mass > 0.0f, sqrt(dot(r, r)), Wide{});
 }
 
 template <int N>
@@ -158,12 +157,9 @@ WEFT_INLINE Wide separate_lanes(ContactPacket<N>& p, const ContactPackets<N>& gi
 }
 
 template <int N>
-float prepare(const ContactPackets<N>& given) {
-  Wide most{};
+void prepare(const ContactPackets<N>& given) {
   for (int k = 0; k < given.packets; ++k)
-    for (int l = 0; l < kPacket; l += kLanes)
-      most = max(most, prepare_lanes(given.packet[k], given, l));
-  return greatest(most);
+    for (int l = 0; l < kPacket; l += kLanes) prepare_lanes(given.packet[k], given, l);
 }
 
 template <int N>

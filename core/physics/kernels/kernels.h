@@ -289,7 +289,7 @@ struct ContactPackets;
 // What is done with packets of contacts, one after another (contact_packets.cpp).
 template <int N>
 struct ContactKernels {
-  float (*prepare)(const ContactPackets<N>&);   // returns the fastest relative displacement [m]
+  void (*prepare)(const ContactPackets<N>&);
   float (*sweep)(const ContactPackets<N>&);     // returns the greatest correction [m]
   float (*separate)(const ContactPackets<N>&);  // returns the greatest depth [of the distance held]
 };
@@ -356,7 +356,7 @@ struct KernelTable {
   int (*meeting_pairs)(const MeetingPairs&);    // returns how many
   int (*squares_within)(const SquaresWithin&);  // returns how many are
   int (*squares_not_apart)(const SquaresApart&);
-  int (*surface_pairs)(const SurfacePairs&);    // returns how many contacts there are
+  int (*surface_pairs)(const SurfacePairs&);  // returns how many contacts there are
   ContactKernels<2> contacts_of_two;
   ContactKernels<4> contacts_of_four;
   // The greatest size of `count` values, a multiple of 16; infinite if one is not a number.

@@ -127,9 +127,9 @@ void SelfContact::find_among_surfaces(Threads& threads) {
 
 // Velocities change with displacements; positions also by what is put apart.
 template <int N>
-void SelfContact::scatter(ContactSolver<N>& solver, const Interval& interval) {
+void SelfContact::scatter(ContactSolver<N>& solver, const ContactInterval& interval) {
   const double dt = interval.dt;
-  const float inverse = float(1 / (interval.substeps * dt));
+  const float inverse = float(1 / interval.seconds());
   touched_ = !solver.touched().empty();
   double taken = 0;
   for (const std::int32_t n : solver.touched()) {
@@ -158,41 +158,36 @@ void SelfContact::scatter(ContactSolver<N>& solver, const Interval& interval) {
 }
 
 template <int N>
-auto SelfContact::solve(ContactSolver<N>& solver, const Interval& interval, Threads& threads)
-    -> Met {
+void SelfContact::solve(ContactSolver<N>& solver, const ContactInterval& interval,
+                        Threads& threads) {
   record_.contacts_now = std::int64_t(solver.contacts().size());
   record_.contacts += record_.contacts_now;
   const std::int64_t swept = solver.sweeps();
-  const auto solved =
-      solver.solve(place_.data(), moved_.data(),
-                   {interval.substeps * interval.dt, interval.substeps, interval.gravity}, threads);
+  const double missing = solver.solve(place_.data(), moved_.data(), interval, threads);
+  record_.least_distance = std::min(record_.least_distance, 1 - missing);
   record_.sweeps += solver.sweeps() - swept;
-  return {solved.fastest, solved.deepest};
 }
 
-auto SelfContact::respond(const Interval& interval, Threads& threads) -> Met {
-  Met met;
+void SelfContact::respond(const ContactInterval& interval, Threads& threads) {
   touched_ = false;
   record_.contacts_now = 0;
   if (blocks_.active() == 0) {
     squares_listed_ = false;
-    return met;
+    return;
   }
   if (surfaces()) {
     find_among_surfaces(threads);
-    met = solve(*surfaces_, interval, threads);
+    solve(*surfaces_, interval, threads);
     hold_together(threads);
     scatter(*surfaces_, interval);
     surfaces_->clear();
   } else {
     find_among_particles(threads);
-    met = solve(*spheres_, interval, threads);
+    solve(*spheres_, interval, threads);
     scatter(*spheres_, interval);
     spheres_->clear();
     if (course_) push_by_course(interval.dt, interval.substeps);
   }
-  record_.least_distance = std::min(record_.least_distance, 1 - met.deepest);
-  return met;
 }
 
 }  // namespace weft::physics

@@ -189,30 +189,27 @@ void ContactSolver<N>::keep_impulses() {
 }
 
 template <int N>
-auto ContactSolver<N>::solve(const Place* place, const Displacement* moved, Interval interval,
-                             Threads& threads) -> Solved {
+float ContactSolver<N>::solve(const Place* place, const Displacement* moved,
+                              const ContactInterval& interval, Threads& threads) {
   places_ = place;
   moved_ = moved;
   threads_ = &threads;
   if (contacts_.empty()) {
     forget();
-    return {0, 0};
+    return 0;
   }
+  const double seconds = interval.seconds();
   colour();
-  fill(interval.seconds);
-  corrections_.assign(packets_.size(), 0);
+  fill(seconds);
   for_each_part([&](std::int32_t from, std::int32_t count) {
-    corrections_[std::size_t(from)] = kernels_.prepare(
-        {&packets_[std::size_t(from)], count, places_, moved_, change_.data(), 0, 0});
+    kernels_.prepare({&packets_[std::size_t(from)], count, places_, moved_, change_.data(), 0, 0});
   });
-  const float fastest = *std::max_element(corrections_.begin(), corrections_.end());
   sweep(change_.data(), kEnoughOfHeld * held_, kSweeps);
   keep_impulses();
-  const double most =
-      (kSlow * double(held_) + kPressed * interval.gravity * interval.seconds) * interval.seconds;
+  const double most = (kSlow * double(held_) + kPressed * interval.gravity * seconds) * seconds;
   const float deepest = separate(float(most));
   settle(interval.substeps);
-  return {fastest, deepest};
+  return deepest;
 }
 
 // Where things met in an interval of several substeps, impulses act in the last of them: it moves positions

@@ -17,6 +17,14 @@
 
 namespace weft::physics {
 
+// From one run of contact to the next.
+struct ContactInterval {
+  double dt;       // s
+  int substeps;    // impulses act in the last of them
+  double gravity;  // m/s²
+  double seconds() const { return substeps * dt; }
+};
+
 template <int N>
 struct Contact {
   std::uint64_t key;  // the same two things have the same; contacts come in its order
@@ -34,17 +42,10 @@ class ContactSolver {
 
   // To be filled before each run.
   std::vector<Contact<N>>& contacts() { return contacts_; }
-  struct Solved {
-    float fastest;  // m, relative displacement of two that touch
-    float deepest;  // of the distance held, that is missing after all
-  };
-  struct Interval {
-    double seconds;
-    int substeps;    // that impulses act in the last of
-    double gravity;  // m/s²
-  };
-  // Displacements in an interval, from these places.
-  Solved solve(const Place* place, const Displacement* moved, Interval interval, Threads& threads);
+  // Displacements in an interval, from these places. Returns how much of the distance held is missing at
+  // most, after all.
+  float solve(const Place* place, const Displacement* moved, const ContactInterval& interval,
+              Threads& threads);
 
   // What comes of it: bodies, each once, with the displacement by which their velocities change, and
   // what their positions alone do.

@@ -250,7 +250,7 @@ void SelfContact::list_beside(std::size_t block, float range) {
   found.pad();
 }
 
-int SelfContact::run(const Interval& interval, Threads& threads) {
+int SelfContact::run(const ContactInterval& interval, Threads& threads) {
   const double dt = interval.dt;
   const float reach = thickness_ * kHeld, motion = kMotion * thickness_;
   ++record_.runs;

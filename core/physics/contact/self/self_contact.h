@@ -59,13 +59,8 @@ class SelfContact {
   // run(), which ends one interval and begins the next.
   void begin(Threads& threads);
   bool begun() const { return begun_; }
-  struct Interval {
-    double dt;  // s
-    int substeps;
-    double gravity;  // m/s²
-  };
   // Ends an interval. Returns after how many substeps to come again, a power of two.
-  int run(const Interval& interval, Threads& threads);
+  int run(const ContactInterval& interval, Threads& threads);
 
   // Positions or velocities are others than run() left.
   void restart();
@@ -156,20 +151,16 @@ class SelfContact {
   bool touches() const { return record_.contacts_now > 0; }
 
   // contact_response.cpp
-  struct Met {
-    double fastest = 0;  // m, relative displacement of two that touch
-    double deepest = 0;  // of the distance at which they are held, that is missing in the end
-  };
-  Met respond(const Interval& interval, Threads& threads);
+  void respond(const ContactInterval& interval, Threads& threads);
   void find_among_particles(Threads& threads);
   void find_among_surfaces(Threads& threads);
   void measure_surfaces(const SquarePairs& pairs, SurfaceSearch search, float reach,
                         Threads& threads);
   void sort_spheres();
   template <int N>
-  Met solve(ContactSolver<N>& solver, const Interval& interval, Threads& threads);
+  void solve(ContactSolver<N>& solver, const ContactInterval& interval, Threads& threads);
   template <int N>
-  void scatter(ContactSolver<N>& solver, const Interval& interval);
+  void scatter(ContactSolver<N>& solver, const ContactInterval& interval);
   float friction_of(std::int32_t a, std::int32_t b) const;
 
   // passing.cpp
