@@ -134,7 +134,6 @@ struct Simulation::State {
   void set_substeps(int count);
   void stagger(double by, const double* from = nullptr);
   double stretched_limit() const;
-  double limit_share() const;
   int substeps_within(double limit) const;
   void follow_stretch(double limit);
   bool carried() const;

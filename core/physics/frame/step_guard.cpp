@@ -32,7 +32,7 @@ Verdict StepGuard::judge(const FrameRun& run) {
   bool failed = !run.finite || beyond_limit || !energy_.holds();
   if (!failed && lines) failed = (!finest && overshot(run)) || keeps_on(run);
   if (!failed) return Verdict::accept;
-  const bool unresolved = beyond_limit && run.limit_share * run.limit < kLeastSubstep;
+  const bool unresolved = beyond_limit && kLimitShare * run.limit < kLeastSubstep;
   const bool hopeless = unresolved || (!beyond_limit && finest);
   if (!(springs || lines) || (hopeless && flies_away(run))) {
     if (!run.finite) return Verdict::stop;

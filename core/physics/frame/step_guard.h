@@ -15,12 +15,9 @@
 
 namespace weft::physics {
 
-inline constexpr int kFinest = 16;             // times the substeps that are due, to save a frame
-inline constexpr double kLeastSubstep = 1e-6;  // s; below, single precision loses speeds of cm/s
-// Of the stability limit, taken by automatic substeps; by those of sheets that may meet. Leapfrog keeps
-// E + O((dt ω)²): what a blow puts into motion of frequency ω comes to 1/(1 - (dt ω/2)²) times as much as
-// it swings, which sheets that meet would show as energy from nowhere (5 times at 0.9, 2 times at 0.7).
-inline constexpr double kLimitShare = 0.9, kLimitShareOfContact = 0.9;
+inline constexpr int kFinest = 16;               // times the substeps that are due, to save a frame
+inline constexpr double kLeastSubstep = 1e-6;    // s; below, single precision loses speeds of cm/s
+inline constexpr double kLimitShare = 0.9;       // of the stability limit, in automatic substeps
 inline constexpr float kFarAway = 1e7f;          // m; nothing in a sane scene gets there
 inline constexpr double kInteractionPasses = 1;  // s; what a person did has passed by then
 
@@ -35,8 +32,7 @@ struct FrameRun {
   double dt;                               // s
   bool finite;                             // all positions and velocities
   EnergySum energy;                        // of all cloths at its end, where that is finite
-  double limit;                            // s; the stability limit at its end (springs),
-  double limit_share;                      // and how much of it automatic substeps take
+  double limit;                            // s; the stability limit at its end (springs)
   bool driven;                             // something but gravity did work in it
   bool alone;                              // nothing but gravity and paths of pins can do work
 };

@@ -50,8 +50,8 @@ void Simulation::State::choose_method_and_substeps() {
       if (cloths[c]->model().folds_freely()) folded.omega_squared *= kFolded;
       safe = std::min(safe, folded.largest_substep());
     }
-    const double needed = std::ceil(scene.time.frame / (limit_share() * safe));
-    const bool resolved = needed <= kMostSubsteps && limit_share() * safe >= kLeastSubstep;
+    const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
+    const bool resolved = needed <= kMostSubsteps && kLimitShare * safe >= kLeastSubstep;
     if (count == kAutoSubsteps && resolved) {
       count = clamp_to_int(needed, 1, kMostSubsteps);
       notes.push_back("substeps from the stability limit of " + number(limit) + " s");
@@ -64,7 +64,7 @@ void Simulation::State::choose_method_and_substeps() {
                       std::to_string(count) + " a frame run");
     } else if (!resolved || scene.time.frame / count > limit) {
       notes.push_back("springs need substeps below " + number(limit) + " s, " + number(needed) +
-                      " a frame at " + number(limit_share()) +
+                      " a frame at " + number(kLimitShare) +
                       " of the limit; the compliant method runs in their place");
       method = Method::compliant;
       build_cloths();
@@ -254,16 +254,12 @@ double Simulation::State::stretched_limit() const {
   return limit;
 }
 
-double Simulation::State::limit_share() const {
-  return self_collision ? kLimitShareOfContact : kLimitShare;
-}
-
 // Substeps a frame that stay inside a limit: a share of it where they are automatic, else as many as asked
 // for or, where those are too few, a multiple.
 int Simulation::State::substeps_within(double limit) const {
   const int asked = scene.time.substeps;
-  const int needed = clamp_to_int(std::ceil(scene.time.frame / (limit_share() * limit)), 1,
-                                  kFinest * kMostSubsteps);
+  const int needed =
+      clamp_to_int(std::ceil(scene.time.frame / (kLimitShare * limit)), 1, kFinest * kMostSubsteps);
   if (asked == kAutoSubsteps) return guard_.finer() * needed;
   if (scene.time.frame / asked <= limit) return guard_.finer() * asked;
   return guard_.finer() * asked * ((needed + asked - 1) / asked);
