@@ -30,7 +30,11 @@ struct File {
   double ks = 5000;      // N/m
   bool structural = true, shearing = true, bending = true;
   std::vector<std::array<int, 2>> pinned;
-  bool limited = false;  // springs never longer than 110 %: not a key of the file
+  double thickness = 0.0095;  // m
+  // Not keys of the file: springs never longer than 110 %, in so many passes a step over all of them, or over
+  // those that are no bending springs; neighbours on the grid nearer than 2 thicknesses push each other apart.
+  bool limited = false, limits_bending = true, neighbours = false;
+  int limit_passes = 1;
   bool sphere = false, plane = false;
   Vec origin{0.5, 0.2, 0.5};
   double radius = 0.2, sphere_friction = 0.3;
@@ -49,10 +53,10 @@ inline std::string text_of(const File& f) {
   char text[512];
   std::snprintf(text, sizeof text,
                 R"({"cloth": {"width": %.17g, "height": %.17g, "num_width_points": %d,
-"num_height_points": %d, "thickness": 0.0095, "orientation": %d, "damping": %.17g, "density": %.17g,
+"num_height_points": %d, "thickness": %.17g, "orientation": %d, "damping": %.17g, "density": %.17g,
 "ks": %.17g, "enable_structural": %s, "enable_shearing": %s, "enable_bending": %s, "pinned": [)",
-                f.width, f.height, f.columns, f.rows, f.vertical ? 1 : 0, f.damping, f.density,
-                f.ks, f.structural ? "true" : "false", f.shearing ? "true" : "false",
+                f.width, f.height, f.columns, f.rows, f.thickness, f.vertical ? 1 : 0, f.damping,
+                f.density, f.ks, f.structural ? "true" : "false", f.shearing ? "true" : "false",
                 f.bending ? "true" : "false");
   std::string all = text;
   for (const auto& [i, j] : f.pinned)
@@ -76,6 +80,7 @@ struct PointMass {
 struct Spring {
   int a, b;
   double rest_length, ks;
+  bool bending;
 };
 
 class Solver {
@@ -94,7 +99,8 @@ class Solver {
       for (int i = 0; i < file.columns; ++i) {
         if (file.structural) join(i, j, i - 1, j, file.ks), join(i, j, i, j - 1, file.ks);
         if (file.shearing) join(i, j, i - 1, j - 1, file.ks), join(i, j, i + 1, j - 1, file.ks);
-        if (file.bending) join(i, j, i - 2, j, 0.2 * file.ks), join(i, j, i, j - 2, 0.2 * file.ks);
+        if (file.bending)
+          join(i, j, i - 2, j, 0.2 * file.ks, true), join(i, j, i, j - 2, 0.2 * file.ks, true);
       }
   }
 
@@ -108,11 +114,12 @@ class Solver {
  private:
   static constexpr double kStep = 1.0 / 90 / 30;  // s
 
-  void join(int i, int j, int oi, int oj, double ks) {
+  void join(int i, int j, int oi, int oj, double ks, bool bending = false) {
     if (oi < 0 || oi >= file_.columns || oj < 0) return;
     const int a = j * file_.columns + i, b = oj * file_.columns + oi;
-    springs_.push_back(
-        {a, b, length(points[std::size_t(a)].position - points[std::size_t(b)].position), ks});
+    springs_.push_back({a, b,
+                        length(points[std::size_t(a)].position - points[std::size_t(b)].position),
+                        ks, bending});
   }
 
   void step() {
@@ -135,8 +142,36 @@ class Solver {
       if (file_.sphere) meet_sphere(p);
       if (file_.plane) meet_plane(p);
     }
-    if (file_.limited)
-      for (const Spring& s : springs_) limit(s);
+    for (int n = 0; file_.limited && n < file_.limit_passes; ++n)
+      for (const Spring& s : springs_)
+        if (file_.limits_bending || !s.bending) limit(s);
+    if (file_.neighbours) push_neighbours();
+  }
+
+  // The course's self-collision among neighbours on the grid: each moves by the mean of what its pairs ask for,
+  // divided by the steps of a frame.
+  void push_neighbours() {
+    std::vector<Vec> moves(points.size(), Vec{});
+    for (int j = 0; j < file_.rows; ++j)
+      for (int i = 0; i < file_.columns; ++i)
+        moves[std::size_t(j * file_.columns + i)] = push(i, j);
+    for (std::size_t p = 0; p < points.size(); ++p)
+      if (!points[p].pinned) points[p].position = points[p].position + (1.0 / 30) * moves[p];
+  }
+
+  Vec push(int i, int j) const {
+    const Vec& here = points[std::size_t(j * file_.columns + i)].position;
+    Vec sum{};
+    int pairs = 0;
+    for (const auto& [di, dj] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+      if (i + di < 0 || i + di >= file_.columns || j + dj < 0 || j + dj >= file_.rows) continue;
+      const Vec off = here - points[std::size_t((j + dj) * file_.columns + i + di)].position;
+      const double missing = 2 * file_.thickness - length(off);
+      if (missing <= 0) continue;
+      sum = sum + (missing / length(off)) * off;
+      ++pairs;
+    }
+    return pairs > 0 ? (1.0 / pairs) * sum : sum;
   }
 
   // Half of what is too long goes to each end, all of it to the other of a pinned one.

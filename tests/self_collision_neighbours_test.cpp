@@ -1,5 +1,5 @@
-// By the course's rule neighbours on the grid push each other apart once they are nearer than the thickness;
-// by default neighbours do not touch.
+// By the course's rule, and with the response `neighbours`, neighbours on the grid push each other apart once
+// they are nearer than the thickness; by default neighbours do not touch.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,9 +46,9 @@ double nearest(const std::vector<double>& x) {
 }
 
 TEST(Neighbours, PushEachOtherApartByTheCoursesRule) {
-  for (const int threads : {1, 2})
+  for (const auto response : {SelfCollisionResponse::course, SelfCollisionResponse::neighbours})
     for (const double along : {0.75, 0.9, 1.0}) {
-      Simulation simulation(loose(SelfCollisionResponse::course), {.threads = threads});
+      Simulation simulation(loose(response), {.threads = along < 0.9 ? 1 : 2});
       const std::vector<double> start = pressed(along, 0.8);
       simulation.set_state(start, std::vector<double>(start.size()));
       for (int n = 0; n < 360; ++n) simulation.advance_frame();

@@ -136,7 +136,8 @@ void Parts::masses(Cloth& c) {
 
 void Parts::limits(Cloth& c) {
   if (some(0.25)) c.strain_limit = draw_.decades(1e-4, 10);
-  if (some(0.2)) c.strain_limit_order = StrainLimitOrder::course;
+  if (some(0.4))
+    c.strain_limit_order = draw_.of({StrainLimitOrder::course, StrainLimitOrder::strict});
   if (some(0.2)) c.tear_strain = draw_.decades(1e-3, 10);
   if (draw_.chance(0.3)) c.tears = draw_.of({Tears::holes, Tears::particles});
 }
@@ -156,7 +157,8 @@ SelfCollision Parts::self_collision(const Grid& g) {
   const double spacing = std::min(spacing_u(g), spacing_v(g));
   s.mode = draw_.chance(0.5) ? SelfCollisionMode::particles : SelfCollisionMode::surface;
   s.thickness = std::clamp(spacing * draw_.decades(0.05, 4), 1e-5, 1.0);
-  if (draw_.chance(0.3)) s.response = SelfCollisionResponse::course;
+  if (draw_.chance(0.4))
+    s.response = draw_.of({SelfCollisionResponse::course, SelfCollisionResponse::neighbours});
   if (draw_.chance(0.5)) s.friction = draw_.of({0.0, 10.0, draw_.uniform(0, 2)});
   return s;
 }

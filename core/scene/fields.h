@@ -32,8 +32,8 @@ constexpr std::array<const char*, 3> words(Sweep) {
 constexpr std::array<const char*, 3> words(SelfCollisionMode) {
   return {"off", "particles", "surface"};
 }
-constexpr std::array<const char*, 2> words(SelfCollisionResponse) {
-  return {"stiff", "course"};
+constexpr std::array<const char*, 3> words(SelfCollisionResponse) {
+  return {"stiff", "course", "neighbours"};
 }
 
 constexpr std::array<const char*, 3> words(Lumping) {
@@ -46,8 +46,8 @@ constexpr std::array<const char*, 3> words(Tears) {
 constexpr std::array<const char*, 2> words(LevelDiagonals) {
   return {"both", "one"};
 }
-constexpr std::array<const char*, 2> words(StrainLimitOrder) {
-  return {"colours", "course"};
+constexpr std::array<const char*, 3> words(StrainLimitOrder) {
+  return {"colours", "course", "strict"};
 }
 
 template <class Walk>

@@ -124,8 +124,9 @@ enum class SelfCollisionMode { off, particles, surface };
 
 // How a pair closer than the thickness is pushed apart: `stiff` separates it at once with
 // friction, `course` averages the corrections and divides them by the substeps, and neighbours on the grid,
-// which do not touch otherwise, are pairs as well unless they are that near at rest (seeds 001 and 004).
-enum class SelfCollisionResponse { stiff, course };
+// which do not touch otherwise, are pairs as well unless they are that near at rest (seeds 001 and 004);
+// `neighbours` separates as stiff does, but for neighbours on the grid, which push as by `course`.
+enum class SelfCollisionResponse { stiff, course, neighbours };
 
 struct SelfCollision {
   SelfCollisionMode mode = SelfCollisionMode::off;
@@ -145,8 +146,10 @@ enum class LevelDiagonals { both, one };
 
 // In which order a strain limit shortens constraints: `colours`, structural and shear, those that share no
 // particle side by side; `course`, all of them, bend as well, one after the other: row by row, from every
-// particle to the left, above, above left, above right, two to the left, two above (seeds 001 and 004).
-enum class StrainLimitOrder { colours, course };
+// particle to the left, above, above left, above right, two to the left, two above (seeds 001 and 004). Both
+// are one pass a substep and overshoot; `strict` holds the limit, by forces that last from substep to substep,
+// on structural and shear constraints.
+enum class StrainLimitOrder { colours, course, strict };
 
 // What particles and constraints at the border of a sheet count for. `area`: a particle weighs the area
 // that it stands for, a quarter of an inner one's in a corner and half of it elsewhere on the border, and

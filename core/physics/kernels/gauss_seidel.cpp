@@ -6,6 +6,14 @@
 //
 // (Macklin, Müller, Chentanez 2016, "XPBD"; with α̃ = 0 seed 000's positional constraint for unequal
 // masses.)
+//
+// A strain limit that holds has forces f >= 0 for multipliers, which last from substep to substep. Sweep
+// `carry` pulls by f dt². Sweeps `hold` see to it that nothing too long grows (l₀: at the substep's start),
+//
+//   f <- max(0, f + ω (|e| - max(l₀, length held))/((w_a + w_b) dt²))
+//
+// and `settle` takes back a share of what is too long all the same, in positions alone, so that it makes no
+// speed. (Sequential impulses with a warm start: Catto 2005; positions apart: Bridson et al. 2002.)
 #include "physics/kernels/alike_rows.h"
 
 namespace weft::WEFT_KERNELS {
@@ -34,11 +42,49 @@ WEFT_INLINE Wide3 solve(const ProjectRows& p, Wide3 e, Wide wa, Wide wb, int j, 
   return e * scale;
 }
 
+// Relaxation of the forces of a limit, and the share of what is too long that one sweep takes back. Forces
+// meet the change of a load sooner with more than 1; with 2 they would never come to rest. What is taken back
+// at once leaves neighbours slack, whose forces are then lost.
+constexpr float kHoldRelaxation = 1.5f, kSettled = 0.3f;
+
+// Of the ends that lie at lane i.
+WEFT_INLINE Wide3 velocity(const ProjectRows& p, const ProjectedRow& r, int i) {
+  return load_planes(p.v.x + (r.x + i - p.x.x), r.plane);
+}
+
+// The correction of a limit's constraints a … of row j by unit inverse mass.
+template <Rule R>
+WEFT_INLINE Wide3 limit_block(const ProjectRows& p, const ProjectedRow& near,
+                              const ProjectedRow& far, Wide wa, Wide wb, int j, int a,
+                              WideInt active) {
+  const Wide3 e = position<false>(far, a) - position<false>(near, a);
+  const Wide square = dot(e, e), inertia = wa + wb, dt2 = wide(p.dt * p.dt);
+  float* const forces = p.lambda + std::ptrdiff_t(j) * p.stride + a;
+  const Wide force = load(forces);
+  active = active & (inertia > 0.0f) & (square > 0.0f);
+  const WideInt longer = square > p.rest * p.rest, pulls = force > 0.0f;
+  active = active & (R == Rule::carry ? pulls : R == Rule::hold ? pulls | longer : longer);
+  if (!any(active)) return Wide3{};
+  const Wide length = sqrt(square);
+  if constexpr (R == Rule::carry) return e * select(active, force * dt2 / length, Wide{});
+  if constexpr (R == Rule::settle)
+    return e * select(active, (length - p.rest) * kSettled / (inertia * length), Wide{});
+  const Wide start =
+      sqrt(squared_length(e - (velocity(p, far, a) - velocity(p, near, a)) * wide(p.dt)));
+  const Wide allowed = select(start > p.rest, start, wide(p.rest));
+  const Wide asked = force + (length - allowed) * kHoldRelaxation / (inertia * dt2);
+  const Wide held = select(active, select(asked > 0.0f, asked, Wide{}), force);
+  store(forces, held);
+  return e * select(active, (held - force) * dt2 / length, Wide{});
+}
+
 // The same for constraints a … a+kLanes-1 between the lanes of two rows.
 template <Rule R>
 WEFT_INLINE Wide3 solve_block(const ProjectRows& p, const ProjectedRow& near,
                               const ProjectedRow& far, Wide wa, Wide wb, int j, int a,
                               WideInt active) {
+  if constexpr (limits(R) && R != Rule::limit)
+    return limit_block<R>(p, near, far, wa, wb, j, a, active);
   const Wide3 e = position<displaced(R)>(far, a) - position<displaced(R)>(near, a);
   if constexpr (R == Rule::limit) {
     // Most blocks have nothing too long: the root is not worth taking there. Each lane is asked, so that
@@ -57,16 +103,18 @@ WEFT_INLINE Wide3 solve_block(const ProjectRows& p, const ProjectedRow& near,
   return c;
 }
 
-// The strain limit changes positions and velocities together, and seldom anything at all.
+// The strain limit changes positions and velocities together, but where it settles, and seldom anything at
+// all.
 template <Rule R>
 WEFT_INLINE void move_end(const ProjectRows& p, const ProjectedRow& r, int i, Wide3 change) {
-  if constexpr (R == Rule::limit) {
+  if constexpr (limits(R)) {
     const WideInt some = (change.x != 0.0f) | (change.y != 0.0f) | (change.z != 0.0f);
     if (!any(some)) return;
     // Adding zero would make +0 of -0 in lanes that only their block brings here.
     float* const v = p.v.x + (r.x + i - p.x.x);
     const Wide3 v0 = load_planes(v, r.plane), x0 = load_planes(r.x + i, r.plane);
-    store_planes(v, r.plane, select(some, v0 + change * wide(p.inverse_dt), v0));
+    if constexpr (R != Rule::settle)
+      store_planes(v, r.plane, select(some, v0 + change * wide(p.inverse_dt), v0));
     store_planes(r.x + i, r.plane, select(some, x0 + change, x0));
   } else {
     shift<displaced(R)>(r, i, change);
@@ -102,15 +150,17 @@ WEFT_INLINE void between_rows(const ProjectRows& p, int j) {
   }
 }
 
-// Whether any constraint of row j is longer than its rest length. Rows where none is, most of them,
-// have nothing to do for the strain limit.
-template <bool kTorn>
-WEFT_INLINE bool any_too_long(const ProjectRows& p, int j) {
+// Whether any constraint of row j is longer than its rest length, or pulls already. Rows where none does,
+// most of them, have nothing to do for the strain limit.
+template <Rule R, bool kTorn>
+WEFT_INLINE bool any_to_limit(const ProjectRows& p, int j) {
   const ProjectedRow near = projected_row(p, j, p.near), far = projected_row(p, j + p.dj, p.far);
   WideInt over{};
   for (int a = 0; a < p.count; a += kLanes) {
     const Wide3 e = position<false>(far, a) - position<false>(near, a);
     WideInt longer = dot(e, e) > p.rest * p.rest;
+    if constexpr (R == Rule::carry || R == Rule::hold)
+      longer = longer | (load(p.lambda + std::ptrdiff_t(j) * p.stride + a) > 0.0f);
     if (a + kLanes > p.count) longer = longer & lanes_below(p.count - a);
     if constexpr (kTorn) longer = longer & alive_lanes(p, j, a);
     over = over | longer;
@@ -125,8 +175,8 @@ void sweep_stencil(const ProjectRows& stencil, const physics::Projection& given)
   Alike constants{};
   for (int j = given.begin; j < end; ++j) {
     if (p.dj > 0 && (j / p.dj % 2 != colour || j + p.dj >= p.rows)) continue;
-    if constexpr (R == Rule::limit) {
-      if (!any_too_long<kTorn>(p, j)) continue;
+    if constexpr (limits(R)) {
+      if (!any_to_limit<R, kTorn>(p, j)) continue;
     } else if constexpr (!kTorn) {
       const float w = p.row_w ? p.row_w[j] : 0;
       if (w > 0 && w == p.row_w[j + p.dj]) {
@@ -156,7 +206,18 @@ void sweep(const physics::Projection& p) {
 template <bool kTorn>
 void sweep_by_rule(const physics::Projection& p) {
   const ProjectRows& f = p.stencils[0];
-  if (f.limit) return sweep<Rule::limit, kTorn>(p);
+  switch (f.limit) {
+    case physics::LimitSweep::none:
+      break;
+    case physics::LimitSweep::once:
+      return sweep<Rule::limit, kTorn>(p);
+    case physics::LimitSweep::carry:
+      return sweep<Rule::carry, kTorn>(p);
+    case physics::LimitSweep::hold:
+      return sweep<Rule::hold, kTorn>(p);
+    case physics::LimitSweep::settle:
+      return sweep<Rule::settle, kTorn>(p);
+  }
   if (f.lambda) return sweep<Rule::multipliers, kTorn>(p);
   if (f.compliance) return sweep<Rule::compliant, kTorn>(p);
   sweep<Rule::rigid, kTorn>(p);

@@ -121,13 +121,18 @@ struct StencilRow {
       alive;  // -1 in the lanes of constraints, 0 in those of torn ones; null: cannot tear
 };
 
+// What a sweep of a strain limit does: shortens at once what is too long; or, where the limit is to hold, one
+// of three: `carry` pulls by the forces of the substep before, `hold` corrects these forces, `settle` moves
+// positions alone.
+enum class LimitSweep { none, once, carry, hold, settle };
+
 // One stencil of projected constraints. Which of the optional parts are given picks the rule: a strain
 // limit, compliance with multipliers, compliance alone, or rigid constraints. The component arrays of x,
 // v and u lie equally far apart.
 struct ProjectRows {
   int rows;
   int stride;
-  Row3 x, v;       // row 0; v is used by the strain limit alone
+  Row3 x, v;       // row 0; v is used by strain limits alone
   Row3 u;          // corrections of row 0, which compliant constraints change in place of x
   const float* w;  // inverse mass of row 0 [1/kg]
   // Of the inner particles of each row, 0 where there is more than columns to their masses; or null.
@@ -142,10 +147,10 @@ struct ProjectRows {
   float rest;                 // m; the strain limit's greatest length
   float weight;               // of w_a + w_b (1/(2 positional_k), 1/Jacobi's relaxation)
   const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
-  float* lambda;              // multipliers of row 0 [kg·m], or null
-  bool limit;                 // one-sided: nothing happens below the rest length
+  float* lambda;              // multipliers of row 0 [kg·m], strain limit: forces [N]; or null
+  LimitSweep limit;           // one-sided: nothing happens below the rest length
   const std::int32_t* alive;  // of row 0: -1 for constraints, 0 for torn ones; null: cannot tear
-  float inverse_dt;           // strain limit: the change of position goes into the velocity too
+  float dt, inverse_dt;       // strain limit: the change of position goes into the velocity too
 };
 
 // A Gauss-Seidel sweep over rows begin … end-1, stencil by stencil, of one rule and dj: along the rows both

@@ -14,9 +14,13 @@
 namespace weft::WEFT_KERNELS {
 
 // What differs between the sweeps, so that each kernel holds just its own.
-enum class Rule { rigid, compliant, multipliers, limit };
+enum class Rule { rigid, compliant, multipliers, limit, carry, hold, settle };
 constexpr bool displaced(Rule r) {
   return r == Rule::compliant || r == Rule::multipliers;
+}
+// The rules of the strain limit (kernels.h, LimitSweep).
+constexpr bool limits(Rule r) {
+  return r >= Rule::limit;
 }
 
 struct ProjectedRow {

@@ -30,10 +30,17 @@ struct Sheet {
   Lattice* lattice;
   float thickness, friction;
   float uu, uv, vv;  // rest metric: |di u + dj v|² [m²]
-  bool course;
+  SelfCollisionResponse response;
+  // Thicknesses at rest: neighbours are nearer than that.
+  static constexpr float kNeighbour = 1.3f;
   // Thicknesses at rest: pairs nearer than that are none. In the course neighbours push, too, once they are
   // pressed together; only what is that near at rest does not.
-  float neighbour() const { return course ? 1 : 1.3f; }
+  float neighbour() const { return response == SelfCollisionResponse::stiff ? kNeighbour : 1; }
+  // Whether particles so many columns and rows from each other are neighbours.
+  bool neighbours(int di, int dj) const {
+    const float i = float(di), j = float(dj), within = kNeighbour * thickness;
+    return i * i * uu + 2 * i * j * uv + j * j * vv < within * within;
+  }
 };
 // Of all sheets together.
 std::size_t count_particles(const std::vector<Sheet>& sheets);

@@ -186,7 +186,8 @@ void SelfContact::respond(const ContactInterval& interval, Threads& threads) {
     solve(*spheres_, interval, threads);
     scatter(*spheres_, interval);
     spheres_->clear();
-    if (course_) push_by_course(interval.dt, interval.substeps);
+    if (course_)
+      record_.contacts_now += std::int64_t(push_by_course(interval.dt, interval.substeps));
   }
 }
 

@@ -14,12 +14,23 @@ constexpr float kTiny = 1e-12f;  // m
 
 }  // namespace
 
-bool SelfContact::by_course(std::int32_t a, std::int32_t b) const {
-  return sheets_[site(a).cloth].course && sheets_[site(b).cloth].course;
+// Whether two push as neighbours on the grid, and do not touch otherwise.
+bool SelfContact::only_neighbours(const Site& a, const Site& b) const {
+  const Sheet& sheet = sheets_[a.cloth];
+  return a.cloth == b.cloth && sheet.response == SelfCollisionResponse::neighbours &&
+         sheet.neighbours(b.column - a.column, b.row - a.row);
 }
 
-// `steps`: substeps of the interval, `dt` their length [s].
-void SelfContact::push_by_course(double dt, int steps) {
+bool SelfContact::by_course(std::int32_t a, std::int32_t b) const {
+  const Site one = site(a), other = site(b);
+  const auto whole = [&](const Site& s) {
+    return sheets_[s.cloth].response == SelfCollisionResponse::course;
+  };
+  return (whole(one) && whole(other)) || only_neighbours(one, other);
+}
+
+// `steps`: substeps of the interval, `dt` their length [s]. Returns how many particles were pushed.
+std::size_t SelfContact::push_by_course(double dt, int steps) {
   const double substeps = scene_.time.substeps > 0 ? scene_.time.substeps : scene_.time.frame / dt;
   const float share = float(steps / substeps);
   asked_.resize(bodies_);
@@ -63,6 +74,7 @@ void SelfContact::push_by_course(double dt, int steps) {
     }
     sum = {};
   }
+  return bodies.size();
 }
 
 }  // namespace weft::physics

@@ -62,8 +62,7 @@ std::unique_ptr<SelfContact> SelfContact::make(const Scene& scene,
       vv += v * v;
     }
     sheets.push_back({cloths[c], &cloths[c]->lattice, float(self.thickness), float(self.friction),
-                      float(uu), float(uv), float(vv),
-                      self.response == SelfCollisionResponse::course});
+                      float(uu), float(uv), float(vv), self.response});
   }
   if (sheets.empty()) return nullptr;
   return std::unique_ptr<SelfContact>(new SelfContact(scene, std::move(sheets), surfaces, kernels));
@@ -81,7 +80,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool sur
       search_(surfaces ? 0 : particles_, named_, kernels) {
   for (const Sheet& s : sheets_) {
     thickness_ = std::max(thickness_, s.thickness);
-    course_ |= s.course && !surfaces;
+    course_ |= s.response != SelfCollisionResponse::stiff && !surfaces;
   }
   for (std::size_t n = 0; n < sheets_.size(); ++n) {
     const float range = sheets_[n].thickness * sheets_[n].neighbour();
@@ -299,6 +298,7 @@ SelfContact::Overlaps SelfContact::overlaps() {
   search(0, one);
   for_each_pair([&](const Site& p, const Site& q) {
     const Sheet &sheet = sheets_[p.cloth], &other = sheets_[q.cloth];
+    if (only_neighbours(p, q)) return;
     double square = 0;
     for (int i = 0; i < 3; ++i) {
       const double d =

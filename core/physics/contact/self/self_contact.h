@@ -25,7 +25,8 @@
 // the list all the time and hardly ever touch: they are left out, and tested row against row each time
 // (kernels/beside_pairs.cpp).
 //
-// The response `course` is the course's own rule (course_response.cpp): among particles of such sheets.
+// The response `course` is the course's own rule (course_response.cpp): among particles of such sheets; with
+// the response `neighbours`, among neighbours on the grid alone.
 #pragma once
 
 #include <memory>
@@ -171,8 +172,9 @@ class SelfContact {
   void move_zones(const std::vector<std::int32_t>& members);
 
   // course_response.cpp
+  bool only_neighbours(const Site& a, const Site& b) const;
   bool by_course(std::int32_t a, std::int32_t b) const;
-  void push_by_course(double dt, int steps);
+  std::size_t push_by_course(double dt, int steps);
 
   const Scene& scene_;
   std::vector<Sheet> sheets_;
@@ -202,7 +204,7 @@ class SelfContact {
   std::vector<std::int32_t> zone_;   // of every body, its own number outside of any (passing.cpp)
 
   float thickness_ = 0;  // greatest of the sheets [m]
-  bool course_ = false;  // whether any sheet has the course's rule
+  bool course_ = false;  // whether any sheet has the course's rule, for neighbours at least
   bool begun_ = false;
   bool listed_ = false;  // whether lists of pairs are there
   bool squares_listed_ = false;

@@ -65,6 +65,7 @@ void LatticeModel::append_motion(Method method, StageList& list) {
   method_ = method;
   multipliers_.reset();
   corrections_.reset();
+  limit_forces_.reset();
   history_.reset();
   overlong_.clear();
   parts_.overlong = nullptr;
@@ -133,26 +134,37 @@ void LatticeModel::append_limits(StageList& list) {
   if (parts_.cloth.strain_limit <= 0) return list.skip("strain_limit", "strain_limit is 0");
   if (parts_.cloth.strain_limit_order == StrainLimitOrder::course)
     return list.stages.push_back(make_course_limit(parts_));
+  if (parts_.cloth.strain_limit_order == StrainLimitOrder::strict && !history_) {
+    limit_forces_ = std::make_unique<Multipliers>(lattice_, stencils_.size());
+    return append_held_limit(parts_, *limit_forces_, list.stages);
+  }
   SweepOptions limit;
   limit.limit = parts_.cloth.strain_limit;
   append_gauss_seidel(parts_, limit, list.stages);
 }
 
-// Methods that project know springs alone.
+// Methods that project know springs alone; the past of order 2 is not the start of the substep, which a
+// limit that holds compares with.
 std::vector<std::string> LatticeModel::notes() const {
+  std::vector<std::string> notes;
+  if (history_ && parts_.cloth.strain_limit > 0 &&
+      parts_.cloth.strain_limit_order == StrainLimitOrder::strict)
+    notes.push_back("with order 2 the strain limit is one pass a substep, as with colours");
   const Membrane& m = parts_.cloth.membrane;
-  if (!m.given() || is_membrane()) return {};
+  if (!m.given() || is_membrane()) return notes;
   std::string note =
       "springs of the membrane's warp, weft and shear run in its place, without its damping";
   if (m.coupling != m.shear)
     note +=
         "; they couple warp and weft by " + number(m.shear) + " N/m, not by " + number(m.coupling);
-  return {note};
+  notes.push_back(note);
+  return notes;
 }
 
 std::size_t LatticeModel::bytes() const {
   std::size_t bytes = lattice_.bytes() + (multipliers_ ? multipliers_->bytes() : 0) +
                       (corrections_ ? corrections_->bytes() : 0) +
+                      (limit_forces_ ? limit_forces_->bytes() : 0) +
                       (history_ ? history_->bytes() : 0);
   if (tearing_) bytes += tearing_->bytes() + overlong_.size();
   return bytes;

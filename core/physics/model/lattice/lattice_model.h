@@ -64,7 +64,7 @@ class LatticeModel final : public ClothModel {
   Lattice lattice_;
   std::vector<Vec3> first_moves_;  // of colliders
   LatticeParts parts_;
-  std::unique_ptr<Multipliers> multipliers_;
+  std::unique_ptr<Multipliers> multipliers_, limit_forces_;
   std::unique_ptr<Rows> corrections_;
   std::unique_ptr<History> history_;
   std::vector<std::uint8_t> overlong_;

@@ -45,9 +45,12 @@ struct SweepOptions {
   bool compliant = false;
   Multipliers* multipliers = nullptr;
   Rows* corrections = nullptr;  // the compliant Gauss–Seidel sweep gathers what it finds there
-  double limit = 0;             // > 0: the strain limit's one-sided sweep
+  double limit = 0;             // > 0: a sweep of the strain limit,
+  LimitSweep limit_sweep = LimitSweep::once;  // of this kind; not `once`: with multipliers
 };
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
+// A strain limit that holds: sweeps by forces that last, which stay in `forces`.
+void append_held_limit(const LatticeParts& parts, Multipliers& forces, Stages& stages);
 // The strain limit, one constraint after the other.
 std::unique_ptr<RowStage> make_course_limit(const LatticeParts& parts);
 std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts, bool compliant);

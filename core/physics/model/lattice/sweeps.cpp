@@ -59,13 +59,18 @@ class ProjectedStencils {
   void prepare(double dt) {
     for (std::size_t n = 0; n < members_.size(); ++n) {
       Member& m = members_[n];
-      if (options_.limit > 0) rows_[n].inverse_dt = float(1 / dt);
+      if (options_.limit > 0) rows_[n].dt = float(dt), rows_[n].inverse_dt = float(1 / dt);
       for (std::size_t j = 0; j < m.compliance.size(); ++j)
         m.compliance[j] = compliance_of(parts_, parts_.stencils[m.index], int(j), dt);
     }
   }
 
   const std::vector<ProjectRows>& rows() const { return rows_; }
+  // Forces that last from substep to substep are forgotten.
+  void restart() {
+    if (options_.limit_sweep == LimitSweep::carry)
+      options_.multipliers->clear(0, parts_.lattice.rows);
+  }
 
  private:
   struct Member {
@@ -97,7 +102,7 @@ class ProjectedStencils {
     r.weight = options_.compliant || options_.limit > 0
                    ? 1.0f
                    : float(1 / (2 * parts_.cloth.positional_k));
-    r.limit = options_.limit > 0;
+    r.limit = options_.limit > 0 ? options_.limit_sweep : LimitSweep::none;
     if (stencil.links) r.alive = stencil.links->row(0);
     if (options_.compliant) {
       m.compliance.resize(std::size_t(l.rows));
@@ -131,6 +136,7 @@ class GaussSeidel final : public RowStage {
         colour_(colour) {}
   std::size_t bytes() const override { return stencils_->bytes(); }
   void prepare(double dt) override { stencils_->prepare(dt); }
+  void restart() override { stencils_->restart(); }
   Velocities velocities(double) const override { return stencils_->velocities(); }
   void run(int begin, int end, const Substep&) override {
     const std::vector<ProjectRows>& stencils = stencils_->rows();
@@ -317,6 +323,23 @@ void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options,
         stages.push_back(
             std::make_unique<GaussSeidel>(parts, name, dj, colour, std::move(stencils)));
     }
+}
+
+// What the forces hold lies below the limit by the share that a sudden load may take until they have met it.
+void append_held_limit(const LatticeParts& parts, Multipliers& forces, Stages& stages) {
+  constexpr double kHeld = 0.9;  // of the limit
+  constexpr int kSweeps = 4;
+  const double limit = parts.cloth.strain_limit;
+  SweepOptions options;
+  options.multipliers = &forces;
+  const auto append = [&](LimitSweep sweep, double held) {
+    options.limit_sweep = sweep;
+    options.limit = held;
+    append_gauss_seidel(parts, options, stages);
+  };
+  append(LimitSweep::carry, limit);
+  for (int n = 0; n < kSweeps; ++n) append(LimitSweep::hold, kHeld * limit);
+  append(LimitSweep::settle, limit);
 }
 
 std::unique_ptr<RowStage> make_jacobi(const LatticeParts& parts, const SweepOptions& options) {
