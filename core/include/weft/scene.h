@@ -179,7 +179,7 @@ struct Cloth {
   double drag = 0;            // 1/s; velocity is multiplied by 1 - dt*drag each substep
   Bending bending;            // energy of curvature
   double strain_limit = 0;    // 0.1 = structural and shear constraints never beyond 110 %; 0 = off
-  StrainLimitOrder strain_limit_order = StrainLimitOrder::colours;
+  StrainLimitOrder strain_limit_order = StrainLimitOrder::strict;
   double tear_strain = 0;  // 0.5 = a constraint beyond 150 % is cut; 0 = cannot tear
   Tears tears = Tears::split;
   SelfCollision self_collision;
