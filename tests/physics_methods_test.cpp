@@ -65,6 +65,7 @@ std::vector<Case> features() {
                          [](Scene& s) {
                            pin(s);
                            s.cloths[0].strain_limit = 0.02;
+                           s.cloths[0].strain_limit_order = StrainLimitOrder::colours;
                          }},
                         {"structural only",
                          [](Scene& s) {
@@ -116,6 +117,7 @@ std::vector<Case> features() {
                            s.cloths[0].drag = 3;
                            s.cloths[0].stiffness_gradient = 0.4;
                            s.cloths[0].strain_limit = 0.05;
+                           s.cloths[0].strain_limit_order = StrainLimitOrder::colours;
                          }}};
   for (int level = 1; level <= 4; ++level)
     all.push_back({"level " + std::to_string(level), [level](Scene& s) {

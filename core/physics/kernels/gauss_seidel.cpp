@@ -8,10 +8,10 @@
 // masses.)
 //
 // A strain limit that holds has forces f >= 0 for multipliers, which last from substep to substep. Sweep
-// `carry` pulls by f dt². Sweeps `hold` see to it that nothing grows too long, and that what is too long at the
-// substep's start, l₀, loses a share β of that (Baumgarte 1972),
+// `carry` pulls by f dt². Sweeps `hold` see to it that nothing longer than the length held, l, grows, and that
+// what is beyond the limit at the substep's start, l₀ > L, loses a share β of that (Baumgarte 1972),
 //
-//   f <- max(0, f + ω (|e| - max(l₀ - β (l₀ - l), l))/((w_a + w_b) dt²))       l: the length held
+//   f <- max(0, f + ω (|e| - max(l, l₀ - β max(0, l₀ - L)))/((w_a + w_b) dt²))
 //
 // and `settle` takes back a share of what is too long all the same, in positions alone, so that it makes no
 // speed. (Sequential impulses with a warm start: Catto 2005; positions apart: Bridson et al. 2002.)
@@ -73,7 +73,8 @@ WEFT_INLINE Wide3 limit_block(const ProjectRows& p, const ProjectedRow& near,
     return e * select(active, (length - p.rest) * kSettled / (inertia * length), Wide{});
   const Wide start =
       sqrt(squared_length(e - (velocity(p, far, a) - velocity(p, near, a)) * wide(p.dt)));
-  const Wide allowed = max(start - (start - p.rest) * kTakenBack, wide(p.rest));
+  const Wide beyond = max(start - wide(p.most), Wide{});
+  const Wide allowed = max(start - beyond * kTakenBack, wide(p.rest));
   const Wide asked = force + (length - allowed) * kHoldRelaxation / (inertia * dt2);
   const Wide held = select(active, select(asked > 0.0f, asked, Wide{}), force);
   store(forces, held);

@@ -144,7 +144,8 @@ struct ProjectRows {
   bool side_by_side;
   const float* inverse_width;
   const std::int32_t* lanes;  // along rows: -1 in the lanes of a colour, 0 elsewhere; both colours
-  float rest;                 // m; the strain limit's greatest length
+  float rest;                 // m; a strain limit's greatest length, or the one that forces hold,
+  float most;                 // and then the greatest
   float weight;               // of w_a + w_b (1/(2 positional_k), 1/Jacobi's relaxation)
   const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
   float* lambda;              // multipliers of row 0 [kg·m], strain limit: forces [N]; or null

@@ -46,6 +46,7 @@ struct SweepOptions {
   Multipliers* multipliers = nullptr;
   Rows* corrections = nullptr;  // the compliant Gauss–Seidel sweep gathers what it finds there
   double limit = 0;             // > 0: a sweep of the strain limit,
+  double held = 0;              // what forces hold of it: as much or less
   LimitSweep limit_sweep = LimitSweep::once;  // of this kind; not `once`: with multipliers
 };
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages);

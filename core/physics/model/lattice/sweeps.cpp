@@ -98,7 +98,9 @@ class ProjectedStencils {
     r.dj = stencil.dj;
     r.side_by_side = stencil.di != 0 && l.column_width[0] < 1;
     if (stencil.di == 0) r.inverse_width = l.inverse_width.data();
-    r.rest = float(stencil.rest * (1 + options_.limit));
+    const bool holds = options_.limit_sweep == LimitSweep::hold;
+    r.rest = float(stencil.rest * (1 + (holds ? options_.held : options_.limit)));
+    r.most = float(stencil.rest * (1 + options_.limit));
     r.weight = options_.compliant || options_.limit > 0
                    ? 1.0f
                    : float(1 / (2 * parts_.cloth.positional_k));
@@ -329,17 +331,17 @@ void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options,
 void append_held_limit(const LatticeParts& parts, Multipliers& forces, Stages& stages) {
   constexpr double kHeld = 0.9;  // of the limit
   constexpr int kSweeps = 4;
-  const double limit = parts.cloth.strain_limit;
   SweepOptions options;
   options.multipliers = &forces;
-  const auto append = [&](LimitSweep sweep, double held) {
+  options.limit = parts.cloth.strain_limit;
+  options.held = kHeld * options.limit;
+  const auto append = [&](LimitSweep sweep) {
     options.limit_sweep = sweep;
-    options.limit = held;
     append_gauss_seidel(parts, options, stages);
   };
-  append(LimitSweep::carry, limit);
-  for (int n = 0; n < kSweeps; ++n) append(LimitSweep::hold, kHeld * limit);
-  append(LimitSweep::settle, limit);
+  append(LimitSweep::carry);
+  for (int n = 0; n < kSweeps; ++n) append(LimitSweep::hold);
+  append(LimitSweep::settle);
 }
 
 std::unique_ptr<RowStage> make_jacobi(const LatticeParts& parts, const SweepOptions& options) {
