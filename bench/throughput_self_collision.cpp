@@ -30,7 +30,7 @@ struct Sheet {
     cloths.push_back(std::make_unique<ClothStep>(scene, 0, weft::Method::spring, 1, kernels));
     if (folded) fold(cloths[0]->particles());
     x.copy_from(cloths[0]->particles());
-    self = SelfContact::make(scene, lattices_of(cloths), kernels);
+    self = SelfContact::make(scene, models_of(cloths), kernels);
     self->search(margin(), threads);
   }
 

@@ -27,6 +27,13 @@ struct Key {
 const char* const kFabric = R"({"cloths": [{"mesh": {"file": "m.obj"}, "pins": [0, 30],
     "membrane": {"warp": 900, "weft": 800, "shear": 60}}]})";
 
+// Another mesh comes down on it at a slant.
+const char* const kMeets = R"({"cloths": [
+    {"mesh": {"file": "m.obj"}, "pins": [0, 30],
+     "self_collision": {"mode": "particles", "thickness": 0.1}},
+    {"mesh": {"file": "other.obj", "translate": [0, 0.11, 0]}, "velocity": [1, -1, 0],
+     "self_collision": {"mode": "particles", "thickness": 0.1}}]})";
+
 const std::map<std::string, Key> kKeys = {
     {"/gravity", {"[0, -5, 0]"}},
     {"/time/frame", {"0.01"}},
@@ -83,9 +90,9 @@ const std::map<std::string, Key> kKeys = {
     {"/cloths/0/strain_limit_order", {R"("course")"}},
     {"/cloths/0/tear_strain", {"0.5"}},
     {"/cloths/0/tears", {R"("holes")"}},
-    {"/cloths/0/self_collision/mode", {R"("particles")"}},
-    {"/cloths/0/self_collision/thickness", {"0.02"}},
-    {"/cloths/0/self_collision/friction", {"0.1"}},
+    {"/cloths/0/self_collision/mode", {R"("surface")", kMeets}},
+    {"/cloths/0/self_collision/thickness", {"0.12", kMeets}},
+    {"/cloths/0/self_collision/friction", {"0.1", kMeets}},
     {"/cloths/0/self_collision/response", {R"("course")"}},
     {"/cloths/0/pins", {"[1]"}},
 };

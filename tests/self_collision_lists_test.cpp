@@ -11,8 +11,10 @@
 #include "physics/contact/self/crossings.h"
 #include "physics/contact/self/self_contact.h"
 #include "physics/frame/cloth_step.h"
+#include "physics/model/lattice/stages.h"
 #include "physics/model/random.h"
 #include "physics/step/threads.h"
+#include "squares.h"
 #include "weft/scene.h"
 
 namespace weft::physics {
@@ -30,9 +32,9 @@ struct Pair {
           std::make_unique<ClothStep>(scene, c, Method::spring, 1, kernel_table(Simd::best)));
       if (pinned) sheet(std::size_t(c)).set_inverse_mass(0, 0, 0);
     }
-    contact = SelfContact::make(scene, lattices_of(steps), kernel_table(Simd::best));
+    contact = SelfContact::make(scene, models_of(steps), kernel_table(Simd::best));
   }
-  Lattice& sheet(std::size_t s) { return lattices_of(steps)[s]->lattice; }
+  Lattice& sheet(std::size_t s) { return steps[s]->model().lattice()->lattice; }
   void copy_state(Pair& from) {
     for (std::size_t s = 0; s < 2; ++s) {
       sheet(s).x.copy(from.sheet(s).x);
@@ -120,7 +122,7 @@ TEST_P(SurfaceLists, NothingPassesWhateverMoves) {
   Threads threads(1);
   pair.contact->begin(threads);
   std::vector<Face> faces;
-  for (int s = 0; s < 2; ++s) add_faces(kPoints, kPoints, s * kPoints * kPoints, faces);
+  for (int s = 0; s < 2; ++s) add_squares(kPoints, kPoints, s * kPoints * kPoints, faces);
   Random random(7, 1);
   for (int step = 0; step < 1200; ++step) {
     const bool wild = step / 150 % 2 == 1;  // else few fly, and the upper sheet sinks or rises
@@ -167,8 +169,8 @@ TEST(SurfaceSquare, DoesNotFoldThroughItself) {
   std::vector<std::unique_ptr<ClothStep>> steps;
   steps.push_back(
       std::make_unique<ClothStep>(scene, 0, Method::spring, 1, kernel_table(Simd::best)));
-  Lattice& sheet = lattices_of(steps)[0]->lattice;
-  const auto contact = SelfContact::make(scene, lattices_of(steps), kernel_table(Simd::best));
+  Lattice& sheet = steps[0]->model().lattice()->lattice;
+  const auto contact = SelfContact::make(scene, models_of(steps), kernel_table(Simd::best));
   Threads threads(1);
   contact->begin(threads);
   // Square A(0, 0), B(0.5, 0), C(0, 0.5), D(0.5, 0.5) in x and z, as it was made; y is up.

@@ -9,6 +9,8 @@
 #include "physics/contact/self/crossings.h"
 #include "physics/contact/self/self_contact.h"
 #include "physics/frame/cloth_step.h"
+#include "physics/model/lattice/stages.h"
+#include "squares.h"
 
 namespace weft {
 namespace {
@@ -71,7 +73,7 @@ void expect_all_pairs(const Scene& scene, double size, Simd simd) {
         for (int k = 0; k < 3; ++k) l.x.at(k, j, i) = within(random) * (k == 1 ? 0.3f : 1.0f);
   }
   const auto self =
-      physics::SelfContact::make(scene, physics::lattices_of(cloths), physics::kernel_table(simd));
+      physics::SelfContact::make(scene, physics::models_of(cloths), physics::kernel_table(simd));
   physics::Threads threads(2);
   self->search(0.01, threads);
   std::set<Pair> pairs;
@@ -136,7 +138,7 @@ TEST(SelfCollisionPairs, CrossingsAreThoseOfEveryEdgeAndTriangle) {
   for (int p = 0; p < kSide * kSide; ++p)
     x.push_back({0.01 * (p % kSide) + anywhere(random), anywhere(random), 0.01 * (p / kSide)});
   std::vector<physics::Face> faces;
-  physics::add_faces(kSide, kSide, 0, faces);
+  add_squares(kSide, kSide, 0, faces);
   const std::vector<physics::Edge> edges = physics::edges_of(faces);
   for (const double pulled : {0.0, 5.0}) {
     x[0][1] += pulled;

@@ -72,7 +72,7 @@ struct Squares {
         s.corner[c] = std::int32_t(place.size());
         place.push_back(x);
         moved.push_back(u);
-        rest.push_back({0, 0, float(q), 0.5f});  // each a sheet of its own
+        rest.push_back({0, 0, 0, float(q)});  // each a sheet of its own
       }
       square.push_back(s);
     }

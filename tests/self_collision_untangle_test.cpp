@@ -106,7 +106,7 @@ TEST(Untangle, FlatSheetsThatCannotCrossAreNotSearched) {
     for (int c = 0; c < int(scene.cloths.size()); ++c)
       cloths.push_back(std::make_unique<physics::ClothStep>(scene, c, Method::spring, 0,
                                                             physics::kernel_table(Simd::scalar)));
-    return physics::Untangle(scene, physics::lattices_of(cloths)).due();
+    return physics::Untangle(scene, physics::models_of(cloths)).due();
   };
   Scene scene = upright(20);
   EXPECT_TRUE(due(scene));

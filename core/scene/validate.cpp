@@ -108,6 +108,8 @@ class Together {
       if (const auto wrong = fault_of(cloth.mesh, place + "/mesh"))
         return fault(wrong->place, wrong->what, wrong->allowed);
     check_mesh(scene_, cloth, place, result_);
+    if (cloth.mesh.shape)
+      self_collision(cloth, place, mean_edge(cloth.mesh), "mean edge of the mesh");
     mesh_pins(cloth, place + "/pins");
   }
 
@@ -131,7 +133,8 @@ class Together {
   void sheet(const Cloth& cloth, const std::string& place) {
     if (sound({place + "/grid"}) && grid(cloth.grid, place + "/grid")) {
       masses(cloth, place);
-      self_collision(cloth, place);
+      self_collision(cloth, place, std::min(spacing_u(cloth.grid), spacing_v(cloth.grid)),
+                     "spacing of the grid");
       level(cloth, place + "/level");
     }
     if (sound({place + "/grid/points"})) pins(cloth, place + "/pins");
@@ -182,15 +185,17 @@ class Together {
             range_words(one));
   }
 
-  void self_collision(const Cloth& cloth, const std::string& place) {
+  // `spacing`: of the particles [m], called so in messages.
+  void self_collision(const Cloth& cloth, const std::string& place, double spacing,
+                      const char* called) {
     const SelfCollision& self = cloth.self_collision;
     const std::string key = place + "/self_collision/thickness";
     if (self.mode == SelfCollisionMode::off || !sound({place + "/self_collision"})) return;
-    const double most = kMaxThickness * std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
+    const double most = kMaxThickness * spacing;
     if (self.thickness > most)
       fault(key, "thickness is " + number_words(self.thickness),
             number_words(std::min(least_thickness(), most)) + " to " + number_words(most) +
-                " m, 4 times the spacing of the grid");
+                " m, 4 times the " + called);
   }
 
   static double least_thickness() {

@@ -44,6 +44,9 @@ MeshFile read_obj(std::string_view text, const std::string& name);
 // Text that read_obj() reads to the same mesh, groups left out: the same bits in the same order.
 std::string write_obj(const TriangleMesh& mesh);
 
+// The mean length of the edges of a mesh, which is read, as the scene places it [m]; inner edges count twice.
+double mean_edge(const MeshSource& mesh);
+
 // Reads the meshes of a scene that have no shape yet, files beside `folder` where they are not absolute.
 // Faults have the place in the scene, and where in the file.
 void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& faults,

@@ -123,11 +123,10 @@ std::size_t ClothStep::bytes() const {
   return bytes;
 }
 
-std::vector<const LatticeParts*> lattices_of(const Cloths& cloths) {
-  std::vector<const LatticeParts*> lattices;
-  for (const auto& step : cloths)
-    if (const LatticeParts* lattice = step->model().lattice()) lattices.push_back(lattice);
-  return lattices;
+std::vector<ClothModel*> models_of(const Cloths& cloths) {
+  std::vector<ClothModel*> models;
+  for (const auto& step : cloths) models.push_back(&step->model());
+  return models;
 }
 
 Plan describe(const Cloths& cloths) {

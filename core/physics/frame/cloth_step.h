@@ -75,8 +75,8 @@ class ClothStep {
 
 using Cloths = std::vector<std::unique_ptr<ClothStep>>;
 
-// The grids among the cloths, for contact between sheets.
-std::vector<const LatticeParts*> lattices_of(const Cloths& cloths);
+// What the cloths are made of, for contact between sheets.
+std::vector<ClothModel*> models_of(const Cloths& cloths);
 
 // The stages of all cloths, and what all of them do without.
 Plan describe(const Cloths& cloths);

@@ -121,10 +121,11 @@ double bytes_of(const Cloth& cloth, const Solver& solver) {
   if (solver.tethers) each += memory::kTethers;
   if (cloth.tear_strain > 0 || !cloth.cuts.empty()) each += memory::kTearing;
   if (!cloth.masses.empty()) each += memory::kMasses;
-  if (cloth.self_collision.mode == SelfCollisionMode::particles) each += memory::kParticles;
-  if (cloth.self_collision.mode == SelfCollisionMode::surface) each += memory::kSurface;
-  if (cloth.mesh.given()) return memory::kMeshVertex * particle_count(cloth);
-  return each * row_stride(cloth.grid.nx) * cloth.grid.ny;
+  double contact = 0;
+  if (cloth.self_collision.mode == SelfCollisionMode::particles) contact = memory::kParticles;
+  if (cloth.self_collision.mode == SelfCollisionMode::surface) contact = memory::kSurface;
+  if (cloth.mesh.given()) return (memory::kMeshVertex + contact) * particle_count(cloth);
+  return (each + contact) * row_stride(cloth.grid.nx) * cloth.grid.ny;
 }
 
 // Of one substep [ns].

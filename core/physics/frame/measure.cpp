@@ -77,12 +77,12 @@ void add_strain(const Simulation::State& s, Report& r) {
 void add_self_contact(const Simulation::State& s, Report& r) {
   std::vector<Vec3> x;
   std::vector<Face> faces;
-  for (const LatticeParts* lattice : lattices_of(s.cloths)) add_surface(*lattice, x, faces);
+  for (const ClothModel* model : models_of(s.cloths)) add_surface(*model, x, faces);
   r.penetration.crossings = count_crossings(x, faces);
   if (!s.self_collision) return;
   // By a search of its own: the one that runs must not notice.
   const SelfContact::Overlaps overlaps =
-      SelfContact::make(s.scene, lattices_of(s.cloths), kernel_table(s.simd))->overlaps();
+      SelfContact::make(s.scene, models_of(s.cloths), kernel_table(s.simd))->overlaps();
   const SelfContact::Record& record = s.self_collision->record();
   r.contact = {record.contacts_now, record.energy_taken, record.greatest_held,
                record.least_distance};

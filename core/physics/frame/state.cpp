@@ -7,11 +7,13 @@
 
 #include "physics/contact/collider_stage.h"
 #include "physics/contact/contact_reaction.h"
+#include "physics/contact/moving_collider.h"
 #include "physics/contact/start_inside.h"
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/lattice/cuts.h"
 #include "physics/model/lattice/stability.h"
 #include "physics/model/path.h"
+#include "weft/mesh.h"
 
 namespace weft {
 
@@ -68,6 +70,27 @@ FarPins far_pins(const Cloth& cloth, double distance) {
     far.most = std::max(far.most, length);
   }
   return far;
+}
+
+// `surfaces`: whether any cloth meets others by its surface.
+void note_thickness(const std::string& which, const Cloth& cloth, bool surfaces,
+                    std::vector<std::string>& notes) {
+  const SelfCollision& self = cloth.self_collision;
+  if (self.mode == SelfCollisionMode::off) return;
+  const bool mesh = cloth.mesh.given();
+  const double spacing =
+      mesh ? mean_edge(cloth.mesh) : std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
+  const std::string thickness = which + ": the thickness of " + number(self.thickness) + " m is ";
+  if (self.thickness > spacing)
+    notes.push_back(thickness + "above the " + (mesh ? "mean edge of " : "spacing of ") +
+                    number(spacing) + " m; particles nearer than the thickness on the " +
+                    (mesh ? "mesh at rest" : "flat sheet") + " do not meet");
+  // As far as a particle gets from all others, at least.
+  const double widest = 0.5 * longest_edge(cloth);
+  if (self.mode == SelfCollisionMode::particles && !surfaces && self.thickness < widest)
+    notes.push_back(thickness + "below " + number(widest) + " m, half " +
+                    (mesh ? "the longest edge" : "the diagonal of a square") +
+                    ": particles can pass between others (mode surface lets nothing through)");
 }
 
 // Whether a cut of the scene passes between two neighbours.
@@ -134,9 +157,9 @@ void Simulation::State::build_cloths() {
 
 // Contact that remembers nothing.
 void Simulation::State::make_self_contact() {
-  const std::vector<const LatticeParts*> parts = lattices_of(cloths);
-  self_collision = SelfContact::make(scene, parts, kernel_table(simd));
-  untangle = self_collision ? std::make_unique<Untangle>(scene, parts) : nullptr;
+  const std::vector<ClothModel*> models = models_of(cloths);
+  self_collision = SelfContact::make(scene, models, kernel_table(simd));
+  untangle = self_collision ? std::make_unique<Untangle>(scene, models) : nullptr;
 }
 
 // The stages that run, and those that do not, with the reason.
@@ -185,6 +208,7 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
                   : "moved out over " + std::to_string(kPulledFrames) + " frames"));
     }
     const Cloth& cloth = scene.cloths[c];
+    note_thickness(which, cloth, self_collision && self_collision->surfaces(), notes);
     if (cloth.mesh.given()) continue;
     const double spacing = std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
     if (const FarPins far = far_pins(cloth, spacing); far.count > 0)
@@ -195,19 +219,6 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
     for (std::size_t k = 0; k < cloth.cuts.size(); ++k)
       if (!crosses_sheet(cloth.cuts[k], cloth.grid))
         notes.push_back(which + ": cut " + std::to_string(k) + " passes between no two particles");
-    if (cloth.self_collision.mode != SelfCollisionMode::off &&
-        cloth.self_collision.thickness > spacing)
-      notes.push_back(which + ": the thickness of " + number(cloth.self_collision.thickness) +
-                      " m is above the spacing of " + number(spacing) +
-                      " m; particles nearer than the thickness on the flat sheet do not meet");
-    // Half the diagonal of a square is as far as a particle gets from all others.
-    const double widest = 0.5 * std::hypot(spacing_u(cloth.grid), spacing_v(cloth.grid));
-    if (cloth.self_collision.mode == SelfCollisionMode::particles && !self_collision->surfaces() &&
-        cloth.self_collision.thickness < widest)
-      notes.push_back(which + ": the thickness of " + number(cloth.self_collision.thickness) +
-                      " m is below " + number(widest) +
-                      " m, half the diagonal of a square: particles can pass between others (mode "
-                      "surface lets nothing through)");
   }
   if (!self_collision) return;
   if (const SelfContact::Overlaps o = self_collision->overlaps(); o.pairs > 0)

@@ -239,20 +239,19 @@ class Pairs {
     return (select(joined, wide(kOutOfReach), square) < far_squared_) & valid_;
   }
 
-  // The distance on the flat sheet of the two points; far where they are of two sheets.
-  WEFT_INLINE Wide rest_distance(const Closest& c, Wide& friction) const {
-    Wide x{}, y{}, sheet[2];
-    friction = Wide{};
+  // The distance at rest of the two points; far where they are of two sheets.
+  WEFT_INLINE Wide rest_distance(const Closest& c) const {
+    Wide x{}, y{}, z{}, sheet[2];
     for (int n = 0; n < 2; ++n)
       for (int k = 0; k < 4; ++k) {
         const Wide4 rest = record(&given_.rest->x, n, k);
         const Wide share = c.at[n][k] * (n == 0 ? 1.0f : -1.0f);
         x = x + rest.xyz.x * share;
         y = y + rest.xyz.y * share;
-        sheet[n] = rest.xyz.z;
-        if (k == 0) friction = friction + 0.5f * rest.last;
+        z = z + rest.xyz.z * share;
+        sheet[n] = rest.last;
       }
-    return select(sheet[0] == sheet[1], sqrt(x * x + y * y), wide(kOutOfReach));
+    return select(sheet[0] == sheet[1], sqrt(x * x + y * y + z * z), wide(kOutOfReach));
   }
 
   // Not inlined: few are near, and there are thirteen kinds. `body` are the four that take part, the
@@ -276,19 +275,18 @@ class Pairs {
         nearest[1] = max(nearest[1], u);
     }
     const Wide approach = min(Wide{}, nearest[0] - nearest[1]);
-    Wide friction;
-    const Wide held = min(thickness_, 0.5f * rest_distance(c, friction));
+    const Wide held = min(thickness_, 0.5f * rest_distance(c));
     const WideInt wanted =
         kSearch == SurfaceSearch::contacts
             ? near & (distance + approach < held * given_.reach)
             : near & (approach < 0.0f) &
                   (distance + approach < max(distance * kLeastLeft, held * given_.floor));
     for (unsigned set = bits(wanted); set != 0; set &= set - 1)
-      put(kind, owners, body, c, __builtin_ctz(set), normal, distance, held, friction);
+      put(kind, owners, body, c, __builtin_ctz(set), normal, distance, held);
   }
 
   void put(int kind, int owners, const int (&body)[4][2], const Closest& c, int lane,
-           const Wide3& normal, const Wide& distance, const Wide& held, const Wide& friction) {
+           const Wide3& normal, const Wide& distance, const Wide& held) {
     SurfaceContact& one = *found_++;
     one.pair = at_ + lane;
     one.kind = kind;
@@ -299,7 +297,6 @@ class Pairs {
     one.normal[0] = normal.x[lane], one.normal[1] = normal.y[lane], one.normal[2] = normal.z[lane];
     one.distance = distance[lane];
     one.held = held[lane];
-    one.friction = friction[lane];
   }
 
   const SurfacePairs& given_;

@@ -13,9 +13,9 @@ struct alignas(16) Square {
   std::int32_t corner[4];
 };
 
-// Where a body is on the flat sheet [m], which sheet that is, and its coefficient of friction.
+// Where a body is on the sheet at rest [m], and which sheet that is.
 struct alignas(16) RestPlace {
-  float x, y, sheet, friction;
+  float x, y, z, sheet;
 };
 
 // Box about a square, through an interval.
@@ -54,7 +54,7 @@ struct SurfaceContact {
   std::int32_t pair, kind;  // which of the given pairs, which of the 13 of a pair
   std::int32_t body[4];
   float share[4];
-  float normal[3], distance, held, friction;
+  float normal[3], distance, held;
 };
 inline constexpr int kKindsOfPair = 13;
 

@@ -17,6 +17,7 @@ namespace weft::physics {
 
 class ClothModel;
 struct LatticeParts;
+struct History;
 
 // Whether a method integrates springs as forces, and so has a stability limit.
 inline bool is_explicit(Method m) {
@@ -62,6 +63,8 @@ class ClothModel {
 
   // Whether no method that projects can move it.
   virtual bool only_explicit() const { return false; }
+  // What substeps of the second order keep from one to the next; null: they are of the first.
+  virtual History* history() { return nullptr; }
   // Appends the stages that move the particles by this method and the scene's solver, up to contact;
   // then, after those of contact, what may not be exceeded at a substep's end.
   virtual void append_motion(Method method, StageList& list) = 0;

@@ -88,6 +88,17 @@ std::vector<Vec3> placed_vertices(const MeshSource& mesh) {
   return placed;
 }
 
+double mean_edge(const MeshSource& mesh) {
+  const std::vector<Vec3> x = placed_vertices(mesh);
+  double sum = 0;
+  for (const auto& t : mesh.shape->triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = x[std::size_t(t[k])], &b = x[std::size_t(t[(k + 1) % 3])];
+      sum += std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    }
+  return sum / (3 * double(mesh.shape->triangles.size()));
+}
+
 void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& faults,
                  std::vector<std::string>& notes) {
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {

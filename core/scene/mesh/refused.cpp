@@ -31,12 +31,8 @@ void check_keys(const Cloth& cloth, const std::string& place, Check& result) {
   refuse(!cloth.cuts.empty(), "/cuts", "a mesh is cut", "none, with a mesh");
   refuse(cloth.tear_strain > 0, "/tear_strain", "a mesh is to tear", "0, with a mesh");
   refuse(cloth.tears != Tears::split, "/tears", "a mesh does not tear", "split, with a mesh");
-  refuse(cloth.self_collision.mode != SelfCollisionMode::off, "/self_collision/mode",
-         "a mesh is to meet itself", "off, with a mesh");
-  SelfCollision off = cloth.self_collision;
-  off.mode = SelfCollisionMode::off;
-  refuse(off != SelfCollision{}, "/self_collision", "a mesh does not meet itself",
-         "nothing, with a mesh");
+  refuse(cloth.self_collision.response != SelfCollisionResponse::stiff, "/self_collision/response",
+         "neighbours that push are those of a grid", "stiff, with a mesh");
 }
 
 // Of the solver, for a cloth that is a mesh.
@@ -63,13 +59,6 @@ void check_mesh(const Scene& scene, const Cloth& cloth, const std::string& place
   for (const Collider& collider : scene.colliders)
     if (collider.cuts)
       return result.fault(place + "/mesh", "a collider cuts a mesh", "grids alone are cut");
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const Cloth& other = scene.cloths[c];
-    if (!other.mesh.given() && other.self_collision.mode != SelfCollisionMode::off)
-      return result.fault("/cloths/" + std::to_string(c) + "/self_collision/mode",
-                          "cloth is to meet cloth beside a mesh, which meets none",
-                          "off, beside a mesh");
-  }
 }
 
 }  // namespace weft::text

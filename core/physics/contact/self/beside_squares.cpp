@@ -17,6 +17,11 @@ float least_between(float aa, float bb, float ab) {
   return std::sqrt(std::max(0.0f, aa * bb - ab * ab) / (aa + bb - 2 * ab));
 }
 
+// Meshes have none (beside_triangles.h).
+int rows_of(const Sheet& sheet) {
+  return sheet.mesh ? 0 : sheet.points->rows;
+}
+
 }  // namespace
 
 BesideSquares::BesideSquares(const std::vector<Sheet>& sheets, const std::vector<NamedSheet>& named,
@@ -29,7 +34,7 @@ BesideSquares::BesideSquares(const std::vector<Sheet>& sheets, const std::vector
       may_touch_(squares.size()) {
   for (const Sheet& s : sheets) {
     first_row_.push_back(pairs_.size());
-    pairs_.resize(pairs_.size() + std::size_t(s.lattice->rows));
+    pairs_.resize(pairs_.size() + std::size_t(rows_of(s)));
   }
   row_changed_.assign(pairs_.size(), 1);
 }
@@ -64,7 +69,7 @@ void BesideSquares::measure_row(std::size_t sheet, int row, const Place* place) 
   const float most = kChange * kChange * std::min(s.uu, s.vv);
   std::uint8_t& row_changed = row_changed_[first_row_[sheet] + std::size_t(row)];
   const auto begin = std::size_t(named_[sheet].name(row, 0));
-  for (std::size_t n = begin; n < begin + std::size_t(s.lattice->columns); ++n) {
+  for (std::size_t n = begin; n < begin + std::size_t(s.columns); ++n) {
     const Lie now = lie_of(n, place);
     Lie& then = lies_[n];
     float du = 0, dv = 0;
@@ -81,7 +86,7 @@ void BesideSquares::measure_row(std::size_t sheet, int row, const Place* place) 
 
 void BesideSquares::list(const std::vector<std::uint8_t>& passing, Threads& threads) {
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
-    const int rows = sheets_[s].lattice->rows;
+    const int rows = rows_of(sheets_[s]);
     threads.share(std::size_t(rows), squares_.size() < kFewSquares, [&](std::size_t j) {
       const std::size_t row = first_row_[s] + j;
       const bool below = int(j) + 1 < rows && row_changed_[row + 1];
@@ -89,9 +94,9 @@ void BesideSquares::list(const std::vector<std::uint8_t>& passing, Threads& thre
     });
   }
   for (std::size_t s = 0; s < sheets_.size(); ++s)
-    for (int j = 0; j < sheets_[s].lattice->rows; ++j)
+    for (int j = 0; j < rows_of(sheets_[s]); ++j)
       if (std::exchange(row_changed_[first_row_[s] + std::size_t(j)], std::uint8_t{0}))
-        std::fill_n(changed_.begin() + named_[s].name(j, 0), sheets_[s].lattice->columns, 0);
+        std::fill_n(changed_.begin() + named_[s].name(j, 0), sheets_[s].columns, 0);
 }
 
 // Whether two squares that share a corner, or one with itself, lie so much alike that they cannot touch.
@@ -129,9 +134,9 @@ bool BesideSquares::lie_alike(const Sheet& sheet, std::size_t p, std::size_t q) 
 // before it to the one after.
 void BesideSquares::list_row(std::size_t sheet, int row, const std::vector<std::uint8_t>& passing,
                              SquarePairs& found) {
-  const Lattice& l = *sheets_[sheet].lattice;
+  const int columns = sheets_[sheet].columns, rows = sheets_[sheet].points->rows;
   found.count = 0;
-  found.reserve(5 * std::size_t(l.columns));
+  found.reserve(5 * std::size_t(columns));
   const auto look_at = [&](std::size_t p, std::size_t q, int bit) {
     std::uint8_t& bits = may_touch_[p];
     if (changed_[p] || changed_[q]) {
@@ -143,12 +148,12 @@ void BesideSquares::list_row(std::size_t sheet, int row, const std::vector<std::
     found.owner[found.count] = std::int32_t(p);
     found.neighbour[found.count++] = std::int32_t(q);
   };
-  for (int i = 0; i < l.columns; ++i) {
+  for (int i = 0; i < columns; ++i) {
     const auto n = std::size_t(named_[sheet].name(row, i));
     look_at(n, n, 0);
-    if (i + 1 < l.columns) look_at(n, n + 1, 1);
-    if (row + 1 == l.rows) continue;
-    for (int across = i > 0 ? -1 : 0; across <= (i + 1 < l.columns ? 1 : 0); ++across)
+    if (i + 1 < columns) look_at(n, n + 1, 1);
+    if (row + 1 == rows) continue;
+    for (int across = i > 0 ? -1 : 0; across <= (i + 1 < columns ? 1 : 0); ++across)
       look_at(n, std::size_t(named_[sheet].name(row + 1, i + across)), 3 + across);
   }
 }

@@ -9,12 +9,13 @@ namespace weft::physics {
 namespace {
 
 constexpr float kFlatter = 0.04f;  // of ρ: what is let go must be so much flatter than it must stay
+constexpr double kNearPatches = 4;      // thicknesses: beyond what may touch, and a skin
 constexpr std::size_t kPadding = 16;    // that kernels may read and write
 constexpr std::size_t kFewBlocks = 24;  // that one thread measures faster
 
 // Small sheets in small blocks, so that they have some; large ones in large, so that there are few.
-int block_columns(const Lattice& l) {
-  const int longest = std::max(l.columns, l.rows);
+int block_columns(const Sheet& sheet) {
+  const int longest = std::max(sheet.columns, sheet.points->rows);
   return longest <= 160 ? 16 : longest <= 640 ? 32 : 64;
 }
 
@@ -55,8 +56,13 @@ float dot(const float* a, const float* b) {
 
 std::size_t count_particles(const std::vector<Sheet>& sheets) {
   std::size_t n = 0;
-  for (const Sheet& s : sheets) n += std::size_t(s.lattice->columns) * std::size_t(s.lattice->rows);
+  for (const Sheet& s : sheets) n += std::size_t(s.points->count());
   return n;
+}
+
+void copy_meshes(const std::vector<Sheet>& sheets, Threads& threads) {
+  for (const Sheet& s : sheets)
+    if (s.mesh) s.mesh->copy(threads);
 }
 
 Blocks::Blocks(const std::vector<Sheet>& sheets, float least_ratio, const KernelTable& kernels)
@@ -76,15 +82,22 @@ Blocks::Blocks(const std::vector<Sheet>& sheets, float least_ratio, const Kernel
 
 void Blocks::cut(const std::vector<Sheet>& sheets) {
   for (std::size_t s = 0; s < sheets.size(); ++s) {
-    const Lattice& l = *sheets[s].lattice;
-    const int wide = block_columns(l), tall = wide / 2;
-    const Extent e{int(blocks_.size()), (l.columns + wide - 1) / wide, (l.rows + tall - 1) / tall};
+    const Particles& p = *sheets[s].points;
+    const bool mesh = sheets[s].mesh != nullptr;
+    const int wide = mesh ? sheets[s].columns : block_columns(sheets[s]),
+              tall = mesh ? 1 : wide / 2;
+    const Extent e{int(blocks_.size()), (sheets[s].columns + wide - 1) / wide,
+                   (p.rows + tall - 1) / tall};
     extents_.push_back(e);
-    then_.emplace_back(l.rows, l.stride);
+    then_.emplace_back(p.rows, p.stride);
+    patches_.push_back(mesh ? std::make_unique<FlatPatches>(
+                                  *sheets[s].mesh, kNearPatches * double(sheets[s].thickness))
+                            : nullptr);
+    flat_patches_.emplace_back(mesh ? patches_.back()->pairs().size() : 0);
     for (int j = 0; j < e.down; ++j)
       for (int i = 0; i < e.across; ++i)
-        blocks_.push_back({int(s), j * tall, i * wide, std::min(tall, l.rows - j * tall),
-                           std::min(wide, l.columns - i * wide), i, j, false});
+        blocks_.push_back({int(s), j * tall, i * wide, std::min(tall, p.rows - j * tall),
+                           std::min(wide, p.count(j * tall) - i * wide), i, j, false});
   }
 }
 
@@ -109,15 +122,23 @@ void Blocks::begin(Threads& threads) {
 void Blocks::measure(Threads& threads) {
   threads.share(blocks_.size(), blocks_.size() < kFewBlocks, [&](std::size_t b) {
     measure_block(b);
-    if (edges_[b]) kernels_.block_edges(rows_of(b));
+    if (edges_[b]) measure_edges(b);
   });
   measure_flat(false);
 }
 
 void Blocks::measure_edges(Threads& threads) {
   threads.share(blocks_.size(), blocks_.size() < kFewBlocks,
-                [&](std::size_t b) { kernels_.block_edges(rows_of(b)); });
+                [&](std::size_t b) { measure_edges(b); });
   measure_flat(true);
+}
+
+void Blocks::measure_edges(std::size_t b) {
+  const Block& block = blocks_[b];
+  if (const auto& patches = patches_[std::size_t(block.sheet)])
+    patches->measure(block.row, bounds_[b]);
+  else
+    kernels_.block_edges(rows_of(b));
 }
 
 // Of all squares, or of those that were nearly flat before.
@@ -129,15 +150,29 @@ void Blocks::measure_flat(bool all) {
     f = flat(b);
     if (f.ratio > f.needed) for_each_of_square(b, [&](std::size_t of) { edges_[of] = 1; });
   }
+  for (std::size_t s = 0; s < sheets_.size(); ++s)
+    if (patches_[s]) measure_flat_patches(s, all);
+}
+
+void Blocks::measure_flat_patches(std::size_t sheet, bool all) {
+  const std::vector<FlatPatches::Pair>& pairs = patches_[sheet]->pairs();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    Flat& f = flat_patches_[sheet][k];
+    if (!all && f.ratio <= f.needed) continue;
+    f = flat(sheet, pairs[k]);
+    if (!(f.ratio > f.needed)) continue;
+    for (const int patch : pairs[k].crossed) edges_[std::size_t(extents_[sheet].first + patch)] = 1;
+  }
 }
 
 BlockRows Blocks::rows_of(std::size_t b) {
   const Block& block = blocks_[b];
-  Lattice& l = *sheets_[std::size_t(block.sheet)].lattice;
+  const Sheet& sheet = sheets_[std::size_t(block.sheet)];
+  Particles& l = *sheet.points;
   BlockRows rows{};
   rows.columns = block.columns;
   rows.rows = block.rows;
-  rows.edges_along = std::min(block.columns, l.columns - 1 - block.column);
+  rows.edges_along = std::min(block.columns, sheet.columns - 1 - block.column);
   rows.edges_across = std::min(block.rows, l.rows - 1 - block.row);
   rows.stride = l.stride;
   rows.x = first_of(block, l.x);
@@ -164,37 +199,58 @@ void Blocks::measure_block(std::size_t b) {
 Blocks::Flat Blocks::flat(std::size_t b) const {
   const Block& block = blocks_[b];
   const Sheet& sheet = sheets_[std::size_t(block.sheet)];
+  if (sheet.mesh) return {};
   if (std::abs(sheet.uv) > 1e-3f * std::sqrt(sheet.uu * sheet.vv)) return {};
   BlockBounds all = bounds_[b];
-  for_each_of_square(b, [&](std::size_t other) {
-    const BlockBounds& o = bounds_[other];
-    all.along = both(all.along, o.along);
-    all.across = both(all.across, o.across);
-    all.change_along = std::max(all.change_along, o.change_along);
-    all.change_across = std::max(all.change_across, o.change_across);
-  });
+  for_each_of_square(b, [&](std::size_t other) { add_edges(other, all); });
+  return flat(sheet, all);
+}
+
+// The same of a mesh over all patches between two.
+Blocks::Flat Blocks::flat(std::size_t sheet, const FlatPatches::Pair& pair) const {
+  const auto first = std::size_t(extents_[sheet].first);
+  BlockBounds all = bounds_[first + std::size_t(pair.a)];
+  for (const int patch : pair.crossed) add_edges(first + std::size_t(patch), all);
+  return flat(sheets_[sheet], all);
+}
+
+void Blocks::add_edges(std::size_t other, BlockBounds& all) const {
+  const BlockBounds& o = bounds_[other];
+  all.along = both(all.along, o.along);
+  all.across = both(all.across, o.across);
+  all.change_along = std::max(all.change_along, o.change_along);
+  all.change_across = std::max(all.change_across, o.change_across);
+}
+
+// With the bounds of all its edges, or gradients.
+Blocks::Flat Blocks::flat(const Sheet& sheet, const BlockBounds& all) const {
   const Middle u = middle(all.along), v = middle(all.across);
   const float lu = std::sqrt(dot(u.at, u.at)), lv = std::sqrt(dot(v.at, v.at));
-  const float ru = std::sqrt(sheet.uu), rv = std::sqrt(sheet.vv);
+  const float ru = sheet.mesh ? 1 : std::sqrt(sheet.uu), rv = sheet.mesh ? 1 : std::sqrt(sheet.vv);
   const float askew = std::abs(dot(u.at, v.at)) / std::max(lu * lv, 1e-30f);
   const float root2 = std::sqrt(2.0f);
   Flat f;
   f.ratio = std::sqrt(std::max(0.0f, 1 - askew)) * std::min(lu / ru, lv / rv) -
             root2 * std::max(u.within / ru, v.within / rv);
   f.needed = least_ratio_ > 0 ? least_ratio_
-                              : sheet.thickness /
-                                    std::max(sheet.neighbour() * sheet.thickness, std::min(ru, rv));
+                              : sheet.thickness / std::max(sheet.neighbour() * sheet.thickness,
+                                                           sheet.mesh ? 0 : std::min(ru, rv));
   f.rate = root2 * std::max(std::sqrt(all.change_along) / ru, std::sqrt(all.change_across) / rv);
   return f;
 }
 
-int Blocks::corner(std::size_t a, std::size_t b) const {
+auto Blocks::flat_about(std::size_t a, std::size_t b) const -> const Flat* {
   const Block &p = blocks_[a], &q = blocks_[b];
-  if (p.sheet != q.sheet || q.down - p.down > 1 || std::abs(q.across - p.across) > 1) return -1;
+  if (p.sheet != q.sheet) return nullptr;
+  if (const auto& patches = patches_[std::size_t(p.sheet)]) {
+    const int pair = patches->pair(p.row, q.row);
+    return pair < 0 ? nullptr : &flat_patches_[std::size_t(p.sheet)][std::size_t(pair)];
+  }
+  if (q.down - p.down > 1 || std::abs(q.across - p.across) > 1) return nullptr;
   const Extent& e = extents_[std::size_t(p.sheet)];
   const int i = std::max(0, std::min({p.across, q.across, e.across - 2}));
   const int j = std::max(0, std::min(p.down, e.down - 2));
-  return e.first + j * e.across + i;
+  return &flat_[std::size_t(e.first + j * e.across + i)];
 }
 
 // Calls visit(a, b, gap²) for every pair a <= b of blocks whose boxes are nearer than a distance.
@@ -234,14 +290,14 @@ Blocks::Outlook Blocks::look(float reach, float skin, float motion, double longe
     const float way = motion + (apart ? std::sqrt(square) - reach : 0);
     // Until they have moved so far against each other.
     const double moved = way / std::sqrt(square_diagonal(both(bounds_[a].v, bounds_[b].v)));
-    const int c = corner(a, b);
-    const float above = c < 0 ? 0 : flat_[std::size_t(c)].ratio - flat_[std::size_t(c)].needed;
+    const Flat* const flat = flat_about(a, b);
+    const float above = flat ? flat->ratio - flat->needed : 0;
     if (apart && above <= 0) return sooner(moved);
     const bool listed = blocks_[a].active && blocks_[b].active &&
                         square_diagonal(both(bounds_[a].moved, bounds_[b].moved)) <= skin * skin;
     if (above > 0) {
       // What is nearly not flat is listed, so that there is no need to come again before it is not.
-      const double folded = above / flat_[std::size_t(c)].rate;
+      const double folded = above / flat->rate;
       const bool lists = above <= kFlatter && folded < std::min(moved, out.seconds);
       if (lists && !listed && !apart) out.covered = false;
       return sooner(apart || listed || lists ? std::max(folded, moved) : folded);
@@ -257,8 +313,8 @@ Blocks::Outlook Blocks::look(float reach, float skin, float motion, double longe
 void Blocks::choose(float reach) {
   for (Block& b : blocks_) b.active = false;
   for_each_near(reach, [&](std::size_t a, std::size_t b, float) {
-    const int c = corner(a, b);
-    if (c >= 0 && flat_[std::size_t(c)].ratio > flat_[std::size_t(c)].needed + kFlatter) return;
+    const Flat* const flat = flat_about(a, b);
+    if (flat && flat->ratio > flat->needed + kFlatter) return;
     blocks_[a].active = blocks_[b].active = true;
   });
   remember();
@@ -274,7 +330,7 @@ void Blocks::remember() {
   for (const Block& b : blocks_) {
     if (!b.active) continue;
     active_ += std::size_t(b.rows) * std::size_t(b.columns);
-    Lattice& l = *sheets_[std::size_t(b.sheet)].lattice;
+    Particles& l = *sheets_[std::size_t(b.sheet)].points;
     for (int j = b.row; j < b.row + b.rows; ++j) {
       const Row3 from = l.x.row(j), to = then_[std::size_t(b.sheet)].row(j);
       std::copy_n(from.x + b.column, b.columns, to.x + b.column);
@@ -294,6 +350,8 @@ Spread Blocks::box() const {
 std::size_t Blocks::bytes() const {
   std::size_t bytes = blocks_.size() * (sizeof(Block) + sizeof(BlockBounds) + sizeof(Flat) + 32);
   for (const Rows& r : then_) bytes += r.bytes();
+  for (const auto& patches : patches_)
+    if (patches) bytes += patches->bytes();
   return bytes;
 }
 

@@ -16,20 +16,20 @@
 #include <limits>
 #include <vector>
 
+#include "physics/contact/self/flat_patches.h"
 #include "physics/kernels/contact.h"
-#include "physics/model/lattice/lattice.h"
-#include "physics/step/threads.h"
 
 namespace weft::physics {
 
-struct LatticeParts;
-
-// One cloth that takes part.
+// One cloth that takes part: a grid, or a mesh in patches.
 struct Sheet {
-  const LatticeParts* parts;
-  Lattice* lattice;
+  ClothModel* model;
+  std::unique_ptr<MeshPatches> mesh;  // null: a grid
+  Particles* points;                  // the grid's own, or those of the patches
+  int columns;                        // of the longest row of points
   float thickness, friction;
-  float uu, uv, vv;  // rest metric: |di u + dj v|² [m²]
+  // Rest metric of a grid: |di u + dj v|² [m²]; of a mesh as if its edges were square to each other.
+  float uu, uv, vv;
   SelfCollisionResponse response;
   // Thicknesses at rest: neighbours are nearer than that.
   static constexpr float kNeighbour = 1.3f;
@@ -41,7 +41,13 @@ struct Sheet {
     const float i = float(di), j = float(dj), within = kNeighbour * thickness;
     return i * i * uu + 2 * i * j * uv + j * j * vv < within * within;
   }
+  // Where a point is in the cloth's own rows.
+  Particles::Place place(int row, int column) const {
+    return mesh ? mesh->place(row, column) : Particles::Place{row, column};
+  }
 };
+// Brings the points of meshes to where particles are now.
+void copy_meshes(const std::vector<Sheet>& sheets, Threads& threads);
 // Of all sheets together.
 std::size_t count_particles(const std::vector<Sheet>& sheets);
 
@@ -108,10 +114,16 @@ class Blocks {
   void measure_block(std::size_t b);
   void measure_flat(bool all);
   Flat flat(std::size_t b) const;
+  Flat flat(const Sheet& sheet, const BlockBounds& all) const;
+  Flat flat(std::size_t sheet, const FlatPatches::Pair& pair) const;
+  void measure_edges(std::size_t b);
+  void measure_flat_patches(std::size_t sheet, bool all);
+  void add_edges(std::size_t other, BlockBounds& all) const;
   template <class Visit>
   void for_each_of_square(std::size_t b, const Visit& visit) const;
-  // The first of a square of four blocks that holds both, a <= b; -1 when none does.
-  int corner(std::size_t a, std::size_t b) const;
+  // How flat a sheet is about two of its blocks beside each other, a <= b: of a grid over a square of four
+  // blocks that holds both. Null when they are not.
+  const Flat* flat_about(std::size_t a, std::size_t b) const;
   template <class Visit>
   void for_each_near(float distance, Visit&& visit);
   void remember();
@@ -127,6 +139,8 @@ class Blocks {
   std::vector<BlockBounds> bounds_;
   std::vector<Spread> before_;  // boxes at the interval's start
   std::vector<Flat> flat_;
+  std::vector<std::unique_ptr<FlatPatches>> patches_;  // of every sheet, null of grids,
+  std::vector<std::vector<Flat>> flat_patches_;        // and of every pair of these
   std::vector<std::uint8_t> edges_;       // whether a block is of a square that is nearly flat
   AlignedArray<float> low_[3], high_[3];  // of bounds_.x
   std::vector<std::int32_t> near_;        // of one block, which others,

@@ -5,6 +5,7 @@
 
 #include "physics/contact/self/held.h"
 #include "physics/contact/self/self_contact.h"
+#include "physics/model/projected_motion.h"
 
 namespace weft::physics {
 namespace {
@@ -15,7 +16,7 @@ constexpr std::size_t kFewLists = 8;  // that one thread does faster
 }  // namespace
 
 float SelfContact::friction_of(std::int32_t a, std::int32_t b) const {
-  return 0.5f * (rest_[std::size_t(a)].friction + rest_[std::size_t(b)].friction);
+  return 0.5f * (friction_[std::size_t(a)] + friction_[std::size_t(b)]);
 }
 
 // By their keys' upper halves, numbers of bodies, then by all of them.
@@ -73,6 +74,18 @@ void SelfContact::find_among_particles(Threads& threads) {
   sort_spheres();
 }
 
+// Of what squares of meshes have in common, one owns each vertex and edge. `first`: of the piece's pairs.
+void SelfContact::keep_owned(const SquarePairs& pairs, std::size_t first, Measured& found) const {
+  const std::vector<std::uint8_t>& owned = near_->owned();
+  const auto end = found.room.begin() + std::ptrdiff_t(found.count);
+  const auto kept = std::remove_if(found.room.begin(), end, [&](const SurfaceContact& c) {
+    const std::size_t pair = first + std::size_t(c.pair);
+    return !owns(c, owned[std::size_t(pairs.owner[pair])],
+                 owned[std::size_t(pairs.neighbour[pair])]);
+  });
+  found.count = std::size_t(kept - found.room.begin());
+}
+
 // Of all pairs, piece by piece.
 void SelfContact::measure_surfaces(const SquarePairs& pairs, SurfaceSearch search, float reach,
                                    Threads& threads) {
@@ -88,6 +101,7 @@ void SelfContact::measure_surfaces(const SquarePairs& pairs, SurfaceSearch searc
         {place_.data(), moved_.data(), rest_.data(), near_->squares().data(), int(count),
          pairs.owner.data() + first, pairs.neighbour.data() + first, search, reach, kLeastApart,
          found.room.data()}));
+    if (!near_->owned().empty()) keep_owned(pairs, first, found);
     std::sort(found.room.begin(), found.room.begin() + std::ptrdiff_t(found.count),
               [](const SurfaceContact& a, const SurfaceContact& b) {
                 return a.pair != b.pair ? a.pair < b.pair : a.kind < b.kind;
@@ -113,7 +127,7 @@ void SelfContact::find_among_surfaces(Threads& threads) {
       std::copy_n(found.normal, 3, c.normal.begin());
       c.distance = found.distance;
       c.held = found.held;
-      c.friction = found.friction;
+      c.friction = friction_of(found.body[0], found.body[3]);
       contacts.push_back(c);
     }
   // Those of squares that share a corner come first; each part is in order.
@@ -137,20 +151,22 @@ void SelfContact::scatter(ContactSolver<N>& solver, const ContactInterval& inter
     const float w = change.u[3];
     if (!(w > 0)) continue;
     const Site s = site(n);
-    Lattice& l = *sheets_[s.cloth].lattice;
-    History* const history = sheets_[s.cloth].parts->history;
-    const bool goes_on = history && history->goes_on(l, s.row, s.column);
+    const Sheet& sheet = sheets_[s.cloth];
+    Particles& l = sheet.model->particles();
+    const auto [row, column] = sheet.place(s.row, s.column);
+    History* const history = sheet.model->history();
+    const bool goes_on = history && history->goes_on(l, row, column);
     double before = 0, after = 0;
     for (int k = 0; k < 3; ++k) {
-      float& x = l.x.at(k, s.row, s.column);
-      float& v = l.v.at(k, s.row, s.column);
+      float& x = l.x.at(k, row, column);
+      float& v = l.v.at(k, row, column);
       const float dv = change.u[k] * inverse, dx = change.u[k] + lift.u[k];
       before += double(v) * v;
       v += dv;
       after += double(v) * v;
       x += dx;
       now_[std::size_t(n)].x[k] = x;
-      if (goes_on) history->shift(l, k, s.row, s.column, dx - dv * float(dt), dv);
+      if (goes_on) history->shift(l, k, row, column, dx - dv * float(dt), dv);
     }
     taken += (before - after) / (2 * double(w));
   }

@@ -64,7 +64,7 @@ std::size_t SelfContact::push_by_course(double dt, int steps) {
   for (const std::int32_t body : bodies) {
     Displacement& sum = asked_[std::size_t(body)];
     const Site s = site(body);
-    Lattice& l = *sheets_[s.cloth].lattice;
+    Particles& l = *sheets_[s.cloth].points;  // of grids alone
     for (int k = 0; k < 3 && l.w(s.row, s.column) > 0; ++k) {
       const float by = sum.u[k] / sum.u[3] * share;
       float& x = l.x.at(k, s.row, s.column);

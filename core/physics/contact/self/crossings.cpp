@@ -5,9 +5,7 @@
 #include <cmath>
 
 #include "physics/model/clamp_to_int.h"
-#include "physics/model/lattice/energy.h"
-#include "physics/model/lattice/stages.h"
-#include "physics/model/lattice/tearing.h"
+#include "physics/model/cloth_model.h"
 
 namespace weft::physics {
 namespace {
@@ -81,29 +79,11 @@ void for_each_cell(const Box& b, double size, Visit&& visit) {
 
 }  // namespace
 
-void add_faces(int columns, int rows, std::int32_t first, std::vector<Face>& faces) {
-  for (int j = 0; j + 1 < rows; ++j)
-    for (int i = 0; i + 1 < columns; ++i) {
-      const std::int32_t p = first + j * columns + i;
-      faces.push_back({p, p + 1, p + columns});
-      faces.push_back({p + 1, p + columns + 1, p + columns});
-    }
-}
-
-void add_surface(const LatticeParts& cloth, std::vector<Vec3>& x, std::vector<Face>& faces) {
-  const Lattice& l = cloth.lattice;
+void add_surface(const ClothModel& cloth, std::vector<Vec3>& x, std::vector<Face>& faces) {
   const auto first = std::int32_t(x.size());
-  const LatticeTearing* const tearing = cloth.tearing;
-  if (tearing && tearing->version() > 0)
-    for (const auto& t : tearing->triangles()) {
-      Face f;
-      for (int k = 0; k < 3; ++k)
-        f[k] = first + std::int32_t(t[k]) / l.stride * l.columns + std::int32_t(t[k]) % l.stride;
-      faces.push_back(f);
-    }
-  else
-    add_faces(l.columns, l.rows, first, faces);
-  const std::vector<Vec3> of_cloth = l.gather(l.x);
+  for (const auto& [a, b, c] : cloth.surface().triangles)
+    faces.push_back({first + a, first + b, first + c});
+  const std::vector<Vec3> of_cloth = cloth.particles().gather(cloth.particles().x);
   x.insert(x.end(), of_cloth.begin(), of_cloth.end());
 }
 

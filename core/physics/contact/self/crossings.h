@@ -10,7 +10,7 @@
 
 namespace weft::physics {
 
-struct LatticeParts;
+class ClothModel;
 
 using Face = std::array<std::int32_t, 3>;
 using Edge = std::array<std::int32_t, 2>;  // the lower number first
@@ -27,9 +27,7 @@ std::vector<Crossing> find_crossings(const std::vector<Vec3>& x, const std::vect
                                      const std::vector<Edge>& edges);
 std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces);
 
-// The two triangles of every square of a sheet, corners numbered from `first` on, row by row.
-void add_faces(int columns, int rows, std::int32_t first, std::vector<Face>& faces);
 // The particles of a cloth as they are now, and its triangles, as torn as it is.
-void add_surface(const LatticeParts& cloth, std::vector<Vec3>& x, std::vector<Face>& faces);
+void add_surface(const ClothModel& cloth, std::vector<Vec3>& x, std::vector<Face>& faces);
 
 }  // namespace weft::physics

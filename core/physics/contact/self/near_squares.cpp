@@ -2,6 +2,7 @@
 #include "physics/contact/self/near_squares.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -31,6 +32,14 @@ void widen(Spread& spread, int k, float value) {
   spread.high[k] = std::max(spread.high[k], value);
 }
 
+// At most.
+std::size_t count_squares(const std::vector<Sheet>& sheets) {
+  std::size_t count = count_particles(sheets);
+  for (const Sheet& s : sheets)
+    if (s.mesh) count += s.model->surface().triangles.size();
+  return count;
+}
+
 float half_diagonal(const Sheet& s) {
   return 0.5f * std::sqrt(s.uu + s.vv + 2 * std::abs(s.uv));
 }
@@ -38,55 +47,116 @@ float half_diagonal(const Sheet& s) {
 }  // namespace
 
 NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<NamedSheet>& named,
-                         std::size_t bodies, const KernelTable& kernels)
+                         const std::vector<RestPlace>& rest, const KernelTable& kernels)
     : sheets_(sheets),
       named_(named),
       kernels_(kernels),
-      squares_(bodies),
+      squares_(rest.size()),
       beside_(sheets, named, squares_),
-      search_(count_particles(sheets_), {}, kernels) {
+      search_(count_squares(sheets_), {}, kernels) {
+  const std::size_t bodies = rest.size();
   float spacing = 0;
   for (const Sheet& s : sheets_) {
     spacing = std::max({spacing, std::sqrt(s.uu), std::sqrt(s.vv)});
     most_ = std::max(most_, s.thickness);
-    all_squares_ += std::size_t(s.lattice->columns) * std::size_t(s.lattice->rows);
   }
   beyond_ = kBeyond * spacing;
   origins_.resize(bodies);
   chosen_.resize(bodies);
   passing_.resize(bodies);
-  asked_.resize(bodies);
-  boxes_.resize(bodies);
   stride_.resize(bodies);
-  begin_.resize(bodies + 1);
+  make_squares();
+  make_parts(rest);
+  asked_.resize(squares_.size());
+  boxes_.resize(squares_.size());
+  begin_.resize(squares_.size() + 1);
+  for_each_square([&](std::size_t) { ++all_squares_; });
   sorted_.resize(all_squares_);
   left_out_.reserve(all_squares_);
   joined_.reserve(all_squares_);
-  make_squares();
 }
 
 // visit(number, sheet, row, column).
 template <class Visit>
-void NearSquares::for_each_square(const Visit& visit) const {
+void NearSquares::for_each_body(const Visit& visit) const {
   for (std::size_t s = 0; s < sheets_.size(); ++s)
-    for (int j = 0; j < sheets_[s].lattice->rows; ++j)
-      for (int i = 0; i < sheets_[s].lattice->columns; ++i)
+    for (int j = 0; j < sheets_[s].points->rows; ++j)
+      for (int i = 0, columns = sheets_[s].points->count(j); i < columns; ++i)
         visit(std::size_t(named_[s].name(j, i)), s, j, i);
 }
 
+// visit(number).
+template <class Visit>
+void NearSquares::for_each_square(const Visit& visit) const {
+  for (std::size_t s = 0; s < sheets_.size(); ++s)
+    for (int j = 0; j < sheets_[s].points->rows && !sheets_[s].mesh; ++j)
+      for (int i = 0; i < sheets_[s].columns; ++i) visit(std::size_t(named_[s].name(j, i)));
+  for (std::size_t n = passing_.size(); n < squares_.size(); ++n) visit(n);
+}
+
+// Those of grids.
 void NearSquares::make_squares() {
-  for_each_square([&](std::size_t n, std::size_t sheet, int j, int i) {
-    const Lattice& l = *sheets_[sheet].lattice;
+  most_squared_.resize(squares_.size());
+  for_each_body([&](std::size_t n, std::size_t sheet, int j, int i) {
+    const int columns = sheets_[sheet].columns, rows = sheets_[sheet].points->rows;
+    const float most = kOverstretched * half_diagonal(sheets_[sheet]);
     stride_[n] = named_[sheet].stride;
+    most_squared_[n] = most * most;
     for (int c = 0; c < 4; ++c)
-      squares_[n].corner[c] = named_[sheet].name(std::min(j + (c >> 1), l.rows - 1),
-                                                 std::min(i + (c & 1), l.columns - 1));
+      squares_[n].corner[c] =
+          named_[sheet].name(std::min(j + (c >> 1), rows - 1), std::min(i + (c & 1), columns - 1));
   });
 }
 
+// Those of meshes, and what they have apart.
+void NearSquares::make_parts(const std::vector<RestPlace>& rest) {
+  struct Made {
+    std::size_t first, triangles;
+  };
+  std::vector<Made> made;
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    if (!sheets_[s].mesh) continue;
+    const auto body = [&](int vertex) {
+      const auto [row, column] = sheets_[s].points->place(vertex);
+      return named_[s].name(row, column);
+    };
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    for (const auto& [a, b, c] : sheets_[s].model->surface().triangles)
+      triangles.push_back({body(a), body(b), body(c)});
+    const MeshSquares mesh = squares_of(std::move(triangles));
+    owned_.resize(squares_.size(), kOwnsAll);
+    made.push_back({squares_.size(), mesh.triangles});
+    squares_.insert(squares_.end(), mesh.squares.begin(), mesh.squares.end());
+    owned_.insert(owned_.end(), mesh.owned.begin(), mesh.owned.end());
+  }
+  for (std::size_t n = most_squared_.size(); n < squares_.size(); ++n) {
+    float most = 0;
+    for (const std::int32_t a : squares_[n].corner)
+      for (const std::int32_t b : squares_[n].corner) {
+        const RestPlace &p = rest[std::size_t(a)], &q = rest[std::size_t(b)];
+        most = std::max(most, (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y) +
+                                  (p.z - q.z) * (p.z - q.z));
+      }
+    most_squared_.push_back(kOverstretched * kOverstretched * most);
+  }
+  for (std::size_t k = 0; k < made.size(); ++k) {
+    const auto [first, triangles] = made[k];
+    const std::size_t end = k + 1 < made.size() ? made[k + 1].first : squares_.size();
+    parts_.push_back(std::make_unique<Part>(
+        Part{first, end,
+             BesideTriangles({squares_.data() + first, triangles}, std::int32_t(first), rest)}));
+  }
+}
+
 void NearSquares::leave_out(const std::vector<std::uint8_t>& marked) {
-  std::size_t at = 0;
-  for_each_square([&](std::size_t n, std::size_t, int, int) { passing_[n] = marked[at++]; });
+  std::size_t first = 0;
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    const Particles& p = *sheets_[s].points;
+    p.for_each([&](int j, int i) {
+      passing_[std::size_t(named_[s].name(j, i))] = marked[first + std::size_t(p.number(j, i))];
+    });
+    first += std::size_t(p.count());
+  }
 }
 
 void NearSquares::update(bool all, const Place* now, Threads& threads) {
@@ -107,12 +177,12 @@ void NearSquares::look_how_far() {
   const auto off = [&](std::size_t n, int k) {
     return now_[n].x[k] - frame_[k] - origins_[n].x[k];
   };
-  for_each_square([&](std::size_t n, std::size_t, int, int) {
+  for_each_body([&](std::size_t n, std::size_t, int, int) {
     for (int k = 0; k < 3; ++k) widen(moved, k, off(n, k));
   });
   for (int k = 0; k < 3; ++k) frame_[k] += 0.5f * (moved.low[k] + moved.high[k]);
   float gone_squared = 0;
-  for_each_square([&](std::size_t n, std::size_t, int, int) {
+  for_each_body([&](std::size_t n, std::size_t, int, int) {
     Origin& origin = origins_[n];
     origin.gone_squared = 0;
     for (int k = 0; k < 3; ++k) origin.gone_squared += off(n, k) * off(n, k);
@@ -162,7 +232,7 @@ void NearSquares::list(bool all, Threads& threads) {
 std::size_t NearSquares::choose(bool all) {
   const float far = kFar * beyond_;
   float gone_squared = 0;
-  for_each_square([&](std::size_t n, std::size_t, int, int) {
+  for_each_body([&](std::size_t n, std::size_t, int, int) {
     Origin& origin = origins_[n];
     chosen_[n] = all || origin.gone_squared > far * far;
     if (chosen_[n]) {
@@ -173,7 +243,7 @@ std::size_t NearSquares::choose(bool all) {
   });
   gone_ = std::sqrt(gone_squared);
   std::size_t asked = 0;
-  for_each_square([&](std::size_t n, std::size_t, int, int) {
+  for_each_square([&](std::size_t n) {
     asked_[n] = has_corner_in(squares_[n], chosen_);
     asked += asked_[n];
   });
@@ -199,13 +269,12 @@ float NearSquares::list_whole(Spread& box, std::size_t& count) {
   left_out_.clear();
   float widest_squared = 0;
   const Row3 to = search_.points();
-  for_each_square([&](std::size_t n, std::size_t sheet, int, int) {
+  for_each_square([&](std::size_t n) {
     if (has_corner_in(squares_[n], passing_)) return;
-    const float most = kOverstretched * half_diagonal(sheets_[sheet]);
     float middle[3];
     const float radius_squared = middle_of(n, middle);
-    if (!(radius_squared <= most * most)) {
-      left_out_.push_back({std::int32_t(n), most * most});
+    if (!(radius_squared <= most_squared_[n])) {
+      left_out_.push_back({std::int32_t(n), most_squared_[n]});
       return;
     }
     widest_squared = std::max(widest_squared, radius_squared);
@@ -233,8 +302,12 @@ void NearSquares::fill_box(std::size_t sorted) {
   box.asked = asked_[n];
 }
 
-// Whether two squares share a corner, p < q: names of a sheet's squares differ as their places do.
+// Whether two squares share a corner, p < q: names of a grid's squares differ as their places do.
 bool NearSquares::beside(std::int32_t p, std::int32_t q) const {
+  if (std::size_t(q) >= stride_.size()) {
+    const auto &a = squares_[std::size_t(p)].corner, &b = squares_[std::size_t(q)].corner;
+    return std::find_first_of(a, a + 4, b, b + 4) != a + 4;
+  }
   const std::int32_t stride = stride_[std::size_t(p)], apart = q - p;
   return apart <= 1 || (apart >= stride - 1 && apart <= stride + 1);
 }
@@ -302,26 +375,37 @@ void NearSquares::sort_listed() {
   std::swap(listed_, within_);
 }
 
-// The box about every square in an interval, and how it lies at its start.
-void NearSquares::bound(const Place* place, const Displacement* moved, Threads& threads) {
-  const auto widen_by = [&](std::int32_t corner, SquareBox& box, bool first) {
+// The box about a square in an interval.
+void NearSquares::bound_square(std::size_t n, const Place* place, const Displacement* moved) {
+  SquareBox& box = boxes_[n];
+  for (int c = 0; c < 4; ++c) {
+    const std::int32_t corner = squares_[n].corner[c];
     for (int k = 0; k < 3; ++k) {
       const float from = place[corner].x[k], to = from + moved[corner].u[k];
-      box.low[k] = std::min(first ? from : box.low[k], std::min(from, to));
-      box.high[k] = std::max(first ? from : box.high[k], std::max(from, to));
+      box.low[k] = std::min(c == 0 ? from : box.low[k], std::min(from, to));
+      box.high[k] = std::max(c == 0 ? from : box.high[k], std::max(from, to));
     }
-  };
-  for (std::size_t s = 0; s < sheets_.size(); ++s)
-    threads.share(std::size_t(sheets_[s].lattice->rows), all_squares_ < kFewParticles,
-                  [&](std::size_t j) {
-                    for (int i = 0; i < sheets_[s].lattice->columns; ++i) {
-                      const std::size_t n = std::size_t(named_[s].name(int(j), i));
-                      for (int c = 0; c < 4; ++c)
-                        widen_by(squares_[n].corner[c], boxes_[n], c == 0);
-                      boxes_[n].asked = 1;
-                    }
-                    beside_.measure_row(s, int(j), place);
-                  });
+  }
+  box.asked = 1;
+}
+
+// Of all squares; and how those of grids lie at the interval's start.
+void NearSquares::bound(const Place* place, const Displacement* moved, Threads& threads) {
+  const bool few = all_squares_ < kFewParticles;
+  for (std::size_t s = 0; s < sheets_.size(); ++s) {
+    if (sheets_[s].mesh) continue;
+    threads.share(std::size_t(sheets_[s].points->rows), few, [&](std::size_t j) {
+      for (int i = 0; i < sheets_[s].columns; ++i)
+        bound_square(std::size_t(named_[s].name(int(j), i)), place, moved);
+      beside_.measure_row(s, int(j), place);
+    });
+  }
+  for (const auto& part : parts_)
+    threads.share((part->end - part->first + kAtOnce - 1) / kAtOnce, few, [&](std::size_t k) {
+      const std::size_t first = part->first + k * kAtOnce;
+      for (std::size_t n = first; n < std::min(part->end, first + kAtOnce); ++n)
+        bound_square(n, place, moved);
+    });
 }
 
 const SquarePairs& NearSquares::within(float range, const Place* place, const Displacement* moved,
@@ -329,6 +413,7 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
   within_range_ = range;
   bound(place, moved, threads);
   beside_.list(passing_, threads);
+  for (const auto& part : parts_) part->beside.list(place, passing_, threads);
   const std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
   if (found_.size() < pieces) found_.resize(pieces);
   threads.share(pieces, pieces < 8, [&](std::size_t k) {
@@ -344,6 +429,7 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
   });
   within_.count = 0;
   join(beside_.pairs(), beside_.pairs().size(), within_);
+  for (const auto& part : parts_) join(part->beside.pairs(), part->beside.pairs().size(), within_);
   join(found_, pieces, within_);
   return within_;
 }
@@ -372,7 +458,9 @@ double NearSquares::listed() const {
 
 std::size_t NearSquares::bytes() const {
   std::size_t bytes = search_.bytes();
-  bytes += squares_.size() * (sizeof(Square) + sizeof(Origin) + sizeof(SquareBox) + 3);
+  bytes += squares_.size() * (sizeof(Square) + sizeof(SquareBox) + 9);
+  bytes += origins_.size() * (sizeof(Origin) + 6);
+  for (const auto& part : parts_) bytes += part->beside.bytes();
   bytes += all_squares_ * (sizeof(LeftOut) + 8) + 4 * begin_.size();
   bytes += listed_.bytes() + within_.bytes() + still_.bytes();
   for (const SquarePairs& p : found_) bytes += p.bytes();

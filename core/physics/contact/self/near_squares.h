@@ -5,27 +5,32 @@
 // search as particles (pair_search.h), for those squares alone that have moved far; for all where these
 // are many. Motion that is common to all is left out of account.
 //
-// Those that share a corner are looked at apart (beside_squares.h).
+// Those that share a corner are looked at apart (beside_squares.h; of meshes beside_triangles.h).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "physics/contact/self/beside_squares.h"
+#include "physics/contact/self/beside_triangles.h"
+#include "physics/contact/self/mesh_squares.h"
 #include "physics/contact/self/pair_search.h"
 
 namespace weft::physics {
 
 class NearSquares {
  public:
-  // Particles of sheets are bodies, named as in pair_search.h, and so are the squares that begin with
-  // them; `bodies`: how many names there are.
+  // Particles of sheets are bodies, named as in pair_search.h, and so are the squares of grids that begin
+  // with them; those of meshes (mesh_squares.h) have the numbers beyond. `rest`: of every body.
   NearSquares(const std::vector<Sheet>& sheets, const std::vector<NamedSheet>& named,
-              std::size_t bodies, const KernelTable& kernels);
+              const std::vector<RestPlace>& rest, const KernelTable& kernels);
 
   const std::vector<Square>& squares() const { return squares_; }
+  // What each of them owns; empty: all own all.
+  const std::vector<std::uint8_t>& owned() const { return owned_; }
 
-  // Squares with a particle that is marked, row by row of every sheet in turn, are left out from the
-  // next update of all on.
+  // Squares with a particle that is marked, by its number, sheet after sheet, are left out from the next
+  // update of all on.
   void leave_out(const std::vector<std::uint8_t>& marked);
   // Lists pairs anew where need be, or all, with the bodies where they are now.
   void update(bool all, const Place* now, Threads& threads);
@@ -54,9 +59,19 @@ class NearSquares {
     float most_squared;  // m², of a corner's distance from the middle: nearer, it is whole
   };
 
+  // The squares of a mesh.
+  struct Part {
+    std::size_t first, end;
+    BesideTriangles beside;
+  };
+
   void make_squares();
+  void make_parts(const std::vector<RestPlace>& rest);
   bool beside(std::int32_t p, std::int32_t q) const;
   void bound(const Place* place, const Displacement* moved, Threads& threads);
+  void bound_square(std::size_t n, const Place* place, const Displacement* moved);
+  template <class Visit>
+  void for_each_body(const Visit& visit) const;
   template <class Visit>
   void for_each_square(const Visit& visit) const;
   void look_how_far();
@@ -76,7 +91,10 @@ class NearSquares {
   const std::vector<NamedSheet>& named_;
   const KernelTable& kernels_;
   std::vector<Square> squares_;
-  std::vector<std::int32_t> stride_;  // of every square's sheet
+  std::vector<std::int32_t> stride_;  // of every body's sheet
+  std::vector<std::uint8_t> owned_;
+  std::vector<float> most_squared_;  // m², of every square, as LeftOut::most_squared
+  std::vector<std::unique_ptr<Part>> parts_;
   BesideSquares beside_;
   const Place* now_ = nullptr;
   std::vector<Origin> origins_;

@@ -42,6 +42,21 @@ class PairSearch {
   // Points of sheets are listed by their names, others by their numbers in that order.
   void find(float range, Threads& threads);
 
+  // Takes away those pairs for which drop(owner, neighbour) holds.
+  template <class Drop>
+  void drop(const Drop& drop, Threads& threads) {
+    threads.share(chunks(), few(), [&](std::size_t k) {
+      Chunk& c = chunks_[k];
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < c.found; ++i) {
+        if (drop(c.owner[i], c.neighbour[i])) continue;
+        c.owner[kept] = c.owner[i];
+        c.neighbour[kept++] = c.neighbour[i];
+      }
+      c.found = kept;
+    });
+  }
+
   // Sorted points are cut into chunks: chunk k has those from begin(k) to begin(k + 1), and the pairs
   // that they list, one point's after another's.
   std::size_t count() const { return count_; }

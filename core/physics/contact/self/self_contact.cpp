@@ -10,7 +10,9 @@
 
 #include "physics/contact/self/held.h"
 #include "physics/model/clamp_to_int.h"
+#include "physics/model/lattice/stages.h"
 #include "physics/model/path.h"
+#include "weft/mesh.h"
 
 namespace weft::physics {
 namespace {
@@ -33,27 +35,21 @@ constexpr std::size_t kFew = 4096;  // particles that one thread does faster
 std::vector<NamedSheet> named(const std::vector<Sheet>& sheets) {
   std::vector<NamedSheet> named;
   for (const Sheet& s : sheets) {
-    const float range = s.thickness * float(kBeside);
-    named.push_back({s.lattice->columns, s.lattice->rows, s.uu, s.uv, s.vv, range * range,
-                     (s.lattice->columns + 15) / 16 * 16, 0});
+    const float range = s.mesh ? 0 : s.thickness * float(kBeside);
+    named.push_back({s.columns, s.points->rows, s.uu, s.uv, s.vv, range * range,
+                     (s.columns + 15) / 16 * 16, 0});
   }
   return named;
 }
 
-}  // namespace
-
-SelfContact::~SelfContact() = default;
-
-std::unique_ptr<SelfContact> SelfContact::make(const Scene& scene,
-                                               const std::vector<const LatticeParts*>& cloths,
-                                               const KernelTable& kernels) {
-  std::vector<Sheet> sheets;
-  bool surfaces = false;
-  for (std::size_t c = 0; c < cloths.size(); ++c) {
-    const SelfCollision& self = scene.cloths[c].self_collision;
-    if (self.mode == SelfCollisionMode::off) continue;
-    surfaces |= self.mode == SelfCollisionMode::surface;
-    const Grid& g = scene.cloths[c].grid;
+Sheet sheet_of(ClothModel& model, const Cloth& cloth) {
+  const SelfCollision& self = cloth.self_collision;
+  Sheet sheet{
+      &model, nullptr, &model.particles(), 0, float(self.thickness), float(self.friction), 0,
+      0,      0,       self.response};
+  if (LatticeParts* const grid = model.lattice()) {
+    sheet.columns = grid->lattice.columns;
+    const Grid& g = cloth.grid;
     double uu = 0, uv = 0, vv = 0;
     for (int k = 0; k < 3; ++k) {
       const double u = g.u[k] / (g.nx - 1), v = g.v[k] / (g.ny - 1);
@@ -61,8 +57,31 @@ std::unique_ptr<SelfContact> SelfContact::make(const Scene& scene,
       uv += u * v;
       vv += v * v;
     }
-    sheets.push_back({cloths[c], &cloths[c]->lattice, float(self.thickness), float(self.friction),
-                      float(uu), float(uv), float(vv), self.response});
+    sheet.uu = float(uu), sheet.uv = float(uv), sheet.vv = float(vv);
+  } else {
+    sheet.mesh = std::make_unique<MeshPatches>(model, placed_vertices(cloth.mesh));
+    sheet.points = &sheet.mesh->points();
+    for (int j = 0; j < sheet.points->rows; ++j)
+      sheet.columns = std::max(sheet.columns, sheet.points->count(j));
+    sheet.uu = sheet.vv = float(std::pow(mean_edge(cloth.mesh), 2));
+  }
+  return sheet;
+}
+
+}  // namespace
+
+SelfContact::~SelfContact() = default;
+
+std::unique_ptr<SelfContact> SelfContact::make(const Scene& scene,
+                                               const std::vector<ClothModel*>& cloths,
+                                               const KernelTable& kernels) {
+  std::vector<Sheet> sheets;
+  bool surfaces = false;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const SelfCollision& self = scene.cloths[c].self_collision;
+    if (self.mode == SelfCollisionMode::off) continue;
+    surfaces |= self.mode == SelfCollisionMode::surface;
+    sheets.push_back(sheet_of(*cloths[c], scene.cloths[c]));
   }
   if (sheets.empty()) return nullptr;
   return std::unique_ptr<SelfContact>(new SelfContact(scene, std::move(sheets), surfaces, kernels));
@@ -92,24 +111,53 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool sur
   now_.resize(bodies_ + kPacket);
   moved_.resize(bodies_ + kPacket);
   rest_.resize(bodies_);
-  for (std::size_t n = 0; n < sheets_.size(); ++n) {
-    const Sheet& s = sheets_[n];
-    const float u = std::sqrt(s.uu), shear = s.uv / u;
-    const float height = std::sqrt(std::max(0.0f, s.vv - shear * shear));
-    for (int j = 0; j < s.lattice->rows; ++j)
-      for (int i = 0; i < s.lattice->columns; ++i)
-        rest_[body(n, j, i)] = {float(i) * u + float(j) * shear, float(j) * height, float(n),
-                                s.friction};
-  }
+  friction_.resize(bodies_);
+  for (std::size_t n = 0; n < sheets_.size(); ++n) place_at_rest(n);
   if (surfaces) {
-    near_ = std::make_unique<NearSquares>(sheets_, named_, bodies_, kernels);
+    near_ = std::make_unique<NearSquares>(sheets_, named_, rest_, kernels);
     surfaces_ = std::make_unique<ContactSolver<4>>(bodies_, kernels.contacts_of_four);
     zone_.resize(bodies_);
     std::iota(zone_.begin(), zone_.end(), 0);
   } else {
+    for (std::size_t n = 0; n < sheets_.size(); ++n)
+      if (sheets_[n].mesh) list_neighbours(n);
     spheres_ = std::make_unique<ContactSolver<2>>(bodies_, kernels.contacts_of_two);
   }
   begin_.resize(bodies_ + 1);
+}
+
+// A grid lies flat, its first particle at zero; a mesh as its file has it.
+void SelfContact::place_at_rest(std::size_t sheet) {
+  const Sheet& s = sheets_[sheet];
+  const float u = std::sqrt(s.uu), shear = s.uv / u;
+  const float height = std::sqrt(std::max(0.0f, s.vv - shear * shear));
+  s.points->for_each([&](int j, int i) {
+    RestPlace& rest = rest_[body(sheet, j, i)];
+    friction_[body(sheet, j, i)] = s.friction;
+    rest = {float(i) * u + float(j) * shear, float(j) * height, 0, float(sheet)};
+    if (!s.mesh) return;
+    const Vec3& at = s.mesh->rest()[std::size_t(s.points->number(j, i))];
+    rest.x = float(at[0]), rest.y = float(at[1]), rest.z = float(at[2]);
+  });
+}
+
+void SelfContact::list_neighbours(std::size_t sheet) {
+  const Sheet& s = sheets_[sheet];
+  const auto near = s.mesh->neighbours(double(s.thickness) * s.neighbour());
+  neighbours_.resize(bodies_);
+  s.points->for_each([&](int j, int i) {
+    std::vector<std::int32_t>& of = neighbours_[body(sheet, j, i)];
+    for (const int vertex : near[std::size_t(s.points->number(j, i))]) {
+      const auto [row, column] = s.points->place(vertex);
+      of.push_back(std::int32_t(body(sheet, row, column)));
+    }
+    std::sort(of.begin(), of.end());
+  });
+}
+
+bool SelfContact::near_at_rest(std::int32_t a, std::int32_t b) const {
+  const std::vector<std::int32_t>& of = neighbours_[std::size_t(a)];
+  return std::binary_search(of.begin(), of.end(), b);
 }
 
 std::size_t SelfContact::body(std::size_t sheet, int row, int column) const {
@@ -125,7 +173,7 @@ Site SelfContact::site(std::int32_t body) const {
 
 BodyBlock SelfContact::bodies_of(const Block& block) {
   const auto sheet = std::size_t(block.sheet);
-  Lattice& l = *sheets_[sheet].lattice;
+  Particles& l = *sheets_[sheet].points;
   BodyBlock b{};
   b.columns = block.columns;
   b.rows = block.rows;
@@ -143,6 +191,7 @@ BodyBlock SelfContact::bodies_of(const Block& block) {
 
 // Where all is now, and how far it has moved in the interval.
 void SelfContact::gather(Threads& threads) {
+  copy_meshes(sheets_, threads);
   threads.share(blocks_.all().size(), particles_ < kFew,
                 [&](std::size_t b) { kernels_.gather_bodies(bodies_of(blocks_.all()[b])); });
 }
@@ -177,7 +226,7 @@ void SelfContact::list_sites(Threads& threads) {
     if (!block.active) return;
     std::size_t at = first_site_[b];
     for (int j = block.row; j < block.row + block.rows; ++j, at += std::size_t(block.columns)) {
-      const Row3 row = sheets_[std::size_t(block.sheet)].lattice->x.row(j);
+      const Row3 row = sheets_[std::size_t(block.sheet)].points->x.row(j);
       std::copy_n(row.x + block.column, block.columns, to.x + at);
       std::copy_n(row.y + block.column, block.columns, to.y + at);
       std::copy_n(row.z + block.column, block.columns, to.z + at);
@@ -194,9 +243,12 @@ void SelfContact::sort(double margin, Threads& threads) {
 
 void SelfContact::find(double margin, Threads& threads) {
   search_.find(thickness_ + float(margin), threads);
+  if (!neighbours_.empty())
+    search_.drop([&](std::int32_t a, std::int32_t b) { return near_at_rest(a, b); }, threads);
 }
 
 void SelfContact::search(double margin, Threads& threads) {
+  copy_meshes(sheets_, threads);
   blocks_.begin(threads);
   blocks_.choose_all();
   sort(margin, threads);
@@ -221,12 +273,12 @@ void SelfContact::list_pairs(float reach, float skin, Threads& threads) {
 void SelfContact::list_beside(std::size_t block, float range) {
   const Block& b = blocks_.all()[block];
   const auto sheet = std::size_t(b.sheet);
-  Lattice& l = *sheets_[sheet].lattice;
+  Particles& l = *sheets_[sheet].points;
   PairList& found = beside_[block];
   BesidePairs p{};
   p.x = l.x.row(0);
   p.stride = l.stride;
-  p.columns = l.columns;
+  p.columns = sheets_[sheet].columns;
   p.rows = l.rows;
   p.column = b.column;
   p.block_columns = b.columns;
@@ -237,7 +289,7 @@ void SelfContact::list_beside(std::size_t block, float range) {
   p.name_stride = named_[sheet].stride;
   const int most_in_row = b.columns * p.steps;
   found.count = 0;
-  for (int done = 0; done < b.rows;) {
+  for (int done = p.steps > 0 ? 0 : b.rows; done < b.rows;) {
     p.row = b.row + done;
     p.block_rows = b.rows - done;
     p.pairs = found.room(std::size_t(found.count + most_in_row)).from(found.count);
@@ -302,7 +354,7 @@ SelfContact::Overlaps SelfContact::overlaps() {
     double square = 0;
     for (int i = 0; i < 3; ++i) {
       const double d =
-          double(sheet.lattice->x.at(i, p.row, p.column)) - other.lattice->x.at(i, q.row, q.column);
+          double(sheet.points->x.at(i, p.row, p.column)) - other.points->x.at(i, q.row, q.column);
       square += d * d;
     }
     add(0.5 * (double(sheet.thickness) + other.thickness) - std::sqrt(square));
@@ -327,7 +379,10 @@ void SelfContact::PairList::pad() {
 
 std::size_t SelfContact::bytes() const {
   std::size_t bytes = search_.bytes() + blocks_.bytes() + 4 * (begin_.size() + zone_.size());
-  bytes += bodies_ * (2 * sizeof(Place) + sizeof(Displacement) + sizeof(RestPlace));
+  bytes += bodies_ * (2 * sizeof(Place) + sizeof(Displacement) + sizeof(RestPlace) + sizeof(float));
+  for (const Sheet& s : sheets_)
+    if (s.mesh) bytes += s.mesh->bytes();
+  for (const auto& of : neighbours_) bytes += sizeof of + 4 * of.capacity();
   for (const auto* lists : {&meeting_, &beside_})
     for (const PairList& c : *lists) bytes += 8 * c.owner.capacity();
   for (const auto& m : measured_) bytes += m.room.capacity() * sizeof(SurfaceContact);

@@ -38,12 +38,11 @@
 #include "physics/contact/self/contact_solver.h"
 #include "physics/contact/self/near_squares.h"
 #include "physics/contact/self/pair_search.h"
-#include "physics/model/lattice/stages.h"
 #include "weft/scene.h"
 
 namespace weft::physics {
 
-// One particle: which of the sheets, row and column.
+// One particle: which of the sheets, row and column of its points.
 struct Site {
   std::uint16_t cloth, row, column;
 };
@@ -52,7 +51,7 @@ class SelfContact {
  public:
   // Null when no cloth asks for it.
   static std::unique_ptr<SelfContact> make(const Scene& scene,
-                                           const std::vector<const LatticeParts*>& cloths,
+                                           const std::vector<ClothModel*>& cloths,
                                            const KernelTable& kernels);
   ~SelfContact();
 
@@ -144,6 +143,9 @@ class SelfContact {
   Site site(std::int32_t body) const;
   BodyBlock bodies_of(const Block& block);
   void gather(Threads& threads);
+  void place_at_rest(std::size_t sheet);
+  void list_neighbours(std::size_t sheet);
+  bool near_at_rest(std::int32_t a, std::int32_t b) const;
 
   // self_contact.cpp: when, and the lists of pairs.
   void list_sites(Threads& threads);
@@ -157,6 +159,7 @@ class SelfContact {
   void find_among_surfaces(Threads& threads);
   void measure_surfaces(const SquarePairs& pairs, SurfaceSearch search, float reach,
                         Threads& threads);
+  void keep_owned(const SquarePairs& pairs, std::size_t first, Measured& found) const;
   void sort_spheres();
   template <int N>
   void solve(ContactSolver<N>& solver, const ContactInterval& interval, Threads& threads);
@@ -188,7 +191,10 @@ class SelfContact {
   std::unique_ptr<NearSquares> near_;          // null among particles
   std::vector<std::size_t> first_site_;        // of every block
   std::size_t count_ = 0;                      // particles of active blocks
-  std::vector<RestPlace> rest_;                // of every body
+  std::vector<RestPlace> rest_;                // of every body,
+  std::vector<float> friction_;                // and its coefficient
+  // Of every body of a mesh among particles, others that are none to meet.
+  std::vector<std::vector<std::int32_t>> neighbours_;
   // Of every body, and of 16 that stand for none: at the interval's start, now, and in between.
   std::vector<Place> place_, now_;
   std::vector<Displacement> moved_;

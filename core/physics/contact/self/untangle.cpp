@@ -19,7 +19,8 @@ namespace {
 constexpr int kRowsAFrame = 8;   // that the line where sheets meet moves by
 constexpr int kMostFrames = 90;  // what has not come apart by then stays as it is
 constexpr double kCalm = 4e-3;   // s, until velocities within sheets that cross are a third
-constexpr int kFold = 4;  // columns or rows: what is nearer on a sheet crosses in a fold of it
+constexpr int kFold =
+    4;  // columns, rows or edges: what is nearer on a sheet crosses in a fold of it
 constexpr double kOnGrid = 1e-3;      // spacings that a pin may start off the grid of a flat sheet
 constexpr double kBeyond = 0.5;       // thicknesses that an end goes beyond the triangle
 constexpr double kMostOfEdge = 0.25;  // but no more than this part of its edge
@@ -35,6 +36,16 @@ bool starts_flat(const Cloth& cloth) {
     const Vec3 off = minus(pin_alone_at(cloth, p, 0), place_on(g, p.i, p.j));
     return std::sqrt(dot(off, off)) < kOnGrid * std::min(spacing_u(g), spacing_v(g));
   });
+}
+
+// m², of a mesh whose vertices lie there.
+double area_of(const SurfaceMesh& mesh, const std::vector<Vec3>& x) {
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 n = normal_of(x[std::size_t(t[0])], x[std::size_t(t[1])], x[std::size_t(t[2])]);
+    area += 0.5 * std::sqrt(dot(n, n));
+  }
+  return area;
 }
 
 // Whether flat sheet a lies on one side of flat sheet b's plane.
@@ -53,15 +64,23 @@ bool on_one_side(const Grid& a, const Grid& b) {
 
 }  // namespace
 
-Untangle::Untangle(const Scene& scene, const std::vector<const LatticeParts*>& cloths) {
+Untangle::Untangle(const Scene& scene, const std::vector<ClothModel*>& cloths) {
   std::size_t count = 0;
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const SelfCollision& self = scene.cloths[c].self_collision;
     if (self.mode == SelfCollisionMode::off) continue;
-    const Grid& g = scene.cloths[c].grid;
-    sheets_.push_back({cloths[c], self.thickness, spacing_u(g) * spacing_v(g), count, false});
-    const Lattice& l = cloths[c]->lattice;
-    count += std::size_t(l.columns) * std::size_t(l.rows);
+    const Cloth& cloth = scene.cloths[c];
+    const auto particles = std::size_t(cloths[c]->particles().count());
+    Sheet sheet{cloths[c], self.thickness, 0, 0, {}, count, false};
+    if (const LatticeParts* const grid = cloths[c]->lattice()) {
+      sheet.area = spacing_u(cloth.grid) * spacing_v(cloth.grid);
+      sheet.columns = grid->lattice.columns;
+    } else {
+      sheet.rest = placed_vertices(cloth.mesh);
+      sheet.area = area_of(cloths[c]->surface(), sheet.rest) / double(particles);
+    }
+    sheets_.push_back(std::move(sheet));
+    count += particles;
   }
   passing_.resize(count);
   due_ = may_cross(scene);
@@ -76,18 +95,17 @@ const Untangle::Sheet& Untangle::sheet_of(std::int32_t particle) const {
 
 double Untangle::inverse_mass(std::int32_t particle) const {
   const Sheet& s = sheet_of(particle);
-  const Lattice& l = s.cloth->lattice;
-  const auto n = int(std::size_t(particle) - s.first);
-  return double(l.w(n / l.columns, n % l.columns));
+  const Particles& p = s.cloth->particles();
+  return double(p.inverse_mass[p.lane(int(std::size_t(particle) - s.first))]);
 }
 
-// A flat sheet does not cross itself, nor one that lies on one side of it.
+// A flat sheet does not cross itself, nor one that lies on one side of it. Meshes are looked at.
 bool Untangle::may_cross(const Scene& scene) const {
   std::vector<const Cloth*> cloths;
   for (const Cloth& c : scene.cloths)
     if (c.self_collision.mode != SelfCollisionMode::off) cloths.push_back(&c);
   for (const Cloth* a : cloths) {
-    if (!starts_flat(*a)) return true;
+    if (a->mesh.given() || !starts_flat(*a)) return true;
     for (const Cloth* b : cloths)
       if (a < b && !on_one_side(a->grid, b->grid) && !on_one_side(b->grid, a->grid)) return true;
   }
@@ -140,13 +158,13 @@ void Untangle::mark_what_crosses() {
 void Untangle::calm(double seconds) {
   const double keep = std::exp(-seconds / kCalm);
   for (const Sheet& s : sheets_) {
-    Lattice& l = s.cloth->lattice;
+    Particles& l = s.cloth->particles();
     if (!s.crosses) continue;
     Vec3 momentum{};
     double mass = 0;
     const auto for_each_free = [&](const auto& visit) {
       for (int j = 0; j < l.rows; ++j)
-        for (int i = 0; i < l.columns; ++i)
+        for (int i = 0; i < l.count(j); ++i)
           if (l.w(j, i) > 0) visit(j, i, 1 / double(l.w(j, i)));
     };
     for_each_free([&](int j, int i, double m) {
@@ -166,8 +184,11 @@ void Untangle::calm(double seconds) {
 bool Untangle::in_a_fold(std::int32_t a, std::int32_t b) const {
   const Sheet& s = sheet_of(a);
   if (&s != &sheet_of(b)) return false;
-  const int columns = s.cloth->lattice.columns;
-  const int n = a - int(s.first), m = b - int(s.first);
+  const int n = a - int(s.first), m = b - int(s.first), columns = s.columns;
+  if (!s.rest.empty()) {
+    const Vec3 apart = minus(s.rest[std::size_t(n)], s.rest[std::size_t(m)]);
+    return dot(apart, apart) <= kFold * kFold * s.area;
+  }
   return std::abs(n % columns - m % columns) <= kFold &&
          std::abs(n / columns - m / columns) <= kFold;
 }
@@ -250,11 +271,12 @@ void Untangle::take_along(Moves& m) const {
 
 void Untangle::put_back() {
   for (const Sheet& s : sheets_) {
-    Lattice& l = s.cloth->lattice;
+    Particles& p = s.cloth->particles();
     std::size_t n = s.first;
-    for (int j = 0; j < l.rows; ++j)
-      for (int i = 0; i < l.columns; ++i, ++n)
-        for (int k = 0; k < 3; ++k) l.x.at(k, j, i) = coordinate(x_[n][k]);
+    p.for_each([&](int j, int i) {
+      for (int k = 0; k < 3; ++k) p.x.at(k, j, i) = coordinate(x_[n][std::size_t(k)]);
+      ++n;
+    });
   }
 }
 

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "physics/contact/self/crossings.h"
+#include "physics/model/cloth_model.h"
 #include "weft/scene.h"
 
 namespace weft::physics {
@@ -24,7 +25,7 @@ namespace weft::physics {
 class Untangle {
  public:
   // Over the cloths that take part in self-collision, which live as long.
-  Untangle(const Scene& scene, const std::vector<const LatticeParts*>& cloths);
+  Untangle(const Scene& scene, const std::vector<ClothModel*>& cloths);
 
   // Edges that pass through triangles now.
   std::size_t crossings();
@@ -42,16 +43,18 @@ class Untangle {
   // Taking through stretches sheets, which would fly apart: while anything is due, velocities within each
   // that crosses anything go to their mean, within some milliseconds. Its momentum is kept.
   void calm(double seconds);
-  // Particles that have to pass, row by row of every sheet in turn: contact leaves them out.
+  // Particles that have to pass, by their numbers, sheet after sheet: contact leaves them out.
   const std::vector<std::uint8_t>& passing() const { return passing_; }
 
  private:
   struct Sheet {
-    const LatticeParts* cloth;
-    double thickness;   // m
-    double area;        // m², of a particle
-    std::size_t first;  // number of its first particle
-    bool crosses;       // anything, the last time
+    ClothModel* cloth;
+    double thickness;        // m
+    double area;             // m², of a particle
+    int columns;             // of a grid
+    std::vector<Vec3> rest;  // m, of the particles of a mesh
+    std::size_t first;       // number of its first particle
+    bool crosses;            // anything, the last time
   };
 
   // Of an edge that crosses, with all that it crosses along one line.

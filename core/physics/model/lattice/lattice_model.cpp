@@ -97,7 +97,7 @@ void LatticeModel::append_projections(StageList& list) {
     corrections_ = std::make_unique<Rows>(lattice_.rows, lattice_.stride);
   sweep.corrections = corrections_.get();
   if (solver.order == 2)
-    history_ = std::make_unique<History>(lattice_), parts_.history = history_.get();
+    history_ = std::make_unique<History>(lattice_);
   else
     list.skip("second order", "order is 1");
   list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, multipliers_.get())

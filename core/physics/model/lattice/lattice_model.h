@@ -17,6 +17,7 @@ class LatticeModel final : public ClothModel {
   const ClothParts& parts() const override { return parts_; }
   LatticeParts* lattice() override { return &parts_; }
 
+  History* history() override { return history_.get(); }
   void append_motion(Method method, StageList& list) override;
   void append_limits(StageList& list) override;
   double mass(int particle) const override;

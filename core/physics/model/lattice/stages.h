@@ -22,7 +22,6 @@ struct LatticeParts : ClothParts {
   // How far every collider was from where its shape stands as the run began [m].
   const std::vector<Vec3>& first_moves;
   LatticeTearing* tearing = nullptr;  // null: the cloth cannot tear
-  History* history = nullptr;         // null: the substep is of the first order
   // By row, written by the springs: whether a constraint was too long; null: they do not tell.
   std::uint8_t* overlong = nullptr;
   std::int64_t constraints() const;

@@ -17,6 +17,7 @@ class MeshModel final : public ClothModel {
 
   const ClothParts& parts() const override { return parts_; }
   bool only_explicit() const override { return material_.membrane; }
+  History* history() override { return history_.get(); }
   void append_motion(Method method, StageList& list) override;
   void append_limits(StageList& list) override;
   double mass(int particle) const override { return masses_[std::size_t(particle)]; }
