@@ -1,6 +1,7 @@
 // What a feature adds to a step: the plain sheet of springs with one thing switched on at a time.
 #include <functional>
 
+#include "../tests/made_up_bodies.h"
 #include "throughput.h"
 
 namespace bench {
@@ -16,6 +17,13 @@ weft::Collider sphere_at(double y) {
   weft::Collider c;
   c.shape = weft::Sphere{{0.5, y, 0.5}, 0.3};
   c.friction = {weft::FrictionModel::coulomb, 0.3, 0.3};
+  return c;
+}
+
+// Lies under the sheet, or far from it.
+weft::Collider ball_of(int around, double y) {
+  weft::Collider c = weft::tests::body_of(weft::tests::ball(around, around / 2, 0.3), 0.3);
+  std::get<weft::MeshBody>(c.shape).translate = {0.5, y, 0.5};
   return c;
 }
 
@@ -40,6 +48,16 @@ std::vector<Feature> features() {
       {"strain limit", "strain_limit", [](weft::Scene& s) { s.cloths[0].strain_limit = 0.1; }},
       {"sphere, far", "", [](weft::Scene& s) { s.colliders.push_back(sphere_at(-9)); }},
       {"sphere, near", "", [](weft::Scene& s) { s.colliders.push_back(sphere_at(-0.295)); }},
+      {"body of 1e3 triangles, far", "",
+       [](weft::Scene& s) { s.colliders.push_back(ball_of(32, -9)); }},
+      {"body of 1e3 triangles, near", "",
+       [](weft::Scene& s) { s.colliders.push_back(ball_of(32, -0.295)); }},
+      {"body of 1e4 triangles, near", "",
+       [](weft::Scene& s) { s.colliders.push_back(ball_of(100, -0.295)); }},
+      {"body of 1e5 triangles, far", "",
+       [](weft::Scene& s) { s.colliders.push_back(ball_of(316, -9)); }},
+      {"body of 1e5 triangles, near", "",
+       [](weft::Scene& s) { s.colliders.push_back(ball_of(316, -0.295)); }},
       {"plane, far", "",
        [](weft::Scene& s) {
          s.colliders.emplace_back();

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <span>
 
-#include "weft/scene.h"
+#include "weft/mesh.h"
 
 namespace weft::tests {
 
@@ -59,6 +59,63 @@ inline double distance_from(const Box& s, const Vec3& p) {
     most = std::max(most, over);
   }
   return length(out) + std::min(most, 0.0) - s.rounding;
+}
+
+inline Vec3 product_of(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+inline double from_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 e = difference(b, a), d = difference(p, a);
+  const double t = std::clamp(product(d, e) / product(e, e), 0.0, 1.0);
+  return length({d[0] - t * e[0], d[1] - t * e[1], d[2] - t * e[2]});
+}
+
+// Of a point from a triangle: from its plane where it is above it, else from its sides.
+inline double from_triangle(const Vec3& p, const std::array<Vec3, 3>& t) {
+  const Vec3 n = product_of(difference(t[1], t[0]), difference(t[2], t[0]));
+  bool above = true;
+  double least = 1e300;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &a = t[k], &b = t[(k + 1) % 3];
+    above = above && product(product_of(difference(b, a), difference(p, a)), n) > 0;
+    least = std::min(least, from_segment(p, a, b));
+  }
+  return above ? std::abs(product(difference(p, t[0]), n)) / length(n) : least;
+}
+
+inline std::array<Vec3, 3> triangle_of(const TriangleMesh& mesh, std::size_t n) {
+  std::array<Vec3, 3> t;
+  for (std::size_t k = 0; k < 3; ++k) t[k] = mesh.vertices[std::size_t(mesh.triangles[n][k])];
+  return t;
+}
+
+inline double from_mesh(const TriangleMesh& mesh, const Vec3& p) {
+  double least = 1e300;
+  for (std::size_t n = 0; n < mesh.triangles.size(); ++n)
+    least = std::min(least, from_triangle(p, triangle_of(mesh, n)));
+  return least;
+}
+
+// How often the triangles go around a point, by the solid angles under which it sees them (Van Oosterom and
+// Strackee 1983).
+inline double turns_about(const TriangleMesh& mesh, const Vec3& p) {
+  double sum = 0;
+  for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
+    const auto t = triangle_of(mesh, n);
+    const Vec3 a = difference(t[0], p), b = difference(t[1], p), c = difference(t[2], p);
+    const double la = length(a), lb = length(b), lc = length(c);
+    sum +=
+        2 * std::atan2(product(a, product_of(b, c)),
+                       la * lb * lc + product(a, b) * lc + product(b, c) * la + product(c, a) * lb);
+  }
+  return sum / (4 * std::numbers::pi);
+}
+
+// Negative where the triangles go around the point.
+inline double distance_from(const MeshBody& body, const Vec3& p) {
+  const TriangleMesh placed{placed_vertices(body), body.shape->triangles, {}, {}, {}};
+  return std::abs(turns_about(placed, p)) > 0.5 ? -from_mesh(placed, p) : from_mesh(placed, p);
 }
 
 // The least distance of a point of the triangle from the shape. That of a convex shape is a convex

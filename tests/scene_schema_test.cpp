@@ -26,7 +26,7 @@ weft::Scene full_scene() {
   cloth.pins = {{0, 0, {}}, {1, 1, {{0, {0, 0, 0}}}}};
   for (const weft::Shape& shape :
        {weft::Shape(weft::Sphere{}), weft::Shape(weft::Plane{}), weft::Shape(weft::Capsule{}),
-        weft::Shape(weft::Box{}), weft::Shape(weft::Cylinder{})})
+        weft::Shape(weft::Box{}), weft::Shape(weft::Cylinder{}), weft::Shape(weft::MeshBody{})})
     scene.colliders.push_back({shape, {}, 0, {{0, {0, 0, 0}}}, false});
   scene.colliders[1].friction = {weft::FrictionModel::coulomb, 0.5, 0.4};
   scene.colliders[2].friction = {weft::FrictionModel::course, 0.5, 0.5};
@@ -111,7 +111,7 @@ TEST(Schema, DefaultsAreThoseOfTheStructs) {
   // What a minimal document reads as is what each default says.
   const Json minimal =
       document_of(weft::read_scene_text(R"({"weft": 1, "cloths": [{}], "colliders": [{"sphere": {}},
-        {"plane": {}}, {"capsule": {}}, {"box": {}}, {"cylinder": {}}]})")
+        {"plane": {}}, {"capsule": {}}, {"box": {}}, {"cylinder": {}}, {"mesh": {}}]})")
                       .scene);
   std::function<void(const Json&, const Json&, const std::string&)> compare =
       [&](const Json& schema, const Json& value, const std::string& place) {

@@ -104,16 +104,15 @@ Scene scene_of(const Value& value, const Meshes& meshes) {
   SceneFile file = read_scene_text(value.json->dump());
   if (!file.faults.empty()) fail(value.place, file.faults[0]);
   bool any = false;
-  for (std::size_t c = 0; c < file.scene.cloths.size(); ++c) {
-    MeshSource& mesh = file.scene.cloths[c].mesh;
-    if (mesh.file.empty()) continue;
+  for_each_mesh(file.scene, [&](MeshSource& mesh, const std::string& place) {
     const auto found = meshes.find(mesh.file);
     if (found == meshes.end())
-      fail(value.place + "/cloths/" + std::to_string(c) + "/mesh/file", "the mesh is missing",
+      fail(value.place + place + "/file", "the mesh is missing",
            "a file in meshes, of this line or one before");
     mesh.shape = found->second;
     any = true;
-  }
+  });
+  load_meshes(file.scene, "", file.faults, file.notes);
   if (any)
     if (const auto faults = validate(file.scene); !faults.empty()) fail(value.place, faults[0]);
   return std::move(file.scene);

@@ -48,8 +48,9 @@ Json input_json(const Input& input) {
 
 // Meshes by the names of their files alone.
 Scene without_folders(Scene scene) {
-  for (Cloth& cloth : scene.cloths)
-    cloth.mesh.file = std::filesystem::path(cloth.mesh.file).filename().string();
+  for_each_mesh(scene, [](MeshSource& mesh, const std::string&) {
+    mesh.file = std::filesystem::path(mesh.file).filename().string();
+  });
   return scene;
 }
 
@@ -107,15 +108,15 @@ void Recorder::input(std::int64_t frame, const Input& input) {
 // Texts by file, of the scene's meshes that no line has yet.
 std::map<std::string, std::string> Recorder::new_meshes(const Scene& scene) {
   std::map<std::string, std::string> texts;
-  for (const Cloth& cloth : scene.cloths) {
-    const auto& [file, shape] = std::tie(cloth.mesh.file, cloth.mesh.shape);
-    if (!cloth.mesh.given() || meshes_[file] == shape) continue;
+  for_each_mesh(scene, [&](const MeshSource& mesh, const std::string&) {
+    const auto& [file, shape] = std::tie(mesh.file, mesh.shape);
+    if (meshes_[file] == shape) return;
     if (file.empty()) throw WriteError(path(), "a mesh that is of no file is not recorded");
     meshes_[file] = shape;
     texts[file] = write_obj(*shape);
     if (texts[file].size() > text::kMaxTextBytes / 2)
       throw WriteError(path(), file + ": the mesh is too large for a recording (32 MiB of text)");
-  }
+  });
   return texts;
 }
 
@@ -138,10 +139,15 @@ std::string difference(const Scene& a, const Scene& b) {
   const Json difference =
       Json::diff(scene_json(without_folders(a)), scene_json(without_folders(b)));
   if (!difference.empty()) return difference[0]["path"].get<std::string>();
-  for (std::size_t c = 0; c < a.cloths.size(); ++c)
-    if (!same_shape(a.cloths[c].mesh, b.cloths[c].mesh))
-      return "/cloths/" + std::to_string(c) + "/mesh/file";
-  return "";
+  // The same places have meshes in both.
+  std::vector<const MeshSource*> of_a;
+  for_each_mesh(a, [&](const MeshSource& mesh, const std::string&) { of_a.push_back(&mesh); });
+  std::string place;
+  std::size_t n = 0;
+  for_each_mesh(b, [&](const MeshSource& mesh, const std::string& here) {
+    if (!same_shape(*of_a[n++], mesh) && place.empty()) place = here + "/file";
+  });
+  return place;
 }
 
 const Input* next_input(const Recording& recording, std::size_t& next,

@@ -182,6 +182,11 @@ void fields(Walk& walk, Box& box) {
 }
 
 template <class Walk>
+void fields(Walk& walk, MeshBody& body) {
+  fields(walk, static_cast<MeshSource&>(body));
+}
+
+template <class Walk>
 void fields(Walk& walk, Collider& collider) {
   walk(collider.shape);  // under the key of its kind
   walk("friction", collider.friction);

@@ -117,8 +117,9 @@ std::string nearest_scene(const std::string& name) {
 }
 
 bool has_mesh(const Scene& scene) {
-  return std::any_of(scene.cloths.begin(), scene.cloths.end(),
-                     [](const Cloth& cloth) { return cloth.mesh.given(); });
+  bool any = false;
+  for_each_mesh(scene, [&](const MeshSource&, const std::string&) { any = true; });
+  return any;
 }
 
 // The file's bytes, up to one more than any scene may have.

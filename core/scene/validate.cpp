@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <type_traits>
 #include <utility>
 
 #include "scene/document.h"
@@ -23,6 +24,7 @@ constexpr std::int64_t kMaxParticles = std::int64_t{1} << 24;  // of all cloths 
 constexpr double kMinSpacing = 1e-6;  // m; float positions resolve no finer grid
 constexpr double kMaxThickness = 4;   // spacings; a particle has some 50 neighbours within it
 constexpr double kMinSine = 1e-3;     // between u and v
+constexpr double kMinOffset = 1e-4;   // m, off a mesh that is open
 constexpr double kMinReach = 0.01;  // spacings; a cutter that reaches less passes between particles
 
 double length(const Vec3& a) {
@@ -263,6 +265,7 @@ class Together {
             "both above 0, or neither");
     if (sound({place + "/keys"})) keys(collider.keys, place + "/keys");
     std::visit([&](const auto& shape) { this->shape(shape, place); }, collider.shape);
+    if (sound({place + "/offset"})) offset(collider, place);
     if (collider.cuts && sound({place})) cutter(collider, place);
   }
 
@@ -289,6 +292,11 @@ class Together {
   static double half_of(const Capsule& c) { return c.radius; }
   static double half_of(const Cylinder& c) { return std::min(c.radius, 0.5 * length(axis_of(c))); }
   static double half_of(const Box& b) { return std::min({b.half[0], b.half[1], b.half[2]}); }
+  // Of an open one the offset is all.
+  static double half_of(const MeshBody& b) {
+    const bool open = b.surface && !open_edges(*b.surface).empty();
+    return open ? 0 : std::numeric_limits<double>::infinity();
+  }
 
   void shape(const Sphere&, const std::string&) {}
 
@@ -332,6 +340,27 @@ class Together {
             "0 to " + number_words(most) + " m, the smallest half side");
   }
 
+  void shape(const MeshBody& body, const std::string& place) {
+    if (!sound({place + "/mesh"})) return;
+    if (!body.given()) return fault(place + "/mesh/file", "file is empty", "a mesh file (.obj)");
+    if (!body.shape) return;
+    if (const auto wrong = fault_of(body, place + "/mesh"))
+      fault(wrong->place, wrong->what, wrong->allowed);
+  }
+
+  // What is without an inside would let through what lies on it.
+  void offset(const Collider& collider, const std::string& place) {
+    const MeshBody* body = std::get_if<MeshBody>(&collider.shape);
+    if (!body || !body->surface || collider.offset >= kMinOffset) return;
+    const auto open = open_edges(*body->surface);
+    if (open.empty()) return;
+    fault(place + "/offset",
+          "offset is " + number_words(collider.offset) + ", and the mesh is open: " +
+              std::to_string(open.size()) + " edges have one triangle, the first from vertex " +
+              std::to_string(open[0][0] + 1) + " to " + std::to_string(open[0][1] + 1),
+          "1e-4 to 1 m off a surface without an inside, or a closed mesh");
+  }
+
   const Scene& scene_;
   Check& result_;
 };
@@ -355,10 +384,13 @@ std::vector<Fault> validate(const Scene& scene) {
   text::check(text::scene_schema_json(), document, result);
   text::release(document);
   text::check_together(scene, result);
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
-    if (scene.cloths[c].mesh.given() && !scene.cloths[c].mesh.shape)
-      result.fault("/cloths/" + std::to_string(c) + "/mesh/file", "the mesh is not read",
-                   "load_meshes() reads it");
+  for_each_mesh(scene, [&](const auto& mesh, const std::string& place) {
+    bool read = mesh.shape != nullptr;
+    if constexpr (std::is_same_v<decltype(mesh), const MeshBody&>)
+      read = read && (mesh.surface || text::fault_of(mesh, place));
+    if (!read && mesh.given())
+      result.fault(place + "/file", "the mesh is not read", "load_meshes() reads it");
+  });
   return std::move(result.faults);
 }
 

@@ -16,6 +16,7 @@
 #include "study/draws.h"
 #include "study/study.h"
 #include "study/triangles.h"
+#include "weft/mesh.h"
 #include "weft/read_scene.h"
 
 namespace weft {
@@ -118,10 +119,12 @@ struct Study::Reader {
     study.scene_ = value.dump();
     const SceneFile file = read_scene_text(study.scene_);
     if (!file.faults.empty()) return scene_faults(file);
-    for (std::size_t c = 0; c < file.scene.cloths.size(); ++c)
-      if (file.scene.cloths[c].mesh.given())
-        return fault("/scene/cloths/" + std::to_string(c) + "/mesh", "a study has a mesh",
-                     "grids alone");
+    std::string mesh;
+    for_each_mesh(file.scene, [&](const MeshSource&, const std::string& place) {
+      if (mesh.empty()) mesh = place;
+    });
+    if (!mesh.empty())
+      return fault("/scene" + mesh, "a study has a mesh", "grids, and bodies of other shapes");
     scene = file.scene;
   }
   void scene_faults(const SceneFile& file) {

@@ -6,10 +6,12 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "scenes.h"
 #include "surface.h"
+#include "weft/mesh.h"
 
 namespace weft::python {
 
@@ -107,9 +109,13 @@ void set_value(Shared& shared, const std::string& pointer, const py::object& val
   const Override change{pointer, json_text(value)};
   shared.call([&](Simulation& s) {
     SceneFile file = read_scene_text(write_scene_text(s.scene()), {change});
-    for (std::size_t c = 0; c < file.scene.cloths.size() && c < s.scene().cloths.size(); ++c)
-      if (file.scene.cloths[c].mesh.file == s.scene().cloths[c].mesh.file)
-        file.scene.cloths[c].mesh.shape = s.scene().cloths[c].mesh.shape;
+    std::map<std::string, std::shared_ptr<const TriangleMesh>> shapes;
+    for_each_mesh(s.scene(), [&](const MeshSource& mesh, const std::string&) {
+      shapes[mesh.file] = mesh.shape;
+    });
+    for_each_mesh(file.scene,
+                  [&](MeshSource& mesh, const std::string&) { mesh.shape = shapes[mesh.file]; });
+    load_meshes(file.scene, "", file.faults, file.notes);
     if (!file.faults.empty()) throw SceneError(std::move(file.faults));
     s.set_scene(std::move(file.scene));
   });

@@ -64,11 +64,10 @@ std::vector<Fault> Document::open(const std::string& path_or_name,
   for (const ShippedScene& shipped : shipped_scenes()) shipped_ = shipped_ || shipped.path == path_;
   scene_ = std::move(file.scene);
   meshes_.clear();
-  for (Cloth& cloth : scene_.cloths) {
-    if (!cloth.mesh.shape) continue;
-    cloth.mesh.file = fs::absolute(fs::path(path_).parent_path() / cloth.mesh.file).string();
-    meshes_[cloth.mesh.file] = cloth.mesh.shape;
-  }
+  for_each_mesh(scene_, [&](MeshSource& mesh, const std::string&) {
+    mesh.file = fs::absolute(fs::path(path_).parent_path() / mesh.file).string();
+    meshes_[mesh.file] = mesh.shape;
+  });
   notes_ = std::move(file.notes);
   name_ = scene_.name.empty() ? fs::path(path_).stem().string() : scene_.name;
   json_ = text::document_of(scene_);
@@ -150,14 +149,16 @@ void Document::take(std::size_t position) {
 }
 
 std::vector<Fault> Document::read_meshes(Scene& scene) {
-  for (Cloth& cloth : scene.cloths)
-    if (const auto known = meshes_.find(cloth.mesh.file); known != meshes_.end())
-      cloth.mesh.shape = known->second;
+  for_each_mesh(scene, [&](MeshSource& mesh, const std::string&) {
+    if (const auto known = meshes_.find(mesh.file); known != meshes_.end())
+      mesh.shape = known->second;
+  });
   std::vector<Fault> faults;
   std::vector<std::string> notes;
   load_meshes(scene, fs::path(path_).parent_path().string(), faults, notes);
-  for (const Cloth& cloth : scene.cloths)
-    if (cloth.mesh.shape) meshes_[cloth.mesh.file] = cloth.mesh.shape;
+  for_each_mesh(scene, [&](const MeshSource& mesh, const std::string&) {
+    if (mesh.shape) meshes_[mesh.file] = mesh.shape;
+  });
   return faults;
 }
 
@@ -176,10 +177,10 @@ std::string Document::next_undo() const {
 std::string Document::text_for(const std::string& path) const {
   Scene scene = scene_;
   const fs::path folder = fs::absolute(path).parent_path();
-  for (Cloth& cloth : scene.cloths) {
-    const fs::path beside = fs::path(cloth.mesh.file).lexically_relative(folder);
-    if (!beside.empty() && *beside.begin() != "..") cloth.mesh.file = beside.string();
-  }
+  for_each_mesh(scene, [&](MeshSource& mesh, const std::string&) {
+    const fs::path beside = fs::path(mesh.file).lexically_relative(folder);
+    if (!beside.empty() && *beside.begin() != "..") mesh.file = beside.string();
+  });
   return write_scene_text(scene);
 }
 

@@ -162,6 +162,8 @@ Shape turned(Shape shape, std::size_t axis, double angle) {
   if (auto* plane = std::get_if<Plane>(&shape)) plane->normal = times(turn, plane->normal);
   if (auto* box = std::get_if<Box>(&shape))
     box->rotation = angles_of(times(turn, matrix_of(box->rotation)));
+  if (auto* mesh = std::get_if<MeshBody>(&shape))
+    mesh->rotate = angles_of(times(turn, matrix_of(mesh->rotate)));
   if (auto* capsule = std::get_if<Capsule>(&shape)) capsule->b = about(capsule->b, capsule->a);
   if (auto* cylinder = std::get_if<Cylinder>(&shape)) cylinder->b = about(cylinder->b, cylinder->a);
   return shape;
@@ -172,6 +174,7 @@ Shape sized(Shape shape, double factor) {
     for (std::size_t k = 0; k < 3; ++k) b[k] = a[k] + factor * (b[k] - a[k]);
   };
   if (auto* sphere = std::get_if<Sphere>(&shape)) sphere->radius *= factor;
+  if (auto* mesh = std::get_if<MeshBody>(&shape)) mesh->scale *= factor;
   if (auto* capsule = std::get_if<Capsule>(&shape))
     longer(capsule->a, capsule->b), capsule->radius *= factor;
   if (auto* cylinder = std::get_if<Cylinder>(&shape)) {

@@ -12,7 +12,7 @@ struct Part {
   std::size_t number = 0;
 };
 
-// A body of the shape [0 … 4, as kShapeNames] about `at`, some `size` [m] across.
+// A body of the shape [0 … 4, as kShapeNames; no mesh, which is of a file] about `at`, some `size` [m] across.
 Scene with_body(Scene scene, std::size_t shape, const Vec3& at, double size);
 // A level sheet about `at` of sides of `size` [m], of the first cloth's material.
 Scene with_cloth(Scene scene, const Vec3& at, double size);

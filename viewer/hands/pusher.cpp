@@ -41,8 +41,8 @@ float distance_to(ImVec2 p, const ScreenPoint& a, const ScreenPoint& b) {
 }
 
 std::string place_key(const Shape& shape) {
-  constexpr const char* keys[] = {"sphere/center", "plane/point", "capsule/a", "box/center",
-                                  "cylinder/a"};
+  constexpr const char* keys[] = {"sphere/center", "plane/point", "capsule/a",
+                                  "box/center",    "cylinder/a",  "mesh/translate"};
   return keys[shape.index()];
 }
 

@@ -1,5 +1,8 @@
 // What a scene is made of: buttons that add a cloth or a body.
 #include "panel/panel.h"
+
+#include <string_view>
+
 #include "panel/theme.h"
 
 namespace weft::viewer {
@@ -12,7 +15,8 @@ void draw_parts(Workspace& workspace, Requests& requests) {
   mark("add cloth");
   tooltip("A level sheet of the first cloth's material, above all else");
   for (std::size_t shape = 0; shape < kShapeNames.size(); ++shape) {
-    if (shape != 2) ImGui::SameLine(0, gap);  // two rows of three
+    if (kShapeNames[shape] == std::string_view("mesh")) continue;  // of a file
+    if (shape != 2) ImGui::SameLine(0, gap);                       // two rows of three
     if (ImGui::Button(kShapeNames[shape], size)) requests.newest = workspace.add_body(shape);
     mark(std::string("add ") + kShapeNames[shape]);
     tooltip("Put where the camera looks; Move then has its arrows, rings and square");

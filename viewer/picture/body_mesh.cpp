@@ -1,4 +1,4 @@
-// Spheres, capsules, boxes, planes and the floor as triangles.
+// Bodies and the floor as triangles.
 #include <cstddef>
 #include <numbers>
 
@@ -168,7 +168,8 @@ BodyMesh make_body(const Shape& shape, float size, int tessellation) {
   if (const Capsule* c = std::get_if<Capsule>(&shape))
     return revolve(to_float(c->a), to_float(c->b), static_cast<float>(c->radius), tessellation);
   if (const Box* b = std::get_if<Box>(&shape)) return box_mesh(*b, tessellation);
-  if (std::holds_alternative<Cylinder>(shape)) return plain_mesh(triangulate(shape));
+  if (std::holds_alternative<Cylinder>(shape) || std::holds_alternative<MeshBody>(shape))
+    return plain_mesh(triangulate(shape));
   const Plane& plane = std::get<Plane>(shape);
   return square(to_float(plane.point), normalized(to_float(plane.normal)), size);
 }

@@ -46,6 +46,10 @@ void add_bounds(const Box& b, Bounds& bounds) {
   bounds.add_ball(to_float(b.center), length(to_float(b.half)));
 }
 
+void add_bounds(const MeshBody& body, Bounds& bounds) {
+  for (const Vec3& p : triangulate(body).positions) bounds.add(to_float(p));
+}
+
 }  // namespace
 
 void copy_view(const View& view, const Scene& scene, FrameData& to) {

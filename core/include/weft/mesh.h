@@ -1,7 +1,9 @@
-// Triangle meshes as they come from files: what cloth of any shape is made of.
+// Triangle meshes as they come from files: what cloth and bodies of any shape are made of.
 #pragma once
 
 #include <array>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,8 +49,26 @@ std::string write_obj(const TriangleMesh& mesh);
 // The mean length of the edges of a mesh, which is read, as the scene places it [m]; inner edges count twice.
 double mean_edge(const MeshSource& mesh);
 
-// Reads the meshes of a scene that have no shape yet, files beside `folder` where they are not absolute.
-// Faults have the place in the scene, and where in the file.
+// Calls visit(mesh, place in the scene) for every mesh of a scene, of cloths and of bodies.
+template <class AnyScene, class Visit>
+void for_each_mesh(AnyScene& scene, Visit&& visit) {
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    if (scene.cloths[c].mesh.given())
+      visit(scene.cloths[c].mesh, "/cloths/" + std::to_string(c) + "/mesh");
+  for (std::size_t c = 0; c < scene.colliders.size(); ++c)
+    if (auto* body = std::get_if<MeshBody>(&scene.colliders[c].shape))
+      visit(*body, "/colliders/" + std::to_string(c) + "/mesh");
+}
+
+// What is asked of the surface of a body, whose mesh is read, scaled and turned, about its place.
+std::shared_ptr<const BodySurface> surface_of(const MeshBody& body);
+
+// The edges that one triangle alone has, by the numbers of their vertices in the file from 0 on; none: the
+// body is closed.
+std::span<const std::array<int, 2>> open_edges(const BodySurface& surface);
+
+// Reads the meshes of a scene that have no shape yet, files beside `folder` where they are not absolute, and
+// makes the surfaces of bodies. Faults have the place in the scene, and where in the file.
 void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& faults,
                  std::vector<std::string>& notes);
 

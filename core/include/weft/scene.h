@@ -67,7 +67,7 @@ struct Grid {
 
 struct TriangleMesh;  // weft/mesh.h
 
-// Cloth of any shape: the triangles of a mesh file, whose vertices are its particles, in the file's order.
+// The triangles of a mesh file: of cloth, whose particles are the vertices in the file's order, or of a body.
 // What is read is scaled, turned and then moved.
 struct MeshSource {
   std::string file;                             // .obj; beside the scene file, or absolute
@@ -226,6 +226,19 @@ struct Box {
   friend bool operator==(const Box&, const Box&) = default;
 };
 
+class BodySurface;  // of a mesh, made ready for questions about distances (load_meshes())
+
+// A body of any shape: the triangles of a mesh file. Where every edge has two triangles, it is closed, and
+// the cloth is kept out of it, whichever way its faces look; else it is a surface without an inside, which
+// cloth does not cross: what is on one side of it stays there. Its place is `translate`. Parts of a closed
+// one may overlap. At least one triangle, edges of at least 1e-6 m.
+struct MeshBody : MeshSource {
+  std::shared_ptr<const BodySurface> surface{};  // of `shape`, scaled and turned (load_meshes())
+  friend bool operator==(const MeshBody& a, const MeshBody& b) {
+    return static_cast<const MeshSource&>(a) == static_cast<const MeshSource&>(b);
+  }
+};
+
 // `coulomb`: a particle in contact sticks while the tangential motion is within `statik` times the
 // normal correction, else slides with `dynamic`. `course`: the whole correction from the previous
 // position is multiplied by 1 - dynamic (seeds 001 and 004).
@@ -249,7 +262,7 @@ struct Friction {
 // by shape is made from this list: the variant, the reader and the kernels.
 #define WEFT_SHAPES(apply)                                                          \
   apply(Sphere, sphere) apply(Plane, plane) apply(Capsule, capsule) apply(Box, box) \
-      apply(Cylinder, cylinder)
+      apply(Cylinder, cylinder) apply(MeshBody, mesh)
 
 template <class, class... Shapes>
 struct OneOf {
@@ -270,7 +283,8 @@ struct Collider {
   Friction friction;
   double offset = 0;  // m; the cloth is kept this far off the surface
   std::vector<Key>
-      keys;  // path of the sphere's or box's center, the plane's point, the capsule's or cylinder's a
+      keys;  // path of the sphere's or box's center, the plane's point, the capsule's or cylinder's a, the
+             // mesh's translate
   bool cuts = false;  // cuts the constraints that pass through it instead of pushing
   friend bool operator==(const Collider&, const Collider&) = default;
 };
@@ -350,7 +364,7 @@ std::vector<Fault> validate(const Scene& scene);
 // How many particles a cloth has; 0 where its mesh is not read yet.
 int particle_count(const Cloth& cloth);
 
-// Where the vertices of a cloth's mesh, which is read, start [m].
+// Where the vertices of a mesh, which is read, start [m].
 std::vector<Vec3> placed_vertices(const MeshSource& mesh);
 
 // Spacing of the grid along u and v [m].

@@ -9,8 +9,8 @@
 
 namespace weft {
 
-// Triangles of a closed surface (a plane: of a square about its point), counter-clockwise seen from
-// outside, in the scene's coordinates without the collider's keys.
+// Triangles of a closed surface (a plane: of a square about its point; a mesh: its own, open or closed),
+// counter-clockwise seen from outside, in the scene's coordinates without the collider's keys.
 struct ShapeMesh {
   std::vector<Vec3> positions;  // m
   std::vector<Vec3> normals;    // unit, outward, one for each position
@@ -19,7 +19,7 @@ struct ShapeMesh {
 ShapeMesh triangulate(const Shape& shape);
 
 // The point that a collider's keys move: the sphere's or box's center, the plane's point, the capsule's
-// or cylinder's a.
+// or cylinder's a, the mesh's translate.
 Vec3 place_of(const Shape& shape);
 // The shape moved by so much [m].
 Shape moved(Shape shape, const Vec3& by);
@@ -28,8 +28,8 @@ Shape moved(Shape shape, const Vec3& by);
 // positions of triangulate().
 Vec3 displacement(const Collider& collider, double time);
 
-// Signed distance of a point from a collider's surface at `time` [m], negative inside; without the
-// collider's offset.
+// Signed distance of a point from a collider's surface at `time` [m], negative inside (never of an open
+// mesh); without the collider's offset.
 double signed_distance(const Collider& collider, double time, const Vec3& point);
 
 }  // namespace weft

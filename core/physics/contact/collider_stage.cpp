@@ -2,6 +2,8 @@
 // against the particles of one cloth.
 #include "physics/contact/collider_stage.h"
 
+#include "physics/contact/body/body_probe.h"
+
 namespace weft::physics {
 namespace {
 
@@ -20,12 +22,18 @@ class ColliderStage final : public ParticlesStage {
         parts_(parts),
         collider_(parts, collider, start),
         far_(parts, collider_.fastest()),
-        kernel_(kernel) {}
+        kernel_(kernel) {
+    if (const auto* body = std::get_if<MeshBody>(&collider.shape))
+      probe_ = std::make_unique<BodyProbe>(*body->surface, parts.particles);
+  }
 
   void run(int j, const Substep& s) override {
     if (far_.skip(j, s)) return;
-    far_.found(j, s, kernel_(collider_.row(parts_, j, s)));
+    CollideRow row = collider_.row(parts_, j, s);
+    if (probe_) probe_->look(row, j);
+    far_.found(j, s, kernel_(row));
   }
+  std::size_t bytes() const override { return probe_ ? probe_->bytes() : 0; }
   const SpeculativeCulling& far() const override { return far_; }
   double idle() const override { return far_.share(); }
   void restart() override { far_.restart(collider_.fastest()); }
@@ -40,6 +48,7 @@ class ColliderStage final : public ParticlesStage {
   MovingCollider collider_;
   SpeculativeCulling far_;
   Kernel kernel_;
+  std::unique_ptr<BodyProbe> probe_;  // of a mesh
 };
 
 const ColliderKernels& kernels_of(const ClothParts& parts, const Collider& collider) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/contact/body/body_triangle.h"
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/path.h"
 
@@ -23,6 +24,12 @@ constexpr double kSteady = 1e-2;
 constexpr double kMostLever = 2;  // the greatest share of a corner; 1.37 where masses are equal
 constexpr double kSudden = 5;     // m/s; of a blow by something else than the collider
 constexpr double kShort = 1.5;    // times the flat ones: edges that need no reach of their own
+
+// Whether deepest_on() looks at the whole way of a triangle by itself.
+template <class Shape>
+constexpr bool follows_paths(const Shape&) {
+  return std::is_same_v<Shape, MeshBody>;
+}
 
 struct Touch {
   Weights weights{};
@@ -149,7 +156,8 @@ bool ColliderTriangles::touch(const CollideRow& r, const std::array<int, 3>& j,
   Touch touch = std::visit(
       [&](const auto& shape) {
         const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
-        const int places = clamp_to_int(std::ceil(2 * path / size), 1, kMostPlaces);
+        const int places =
+            follows_paths(shape) ? 1 : clamp_to_int(std::ceil(2 * path / size), 1, kMostPlaces);
         return first_touch(shape, offset, c, places, edge_, stretched ? kExact : kSteady);
       },
       upright_.shape);

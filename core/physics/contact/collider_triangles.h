@@ -44,6 +44,11 @@ class ColliderTriangles : public RowStage {
 
   // Of the rows beside the triangles, as the stage before this one has found them.
   RowReach reach_of_particles(int j, const Substep& s) const;
+  // Whether no triangle can touch, if the particles beside them lie so. No point of one is further from a
+  // corner than its longest side.
+  static bool out_of_reach(const RowReach& near, const Substep& s, double longest) {
+    return near.clearance > near.speed * s.dt + longest;
+  }
   // How often the triangles of a row are gone through.
   int passes(double longest) const;
   // An edge or a corner of the collider leaves a triangle by one of its sides after another.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/contact/body/body_surface.h"
 #include "physics/contact/collider_stage.h"
 #include "physics/model/path.h"
 
@@ -22,6 +23,12 @@ Vec3 rubbed(const Friction& friction, const Vec3& along, double pressed) {
 
 Nearest nearest_to(const Shape& shape, const Vec3& p) {
   return std::visit([&](const auto& s) { return nearest_of(s, p); }, shape);
+}
+
+// What a point is off a shape at least [m]: of a mesh known by less work than the distance.
+double least_distance(const Shape& shape, const Vec3& p) {
+  const MeshBody* body = std::get_if<MeshBody>(&shape);
+  return body ? std::sqrt(body->surface->bounds().square_from(p)) : 0;
 }
 
 // What makes a velocity along the surface at p, where the normal is n, follow it for a substep [m/s²].
@@ -62,12 +69,14 @@ void support(const Scene& scene, const Cloth& cloth, double time, const Lag& lag
     l.for_each([&](int j, int i) {
       if (l.w(j, i) <= 0) return;
       const Vec3 x = l.position(j, i), p = minus(x, place);
-      const Nearest surface = nearest_to(c.shape, p);
       Vec3& own = a[std::size_t(l.number(j, i))];
-      const double inward = -dot(own, surface.normal);
       // A substep ends on the surface, or off a curved one by what it went into it before.
       const double rounding =
           kRounding * std::max({1.0, std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
+      const double most = std::sqrt(dot(own, own)) * lag.dt * lag.dt;
+      if (least_distance(c.shape, p) > c.offset + rounding + most) return;
+      const Nearest surface = nearest_to(c.shape, p);
+      const double inward = -dot(own, surface.normal);
       if (inward > 0 && surface.distance < c.offset + rounding + inward * lag.dt * lag.dt) {
         const Vec3 v{l.v.at(0, j, i), l.v.at(1, j, i), l.v.at(2, j, i)};
         own = supported(c, chords, p, surface, minus(v, u), own, lag);

@@ -77,6 +77,8 @@ class SquareTriangles final : public ColliderTriangles {
   double greatest(const Rows& values, int j) const override { return edges_.greatest(values, j); }
 
   RowReach look(int j, const Substep& s, double longest) override {
+    if (!parts_.kernels.collider[collider().shape()]->below_faces)
+      return look_at_all(j, s, longest);
     Lattice& l = parts_.lattice;
     FacesRow f;
     f.row = collider().row(parts_, j, s);
@@ -100,6 +102,19 @@ class SquareTriangles final : public ColliderTriangles {
           lift(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
       }
     return reach;
+  }
+
+  // Where no kernel tells which are near.
+  RowReach look_at_all(int j, const Substep& s, double longest) {
+    const RowReach near = reach_of_particles(j, s);
+    if (out_of_reach(near, s, longest)) return near;
+    const CollideRow row = collider().row(parts_, j, s);
+    for (int pass = 0; pass < passes(longest); ++pass)
+      for (int i = 0; i + 1 < parts_.lattice.columns; ++i) {
+        if (edges_.whole(i, j, 0)) lift(row, {j, j, j + 1}, {i, i + 1, i});
+        if (edges_.whole(i, j, 1)) lift(row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
+      }
+    return near;
   }
 
   std::size_t room() const { return 2 * std::size_t(parts_.lattice.stride) + 16; }

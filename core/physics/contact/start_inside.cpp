@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/contact/body/body_triangle.h"
 #include "physics/contact/triangle_shape.h"
 #include "physics/model/path.h"
 
@@ -35,6 +36,20 @@ double least_of_cut(const Shape& shape, const Corners& c) {
       return nearest_of(shape, c.at({1 - u, u * (1 - v), u * v})).distance;
     });
   });
+}
+
+// m; how far the surface of a shape is from its core.
+template <class Shape>
+double rounding_of(const Shape& shape, const Vec3& p) {
+  return core_of(shape, p).radius;
+}
+double rounding_of(const MeshBody&, const Vec3&) {
+  return 0;
+}
+
+// Of a mesh: what its edges and corners find.
+double least_of_cut(const MeshBody& body, const Corners& c) {
+  return deepest_on(body, c, 0, longest_side(c.x)).nearest.distance;
 }
 
 void find_triangles_inside(const ClothParts& parts, const Collider& collider, StartInside& found) {
@@ -116,7 +131,7 @@ double deepest_in(const Cloth& cloth, const Collider& collider, double time,
           const double depth = deepest_on(shape, c, 0, edge).nearest.distance;
           if (-depth <= allowed.at(edge) - collider.offset + kFlatness * std::min(edge, at_rest))
             continue;
-          const bool cut = depth < -core_of(shape, c.x[0]).radius;
+          const bool cut = depth < -rounding_of(shape, c.x[0]);
           least = std::min(least, cut ? least_of_cut(shape, c) : depth);
         }
         return -least;

@@ -30,6 +30,7 @@ constexpr double kMasses = 40;
 constexpr double kParticles = 430;  // contact of a folded sheet; 230 where it lies flat
 constexpr double kSurface = 1100;   // 900 where it lies flat
 constexpr double kMeshVertex = 2500;
+constexpr double kMeshBody = 160;  // and body that is a mesh
 }  // namespace memory
 
 // Nanoseconds on one thread of a current x86-64 core with AVX-512, measured as docs/benchmarks.md tells
@@ -160,8 +161,10 @@ double substep_cost(const Scene& scene, const Cloth& cloth, const Solver& solver
   if (cloth.tear_strain > 0 || !cloth.cuts.empty()) each += cost::kTearing;
   if (scene.wind.drag > 0 || scene.wind.lift > 0) each += cost::kWind;
   for (const Collider& collider : scene.colliders)
-    each += solver.collision_iterations *
-            (std::holds_alternative<Box>(collider.shape) ? cost::kBox : cost::kCollider);
+    each += solver.collision_iterations * (std::holds_alternative<Box>(collider.shape) ||
+                                                   std::holds_alternative<MeshBody>(collider.shape)
+                                               ? cost::kBox
+                                               : cost::kCollider);
   if (cloth.self_collision.mode == SelfCollisionMode::particles) each += cost::kParticles;
   if (cloth.self_collision.mode == SelfCollisionMode::surface) each += cost::kSurface;
   return cost::kSubstep + constraint_cost(cloth, solver) + each * particle_count(cloth);
@@ -187,6 +190,9 @@ Estimate estimate(const Scene& scene) {
     e.particles += std::int64_t(particle_count(cloth));
     e.constraints += std::int64_t(constraints_of(cloth));
     e.bytes += bytes_of(cloth, way.solver);
+    for (const Collider& collider : scene.colliders)
+      if (std::holds_alternative<MeshBody>(collider.shape))
+        e.bytes += memory::kMeshBody * particle_count(cloth);
     nanoseconds += cost::kFrame + cost::kFrameParticle * particle_count(cloth) +
                    way.substeps * substep_cost(scene, cloth, way.solver);
   }

@@ -5,6 +5,10 @@
 //   static constexpr bool kFlat     whether the normal is the same everywhere: a half-space, which
 //                                   nothing passes through
 //
+// or, where it has been found for every particle before,
+//
+//   Surface now(int i), before(int i) const    the same for lanes i … at the end and the start of a substep
+//
 // Positions x and velocities v are consistent, so that x - dt v is the position before the substep.
 //
 // Coulomb: a particle below the surface is lifted onto it along the normal n by `depth`, loses its
@@ -45,6 +49,27 @@ WEFT_INLINE Surface around(Wide3 d, Wide radius) {
           select(apart, d * reciprocal, wide3(0, 1, 0))};
 }
 
+template <class Shape>
+concept Found = requires(const Shape& shape) {
+  shape.now(0);
+};
+
+// The surface for lanes i …, which are at p, and which were at p before the substep.
+template <class Shape>
+WEFT_INLINE Surface surface_now(const Shape& shape, Wide3 p, int i) {
+  if constexpr (Found<Shape>)
+    return shape.now(i);
+  else
+    return shape.at(p);
+}
+template <class Shape>
+WEFT_INLINE Surface surface_before(const Shape& shape, Wide3 p, int i) {
+  if constexpr (Found<Shape>)
+    return shape.before(i);
+  else
+    return shape.at(p);
+}
+
 WEFT_INLINE WideInt free_lanes(const CollideRow& r, int i) {
   return (load(r.w + i) > 0.0f) & lanes_below(r.columns - i);
 }
@@ -59,12 +84,10 @@ struct Push {
 constexpr float kSlides = 0.01f;       // of its path: what began no farther from the surface slides
 constexpr float kSharpestTurn = 0.5f;  // cosine of the angle between its normals, at least
 
-// Of those that are pushed `straight` at p, at the end of their paths, the ones that slide are pushed
-// as is said above.
-template <class Shape>
-WEFT_INLINE Push along_chords(const CollideRow& r, const Shape& shape, Wide3 p, Wide3 path,
+// Of those that are pushed `straight` at the end of their paths, the ones that slide are pushed as is said
+// above. `before`: the surface at the start of their paths.
+WEFT_INLINE Push along_chords(const CollideRow& r, const Surface& before, Wide3 path,
                               const Push& straight) {
-  const Surface before = shape.at(p - path);
   const Wide turn = dot(before.normal, straight.normal);
   const Wide left = max(before.distance - r.offset, Wide{});
   const WideInt slides =
@@ -144,7 +167,7 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const WideInt free = free_lanes(r, i);
     const Wide3 p = load3(r.x, i) - place;
-    const Surface s = shape.at(p);
+    const Surface s = surface_now(shape, p, i);
     const Wide left = s.distance - r.offset;
     const Wide3 relative = load3(r.v, i) - u;
     const Wide speed = dot(relative, relative);
@@ -153,7 +176,7 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
     const WideInt below = free & (left < 0.0f);
     WideInt touching = below;
     Push push{-left, s.normal, s.normal};
-    if constexpr (!Shape::kFlat) {
+    if constexpr (!Shape::kFlat && !Found<Shape>) {
       // Only a particle that moves away from the surface nearest to it can have come through, and
       // only on a path that is long against the shape.
       const Wide path = speed * (r.dt * r.dt);
@@ -170,8 +193,9 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
     if constexpr (kCourse) {
       course_correct(r, i, touching, load3(r.x, i) + push.normal * push.depth);
     } else {
+      const Wide3 path = relative * wide(r.dt);
       if (!Shape::kFlat && r.resolved)
-        push = along_chords(r, shape, p, relative * wide(r.dt), push);
+        push = along_chords(r, surface_before(shape, p - path, i), path, push);
       rub(r, i, touching, push);
     }
   }
@@ -187,7 +211,7 @@ WEFT_INLINE RowReach damp_sliding_row(const CollideRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const WideInt free = free_lanes(r, i);
     const Wide3 x = load3(r.x, i), v = load3(r.v, i);
-    const Surface s = shape.at(x - place);
+    const Surface s = surface_now(shape, x - place, i);
     const Wide left = s.distance - (r.offset + r.bias);
     const Wide3 relative = v - u;
     clearance = min(clearance, select(free, left, wide(kFar)));

@@ -219,14 +219,24 @@ struct TangentRow : FarRows {
   bool sideways;
 };
 
+// How a surface lies to the particles of a row, where they are and where they were before the substep, seen
+// from the collider: found before the kernels run (contact/body).
+struct FoundSurface {
+  const float* distance;  // m
+  ConstRow3 normal;
+  const float* distance_before;
+  ConstRow3 normal_before;
+};
+
 // Constants of a collider's shape, about its place (colliders/).
 struct ShapeConstants {
-  float radius = 0;           // sphere, capsule; the box's rounding [m]
-  float thin = 0;             // half of the least thickness; infinite for the plane [m]
-  float axis[3] = {0, 1, 0};  // plane: unit normal; capsule: from a to b [m]
-  float inverse_square = 0;   // capsule: 1/|axis|² [1/m²]
-  float half[3] = {};         // box: half-sizes less the rounding [m]
-  float turn[9] = {};         // box: its axes as rows
+  const FoundSurface* found = nullptr;  // of a mesh
+  float radius = 0;                     // sphere, capsule; the box's rounding [m]
+  float thin = 0;                       // half of the least thickness; infinite for the plane [m]
+  float axis[3] = {0, 1, 0};            // plane: unit normal; capsule: from a to b [m]
+  float inverse_square = 0;             // capsule: 1/|axis|² [1/m²]
+  float half[3] = {};                   // box: half-sizes less the rounding [m]
+  float turn[9] = {};                   // box: its axes as rows
 };
 
 // One collider and one row: particles below the surface are put onto it, with friction.
@@ -268,7 +278,7 @@ inline constexpr int kShapes = std::variant_size_v<Shape>, kFrictionModels = 2;
 // A collider's kernels: its own file in contact/colliders defines them by WEFT_COLLIDER (collide.h).
 struct ColliderKernels {
   RowReach (*collide[kFrictionModels])(const CollideRow&);
-  RowReach (*below_faces)(const FacesRow&);
+  RowReach (*below_faces)(const FacesRow&);     // null of a mesh
   RowReach (*damp_sliding)(const CollideRow&);  // clearance from the layer of the bias
 };
 

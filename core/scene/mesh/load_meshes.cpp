@@ -101,18 +101,20 @@ double mean_edge(const MeshSource& mesh) {
 
 void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& faults,
                  std::vector<std::string>& notes) {
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    MeshSource& mesh = scene.cloths[c].mesh;
-    if (mesh.file.empty() || mesh.shape) continue;
-    const std::string place = "/cloths/" + std::to_string(c) + "/mesh";
+  for_each_mesh(scene, [&](MeshSource& mesh, const std::string& place) {
+    if (mesh.file.empty() || mesh.shape) return;
     MeshFile file = read_mesh((std::filesystem::path(folder) / mesh.file).string());
     for (Fault& fault : file.faults)
       faults.push_back({place + "/file", fault.place + ": " + fault.what, fault.allowed});
     notes.insert(notes.end(), file.notes.begin(), file.notes.end());
-    if (!file.faults.empty()) continue;
+    if (!file.faults.empty()) return;
     mesh.shape = std::make_shared<const TriangleMesh>(std::move(file.mesh));
     note_size(mesh, place, notes);
-  }
+  });
+  for (Collider& collider : scene.colliders)
+    if (auto* body = std::get_if<MeshBody>(&collider.shape);
+        body && body->shape && !body->surface && !text::fault_of(*body, ""))
+      body->surface = surface_of(*body);
 }
 
 }  // namespace weft

@@ -1,0 +1,103 @@
+#include "physics/contact/body/body_triangle.h"
+
+#include "physics/contact/moving_collider.h"
+
+namespace weft::physics {
+namespace {
+
+using Feature = BodySurface::Feature;
+
+constexpr double kHardly = 0.1;  // of an edge; so deep is no contact that has just begun
+constexpr double kReach = 0.25;  // the same: what is deeper is left to the particles
+
+// A point of a triangle, and the point of a feature that is nearest to it.
+struct Pair {
+  Weights weights{};
+  Vec3 on{};
+  bool inner = false;  // not a corner of the triangle, which is a particle
+};
+
+Pair nearest_to_corner(const Corners& c, const Vec3& corner) {
+  const Weights w = nearest_on(c.x, corner);
+  return {w, corner, w[0] < 1 && w[1] < 1 && w[2] < 1};
+}
+
+// Of the side from corner k on and the segment p … q, where both are between their ends (Ericson, Real-Time
+// Collision Detection, 5.1.9).
+Pair nearest_to_edge(const Corners& c, std::size_t k, const Vec3& p, const Vec3& q) {
+  const std::size_t next = (k + 1) % 3;
+  const Vec3 d = minus(c.x[next], c.x[k]), e = minus(q, p), r = minus(c.x[k], p);
+  const double dd = dot(d, d), de = dot(d, e), ee = dot(e, e), dr = dot(d, r), er = dot(e, r);
+  const double denominator = dd * ee - de * de;
+  Pair pair;
+  if (!(denominator > 1e-9 * dd * ee)) return pair;
+  const double s = (de * er - dr * ee) / denominator, t = (dd * er - de * dr) / denominator;
+  pair.inner = s > 0 && s < 1 && t >= 0 && t <= 1;
+  pair.weights[k] = 1 - s;
+  pair.weights[next] = s;
+  pair.on = plus(p, times(e, t));
+  return pair;
+}
+
+class Search {
+ public:
+  Search(const BodySurface& surface, const Corners& c, double offset, double edge)
+      : surface_(surface), c_(c), edge_(std::max(edge, longest_side(c.x))) {
+    found_.nearest.distance = offset;
+  }
+
+  Deepest run() {
+    AlignedBox box;
+    double way = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.add(c_.x[k]);
+      way = std::max(way, dot(c_.path[k], c_.path[k]));
+    }
+    reach_ = std::max(found_.nearest.distance, kReach * edge_) + std::sqrt(way);
+    surface_.features(box.grown(reach_), kSmallFeature * edge_, [&](const Feature& f) { look(f); });
+    return found_;
+  }
+
+ private:
+  void look(const Feature& f) {
+    const Vec3 &p = surface_.vertices()[std::size_t(f.a)],
+               &q = surface_.vertices()[std::size_t(f.b)];
+    if (f.a == f.b) return look(f, nearest_to_corner(c_, p));
+    for (std::size_t k = 0; k < 3; ++k) look(f, nearest_to_edge(c_, k, p, q));
+  }
+
+  void look(const Feature& f, const Pair& pair) {
+    if (!pair.inner) return;
+    const Vec3 here = c_.at(pair.weights), out = minus(pair.on, here);
+    const double square = dot(out, out), through = dot(out, f.normal);
+    if (square > reach_ * reach_) return;
+    const bool pierces = surface_.closed() && through > 0;
+    const double most = std::max(found_.nearest.distance, 0.0);
+    if (surface_.closed() && !pierces && square > most * most) return;
+    const Vec3 before = minus(here, Corners{c_.path, {}}.at(pair.weights));
+    int hint = f.triangle;
+    const auto nearest = [&](const Vec3& at, bool) {
+      const BodySurface::Point point = surface_.nearest(at, hint);
+      hint = point.triangle;
+      return point;
+    };
+    const BodySurface::Point point = surface_.meet(before, here, nearest).now;
+    Nearest deep{point.distance, point.normal};
+    if (pierces && point.distance < 0 && dot(minus(pair.on, before), f.normal) < kHardly * edge_)
+      deep = {std::min(-through, point.distance), f.normal};
+    if (deep.distance < found_.nearest.distance) found_ = {pair.weights, deep};
+  }
+
+  const BodySurface& surface_;
+  const Corners& c_;
+  double edge_, reach_ = 0;  // m
+  Deepest found_;
+};
+
+}  // namespace
+
+Deepest deepest_on(const MeshBody& body, const Corners& c, double offset, double edge, double) {
+  return Search(*body.surface, c, offset, edge).run();
+}
+
+}  // namespace weft::physics

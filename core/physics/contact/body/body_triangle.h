@@ -1,0 +1,17 @@
+// A triangle of cloth against the edges and corners of a body that is a mesh.
+#pragma once
+
+#include "physics/contact/body/body_surface.h"
+#include "physics/contact/triangle_shape.h"
+
+namespace weft::physics {
+
+// The point of a triangle deepest in the body, of those that are nearest to a corner or an edge of the body
+// that sticks out by less than the triangle is large: one that is round in comparison leaves the triangle
+// hardly deeper than its corners, which particles are. A point inside of the body that was outside before
+// the substep, or hardly in it, goes back over the edge or corner that has come through; others go the
+// nearest way out. `edge` [m]: the longest of a flat triangle; no point is deep: distance is `offset`.
+Deepest deepest_on(const MeshBody& body, const Corners& c, double offset, double edge,
+                   double tolerance = kExact);
+
+}  // namespace weft::physics

@@ -1,0 +1,92 @@
+// Collider mesh: a body of triangles (contact/body). What the kernels need of its surface has been found for
+// every particle of the row before they run (BodyProbe).
+#ifdef WEFT_LANES
+
+#include "physics/kernels/collide.h"
+
+namespace weft::WEFT_KERNELS {
+namespace {
+
+struct MeshSurface {
+  static constexpr bool kFlat = false;
+  explicit MeshSurface(const physics::ShapeConstants& c) : found(*c.found) {}
+  WEFT_INLINE Surface now(int i) const {
+    return {load(found.distance + i), load3(found.normal, i)};
+  }
+  WEFT_INLINE Surface before(int i) const {
+    return {load(found.distance_before + i), load3(found.normal_before, i)};
+  }
+  const physics::FoundSurface& found;
+};
+
+RowReach coulomb(const CollideRow& r) {
+  return collide_row<MeshSurface, false>(r);
+}
+RowReach course(const CollideRow& r) {
+  return collide_row<MeshSurface, true>(r);
+}
+RowReach damp_sliding(const CollideRow& r) {
+  return damp_sliding_row<MeshSurface>(r);
+}
+
+}  // namespace
+// Its triangles are found by the tree of its features.
+const physics::ColliderKernels kMeshBody = {{coulomb, course}, nullptr, damp_sliding};
+}  // namespace weft::WEFT_KERNELS
+
+#else
+
+#include <cmath>
+
+#include "physics/contact/body/body_surface.h"
+#include "physics/contact/colliders/shapes.h"
+
+namespace weft::physics {
+
+ShapeConstants constants_of(const MeshBody&) {
+  return {};
+}
+
+Vec3 place_of(const MeshBody& body) {
+  return body.translate;
+}
+
+void move(MeshBody& body, const Vec3& by) {
+  body.translate = plus(body.translate, by);
+}
+
+Nearest nearest_of(const MeshBody& body, const Vec3& p) {
+  const BodySurface::Point point = body.surface->nearest(p);
+  return {point.distance, point.normal};
+}
+
+double feature_of(const MeshBody& body) {
+  return body.surface->least_radius();
+}
+
+// Smooth but for edges that bend by more than kCrease: at each corner the normals about it that are near to
+// the triangle's own.
+ShapeMesh mesh_of(const MeshBody& body) {
+  constexpr double kCrease = 0.7;  // cosine
+  const BodySurface& surface = *body.surface;
+  ShapeMesh mesh;
+  for (std::size_t n = 0; n < surface.triangles().size(); ++n) {
+    const Vec3& own = surface.face_normal(int(n));
+    for (const int vertex : surface.triangles()[n]) {
+      Vec3 sum{};
+      for (const int other : surface.at_vertex(vertex)) {
+        const Vec3& normal = surface.face_normal(other);
+        if (dot(own, normal) > kCrease) sum = plus(sum, normal);
+      }
+      mesh.positions.push_back(surface.vertices()[std::size_t(vertex)]);
+      mesh.normals.push_back(times(sum, 1 / std::sqrt(dot(sum, sum))));
+    }
+    const auto first = std::uint32_t(3 * n);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+}  // namespace weft::physics
+
+#endif
