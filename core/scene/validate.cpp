@@ -14,6 +14,7 @@
 #include "scene/material.h"
 #include "scene/mesh/faces.h"
 #include "scene/mesh/refused.h"
+#include "scene/vectors.h"
 #include "weft/mesh.h"
 
 namespace weft {
@@ -26,14 +27,6 @@ constexpr double kMaxThickness = 4;   // spacings; a particle has some 50 neighb
 constexpr double kMinSine = 1e-3;     // between u and v
 constexpr double kMinOffset = 1e-4;   // m, off a mesh that is open
 constexpr double kMinReach = 0.01;  // spacings; a cutter that reaches less passes between particles
-
-double length(const Vec3& a) {
-  return std::hypot(a[0], a[1], a[2]);
-}
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 std::string at(int i, int j) {
   return "[" + std::to_string(i) + ", " + std::to_string(j) + "]";
@@ -365,11 +358,6 @@ class Together {
   Check& result_;
 };
 
-// What a line of particles on the border stands for, of what an inner one does.
-double border_share(int line, int lines) {
-  return line == 0 || line == lines - 1 ? 0.5 : 1;
-}
-
 }  // namespace
 
 void check_together(const Scene& scene, Check& result) {
@@ -392,41 +380,6 @@ std::vector<Fault> validate(const Scene& scene) {
       result.fault(place + "/file", "the mesh is not read", "load_meshes() reads it");
   });
   return std::move(result.faults);
-}
-
-int particle_count(const Cloth& cloth) {
-  if (!cloth.mesh.given()) return cloth.grid.nx * cloth.grid.ny;
-  return cloth.mesh.shape ? int(cloth.mesh.shape->vertices.size()) : 0;
-}
-
-double spacing_u(const Grid& grid) {
-  return text::length(grid.u) / (grid.nx - 1);
-}
-
-double spacing_v(const Grid& grid) {
-  return text::length(grid.v) / (grid.ny - 1);
-}
-
-double particle_mass(const Cloth& cloth, int i, int j) {
-  const Grid& grid = cloth.grid;
-  if (!cloth.masses.empty())
-    return cloth.masses[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.nx) +
-                        static_cast<std::size_t>(i)];
-  if (cloth.particle_mass > 0) return cloth.particle_mass;
-  const double mass = cloth.density * text::length(text::cross(grid.u, grid.v));
-  if (!lumps_by_area(cloth)) return mass / grid.nx / grid.ny;
-  return mass / ((grid.nx - 1.0) * (grid.ny - 1.0)) * text::border_share(i, grid.nx) *
-         text::border_share(j, grid.ny);
-}
-
-bool lumps_by_area(const Cloth& cloth) {
-  if (cloth.lumping != Lumping::automatic) return cloth.lumping == Lumping::area;
-  return cloth.masses.empty() && cloth.particle_mass == 0;
-}
-
-double width_share(const Cloth& cloth, int i, int j, int di, int dj) {
-  if ((di != 0 && dj != 0) || !lumps_by_area(cloth)) return 1;
-  return dj == 0 ? text::border_share(j, cloth.grid.ny) : text::border_share(i, cloth.grid.nx);
 }
 
 }  // namespace weft

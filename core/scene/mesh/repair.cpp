@@ -5,21 +5,12 @@
 #include <numeric>
 
 #include "scene/mesh/faces.h"
+#include "scene/vectors.h"
 
 namespace weft::text {
 namespace {
 
 constexpr double kFlat = 1e-6;  // of an edge; a triangle that is lower has no area
-
-Vec3 minus(const Vec3& a, const Vec3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 std::string times_words(int n, const char* one, const char* many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);

@@ -17,6 +17,17 @@ void SquarePairs::pad() {
     std::fill_n(of->data() + count, kPadding, 0);
 }
 
+void SquarePairs::add(const std::vector<SquarePairs>& pieces, std::size_t how_many) {
+  for (std::size_t k = 0; k < how_many; ++k) {
+    const SquarePairs& found = pieces[k];
+    reserve(count + found.count);
+    std::copy_n(found.owner.data(), found.count, owner.data() + count);
+    std::copy_n(found.neighbour.data(), found.count, neighbour.data() + count);
+    count += found.count;
+  }
+  pad();
+}
+
 std::size_t SquarePairs::bytes() const {
   return owner.capacity() * 2 * sizeof(std::int32_t);
 }

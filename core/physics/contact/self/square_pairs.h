@@ -15,6 +15,8 @@ struct SquarePairs {
   std::size_t count = 0;
   void reserve(std::size_t pairs);
   void pad();
+  // The pairs of so many pieces, piece after piece.
+  void add(const std::vector<SquarePairs>& pieces, std::size_t how_many);
   std::size_t bytes() const;
 };
 
