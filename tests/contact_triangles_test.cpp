@@ -44,19 +44,23 @@ TEST(ContactTriangles, FindsTheDeepestPointOfAnyTriangle) {
         const double truth = tests::least_on_triangle(c.x, [&](const Vec3& p) {
           return std::visit([&](const auto& s) { return tests::distance_from(s, p); }, shape);
         });
+        const auto compare = [&](const auto& s) {
+          // A round core is known to what deepest_on() promises, others end exactly.
+          const bool round = std::holds_alternative<Cylinder>(shape);
+          const double found = physics::deepest_on(s, c, offset, size).nearest.distance;
+          const double core = -physics::core_of(s, c.x[0]).radius;
+          if (truth > offset)
+            EXPECT_GE(found, offset - 1e-9);
+          else if (truth > core + 1e-6)
+            EXPECT_NEAR(found, truth, (round ? 1e-4 : 2e-5) * size)
+                << shape.index() << ", " << size << " m";
+          else  // cut: what it takes to get out is no less than that
+            EXPECT_LE(found, truth + 1e-9);
+        };
         std::visit(
             [&](const auto& s) {
-              // A round core is known to what deepest_on() promises, others end exactly.
-              const bool round = std::holds_alternative<Cylinder>(shape);
-              const double found = physics::deepest_on(s, c, offset, size).nearest.distance;
-              const double core = -physics::core_of(s, c.x[0]).radius;
-              if (truth > offset)
-                EXPECT_GE(found, offset - 1e-9);
-              else if (truth > core + 1e-6)
-                EXPECT_NEAR(found, truth, (round ? 1e-4 : 2e-5) * size)
-                    << shape.index() << ", " << size << " m";
-              else  // cut: what it takes to get out is no less than that
-                EXPECT_LE(found, truth + 1e-9);
+              // Bodies that are meshes are no shapes with a core (mesh_body_test.cpp).
+              if constexpr (!std::is_same_v<decltype(s), const MeshBody&>) compare(s);
             },
             shape);
       }
@@ -119,9 +123,8 @@ TEST(ContactTriangles, SheetDrawnToThreeTimesItsLengthStaysOut) {
             }
           }
           EXPECT_GT(strain, 1.5);
-          EXPECT_LT(worst, kRounding)
-              << shape.index() << ", method " << int(method) << ", " << points << " points, offset "
-              << offset << " m";
+          EXPECT_LT(worst, kRounding) << shape.index() << ", method " << int(method) << ", "
+                                      << points << " points, offset " << offset << " m";
           EXPECT_LT(simulation.report().penetration.collider_max, 1e-4);
         }
 }

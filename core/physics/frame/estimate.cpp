@@ -44,7 +44,7 @@ constexpr double kMembrane = 1.6, kSpringBend = 2, kSweepBend = 5;  // from here
 constexpr double kVertex = 9, kBentVertex = 18;                     // of a mesh
 constexpr double kEdge = 1.6, kStrandEdge = 5, kBentSweep = 25;     // and of its sweeps
 constexpr double kProjection = 1.2, kTethers = 1.5;
-constexpr double kStrainLimit = 1.2, kTearing = 0.6, kWind = 0.8;
+constexpr double kStrainLimit = 1.2, kHeldLimit = 12, kTearing = 0.6, kWind = 0.8;
 constexpr double kCollider = 0.5, kBox = 20;       // and collider; a box meets whole triangles
 constexpr double kParticles = 15, kSurface = 130;  // contact of a sheet that lies on itself
 }  // namespace cost
@@ -157,7 +157,9 @@ double constraint_cost(const Cloth& cloth, const Solver& solver) {
 
 double substep_cost(const Scene& scene, const Cloth& cloth, const Solver& solver) {
   double each = 0;
-  if (cloth.strain_limit > 0) each += cost::kStrainLimit;
+  if (cloth.strain_limit > 0)
+    each += cloth.strain_limit_order == StrainLimitOrder::strict ? cost::kHeldLimit
+                                                                 : cost::kStrainLimit;
   if (cloth.tear_strain > 0 || !cloth.cuts.empty()) each += cost::kTearing;
   if (scene.wind.drag > 0 || scene.wind.lift > 0) each += cost::kWind;
   for (const Collider& collider : scene.colliders)
