@@ -318,8 +318,9 @@ std::vector<std::string> MeshModel::notes() const {
   if (!is_explicit(method_) && material_.bend_damping > 0)
     notes.push_back("bending runs without its damping, which explicit methods alone have");
   const Bending& bending = parts_.cloth.bending;
+  const double rigidity = std::max({bending.warp, bending.weft, bending.twist});
   const double held = mesh_energy(triangles_, material_, start_);
-  if (held > kCurved * std::max({bending.warp, bending.weft, bending.twist}))
+  if (rigidity > 0 && held > kCurved * rigidity)
     notes.push_back("bending draws the mesh flat: curved as its file has it, it holds " +
                     number(held) + " J");
   return notes;
