@@ -1,4 +1,5 @@
 // Of the list of near squares, those within a range in an interval (near_squares.h).
+#include <Eigen/Core>
 #include <algorithm>
 #include <cassert>
 
@@ -12,18 +13,18 @@ constexpr std::size_t kAtOnce = 1024;  // pairs that are looked through in one g
 
 }  // namespace
 
-// The box about a square in an interval.
+// The box about a square in an interval. Whole records, four floats at once.
 void NearSquares::bound_square(std::size_t n, const Place* place, const Displacement* moved) {
-  SquareBox& box = boxes_[n];
+  using Record = Eigen::Array4f;
+  const std::int32_t* const corner = squares_[n].corner;
+  Record low = Record::Map(place[corner[0]].x), high = low;
   for (int c = 0; c < 4; ++c) {
-    const std::int32_t corner = squares_[n].corner[c];
-    for (int k = 0; k < 3; ++k) {
-      const float from = place[corner].x[k], to = from + moved[corner].u[k];
-      box.low[k] = std::min(c == 0 ? from : box.low[k], std::min(from, to));
-      box.high[k] = std::max(c == 0 ? from : box.high[k], std::max(from, to));
-    }
+    const Record from = Record::Map(place[corner[c]].x);
+    const Record to = from + Record::Map(moved[corner[c]].u);
+    low = low.min(from).min(to);
+    high = high.max(from).max(to);
   }
-  box.asked = 1;
+  boxes_[n] = {{low[0], low[1], low[2]}, 1, {high[0], high[1], high[2]}, 0};
 }
 
 // Of all squares; and how those of grids lie at the interval's start.
