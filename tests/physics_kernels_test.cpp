@@ -195,7 +195,7 @@ void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Featur
   compliance.fill(has.compliance);
   if (has.compliance > 0) r.compliance = compliance.data();
   if (has.multipliers) r.lambda = p.lambda.data();
-  r.limit = has.limit;
+  r.limit = has.limit ? physics::LimitSweep::once : physics::LimitSweep::none;
   if (has.limit) r.inverse_dt = 100;
   // Gauss–Seidel gathers what compliant constraints find.
   if (has.compliance > 0 && !jacobi) r.u = p.previous.row(0);
