@@ -184,11 +184,13 @@ TEST_F(MeshScene, NamesWhatIsWrong) {
             "/cloths/0/pins/0: the pin 5 is no vertex of the mesh (0 to 4)\n");
   EXPECT_EQ(told(R"({"mesh": {"file": "square.obj", "scale": 1e5}})"),
             "/cloths/0/mesh/scale: the mesh reaches 100000.000000 m away (up to 10000 m)\n");
-  EXPECT_EQ(told(R"({"mesh": {"file": "square.obj"}, "tear_strain": 0.5, "level": 2,
-                     "self_collision": {"mode": "surface"}})"),
-            "/cloths/0/level: a mesh has a level (0, with a mesh)\n"
-            "/cloths/0/tear_strain: a mesh is to tear (0, with a mesh)\n"
-            "/cloths/0/self_collision/mode: a mesh is to meet itself (off, with a mesh)\n");
+  EXPECT_EQ(
+      told(R"({"mesh": {"file": "square.obj"}, "tear_strain": 0.5, "level": 2,
+                     "self_collision": {"mode": "surface", "response": "course"}})"),
+      "/cloths/0/level: a mesh has a level (0, with a mesh)\n"
+      "/cloths/0/tear_strain: a mesh is to tear (0, with a mesh)\n"
+      "/cloths/0/self_collision/response: neighbours that push are those of a grid (stiff, with a "
+      "mesh)\n");
 }
 
 TEST_F(MeshScene, ExportsTheVerticesInTheFilesOrder) {

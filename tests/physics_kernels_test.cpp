@@ -229,7 +229,33 @@ void add_projections(std::vector<Case>& cases) {
 }
 
 // In the order of weft::Shape.
-constexpr int kPlane = 1, kBox = 3;
+constexpr int kPlane = 1, kBox = 3, kMesh = 5;
+
+// A ball's surface as it is found for a row: distances and normals where its particles are, and where they
+// come from.
+class FoundBall {
+ public:
+  FoundBall(const CollideRow& r, float radius) {
+    for (auto& list : lists_) list.assign(std::size_t(r.columns) + 16, 1);
+    for (int i = 0; i < r.columns; ++i)
+      for (int before = 0; before < 2; ++before) {
+        const float back = float(before) * r.dt;
+        const float way[3] = {r.x.x[i] - back * r.v.x[i] - r.cx, r.x.y[i] - back * r.v.y[i] - r.cy,
+                              r.x.z[i] - back * r.v.z[i] - r.cz};
+        const float length = std::sqrt(1e-6f + way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+        at(before, 0, i) = length - radius;
+        for (int k = 0; k < 3; ++k) at(before, 1 + k, i) = way[k] / length;
+      }
+  }
+  FoundSurface surface() { return {&at(0, 0, 0), normal(0), &at(1, 0, 0), normal(1)}; }
+
+ private:
+  float& at(int before, int part, int i) {
+    return lists_[std::size_t(4 * before + part)][std::size_t(i)];
+  }
+  ConstRow3 normal(int before) { return {&at(before, 1, 0), &at(before, 2, 0), &at(before, 3, 0)}; }
+  std::array<std::vector<float>, 8> lists_;
+};
 
 void add_contacts(std::vector<Case>& cases) {
   // Model kFrictionModels: the layer in which sliding is damped.
@@ -248,7 +274,10 @@ void add_contacts(std::vector<Case>& cases) {
       r.cy = p.x.at(1, 0, middle);
       r.cz = p.x.at(2, 0, middle);
       const float size = 1 + float(p.columns) / 4;
-      r.shape = {.radius = shape == kBox ? 0.1f : size,
+      FoundBall ball(r, size);
+      const FoundSurface found = ball.surface();
+      r.shape = {.found = shape == kMesh ? &found : nullptr,
+                 .radius = shape == kBox ? 0.1f : size,
                  .thin = shape == kPlane ? std::numeric_limits<float>::infinity() : size,
                  .axis = {0.36f, 0.8f, 0.48f},
                  .inverse_square = 1 / (0.36f * 0.36f + 0.8f * 0.8f + 0.48f * 0.48f),
