@@ -8,7 +8,8 @@
 // masses.)
 //
 // A strain limit that holds has forces f >= 0 for multipliers, which last from substep to substep. Sweep
-// `carry` pulls by f dt². Sweeps `hold` see to it that nothing longer than the length held, l, grows, and that
+// `carry` pulls by f dt²; what is drawn far beyond the limit, by pins that leave no room for it, has less of
+// its force left, or forces would grow without end. Sweeps `hold` see to it that nothing longer than the length held, l, grows, and that
 // what is beyond the limit at the substep's start, l₀ > L, loses a share β of that (Baumgarte 1972),
 //
 //   f <- max(0, f + ω (|e| - max(l, l₀ - β max(0, l₀ - L)))/((w_a + w_b) dt²))
@@ -62,18 +63,23 @@ WEFT_INLINE Wide3 limit_block(const ProjectRows& p, const ProjectedRow& near,
   const Wide3 e = position<false>(far, a) - position<false>(near, a);
   const Wide square = dot(e, e), inertia = wa + wb, dt2 = wide(p.dt * p.dt);
   float* const forces = p.lambda + std::ptrdiff_t(j) * p.stride + a;
-  const Wide force = load(forces);
+  Wide force = load(forces);
   active = active & (inertia > 0.0f) & (square > 0.0f);
   const WideInt longer = square > p.rest * p.rest, pulls = force > 0.0f;
   active = active & (R == Rule::carry ? pulls : R == Rule::hold ? pulls | longer : longer);
   if (!any(active)) return Wide3{};
   const Wide length = sqrt(square);
-  if constexpr (R == Rule::carry) return e * select(active, force * dt2 / length, Wide{});
+  if constexpr (R == Rule::carry) {
+    const Wide left = min(max(wide(1) - (length - wide(p.most)) * wide(p.fading), Wide{}), wide(1));
+    force = select(active, force * left, force);
+    store(forces, force);
+    return e * select(active, force * dt2 / length, Wide{});
+  }
   if constexpr (R == Rule::settle)
     return e * select(active, (length - p.rest) * kSettled / (inertia * length), Wide{});
   const Wide start =
       sqrt(squared_length(e - (velocity(p, far, a) - velocity(p, near, a)) * wide(p.dt)));
-  const Wide beyond = max(start - wide(p.most), Wide{});
+  const Wide beyond = min(max(start - wide(p.most), Wide{}), wide(p.taken_back_most));
   const Wide allowed = max(start - beyond * kTakenBack, wide(p.rest));
   const Wide asked = force + (length - allowed) * kHoldRelaxation / (inertia * dt2);
   const Wide held = select(active, select(asked > 0.0f, asked, Wide{}), force);

@@ -16,6 +16,8 @@ namespace weft::physics {
 namespace {
 
 constexpr int kColours = 2;
+// Forces of a limit last as far beyond it as twice the limit, or so much of the rest length.
+constexpr double kLastBeyond = 2, kLeastBeyond = 0.02;
 
 // The stencils of a sweep with one row offset dj, as their kernel takes them.
 class ProjectedStencils {
@@ -101,6 +103,9 @@ class ProjectedStencils {
     const bool holds = options_.limit_sweep == LimitSweep::hold;
     r.rest = float(stencil.rest * (1 + (holds ? options_.held : options_.limit)));
     r.most = float(stencil.rest * (1 + options_.limit));
+    const double lasts = stencil.rest * std::max(kLastBeyond * options_.limit, kLeastBeyond);
+    r.fading = float(1 / lasts);
+    r.taken_back_most = float(0.5 * lasts);
     r.weight = options_.compliant || options_.limit > 0
                    ? 1.0f
                    : float(1 / (2 * parts_.cloth.positional_k));
