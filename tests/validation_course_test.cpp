@@ -172,15 +172,18 @@ Held strains(const SceneFile& file, double seconds, int threads) {
   return held;
 }
 
-// In motion a sudden load may take a share more of the limit before the forces have met it.
-TEST(Course, ScenesHoldTheStrainLimit) {
+// In motion a sudden load may take a share more of the limit before the forces have met it. The course's own pass
+// rests at 12.4 % (pinned2), and is at 17.7 % on the way (pinned4).
+TEST(Course, AStrictLimitHoldsBetterThanOnePass) {
   const auto row = [](const std::string& scene, const std::string& ks, double seconds,
                       int threads) {
-    const Held held = strains(read_scene(scene, {{"/cloth/ks", ks}}), seconds, threads);
+    const Held held =
+        strains(read_scene(scene, {{"/cloth/ks", ks}, {"/cloths/0/strain_limit_order", "strict"}}),
+                seconds, threads);
     const std::string what = scene + ", ks " + ks;
-    expect({"strain limit of course scenes", what + ", greatest at any frame's end", 0, 0.105, "1"},
+    expect({"strict limit of course scenes", what + ", greatest at any frame's end", 0, 0.125, "1"},
            held.greatest);
-    expect({"strain limit of course scenes", what + ", at the end", 0, 0.1005, "1"}, held.at_end);
+    expect({"strict limit of course scenes", what + ", at the end", 0, 0.11, "1"}, held.at_end);
   };
   row("pinned2", "500", 2, 1);
   row("pinned2", "5000", 3, 2);
@@ -197,8 +200,9 @@ TEST(Course, AHeldLimitMovesAsManyPassesDo) {
     file.limited = true;
     file.limits_bending = false;
     file.limit_passes = 40;
-    const SceneFile read =
-        read_scene_text(course::text_of(file), {{"/cloths/0/self_collision/mode", "off"}});
+    const SceneFile read = read_scene_text(
+        course::text_of(file),
+        {{"/cloths/0/self_collision/mode", "off"}, {"/cloths/0/strain_limit_order", "strict"}});
     ASSERT_TRUE(read.faults.empty());
     Simulation simulation(read.scene, {.threads = 2});
     course::Solver truth(file);
