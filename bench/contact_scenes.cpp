@@ -57,6 +57,10 @@ Scene ppf_hang() {
   c.bending = 1e-4;
   c.pins = {{0, 0, {}}, {127, 0, {}}};
   s.cloths.push_back(c);
+  s.solver.method = weft::Method::compliant;  // what holds the limit at least cost
+  s.solver.sweep = weft::Sweep::line;
+  s.solver.tethers = true;
+  s.time.substeps = 64;
   s.gravity_keys = {{0, {0, -kGravity, 0}},
                     {1, {0, -kGravity, 0}},
                     {1.35, {0, kGravity, 0}},

@@ -94,7 +94,7 @@ TEST(Course, MeansWhatTheCourseSays) {
   EXPECT_DOUBLE_EQ(1 - dt * cloth.drag, 1 - 0.2 / 100);
   EXPECT_EQ(cloth.strain_limit, 0.1);
   EXPECT_EQ(cloth.self_collision.mode, weft::SelfCollisionMode::particles);
-  EXPECT_EQ(cloth.strain_limit_order, weft::StrainLimitOrder::course);
+  EXPECT_EQ(cloth.strain_limit_order, weft::StrainLimitOrder::strict);
   EXPECT_EQ(cloth.self_collision.response, weft::SelfCollisionResponse::stiff);
   EXPECT_DOUBLE_EQ(cloth.self_collision.thickness, 0.019);
   ASSERT_EQ(cloth.pins.size(), 2u);

@@ -95,7 +95,7 @@ Cloth cloth_of(const CourseCloth& from) {
                      from.enable_bending ? kBendingShare * from.ks : 0};
   cloth.drag = from.damping * (kFramesPerSecond * kSteps / 100.0);
   cloth.strain_limit = kStrainLimit;
-  cloth.strain_limit_order = StrainLimitOrder::course;
+  cloth.strain_limit_order = StrainLimitOrder::strict;
   cloth.self_collision.mode = SelfCollisionMode::particles;
   cloth.self_collision.thickness = 2 * from.thickness;
   cloth.pins = from.pinned;

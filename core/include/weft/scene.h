@@ -147,8 +147,7 @@ enum class LevelDiagonals { both, one };
 // In which order a strain limit shortens constraints: `colours`, structural and shear, those that share no
 // particle side by side; `course`, all of them, bend as well, one after the other: row by row, from every
 // particle to the left, above, above left, above right, two to the left, two above (seeds 001 and 004). Both
-// are one pass a substep and overshoot; `strict` holds the limit better, by forces that last from substep to
-// substep, where pins leave room for it (where they draw the cloth beyond it, these forces make motion),
+// are one pass a substep and overshoot; `strict` holds the limit, by forces that last from substep to substep,
 // on structural and shear constraints.
 enum class StrainLimitOrder { colours, course, strict };
 
@@ -180,7 +179,7 @@ struct Cloth {
   double drag = 0;            // 1/s; velocity is multiplied by 1 - dt*drag each substep
   Bending bending;            // energy of curvature
   double strain_limit = 0;    // 0.1 = structural and shear constraints never beyond 110 %; 0 = off
-  StrainLimitOrder strain_limit_order = StrainLimitOrder::colours;
+  StrainLimitOrder strain_limit_order = StrainLimitOrder::strict;
   double tear_strain = 0;  // 0.5 = a constraint beyond 150 % is cut; 0 = cannot tear
   Tears tears = Tears::split;
   SelfCollision self_collision;

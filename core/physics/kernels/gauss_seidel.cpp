@@ -8,14 +8,15 @@
 // masses.)
 //
 // A strain limit that holds has forces f >= 0 for multipliers, which last from substep to substep. Sweep
-// `carry` pulls by f dt²; what is drawn far beyond the limit, by pins that leave no room for it, has less of
-// its force left, or forces would grow without end. Sweeps `hold` see to it that nothing longer than the length held, l, grows, and that
-// what is beyond the limit at the substep's start, l₀ > L, loses a share β of that (Baumgarte 1972),
+// `carry` pulls by f dt². Sweeps `hold` see to it that nothing longer than the length held, l, grows, and that
+// what is beyond the limit L at the substep's start, l₀, becomes shorter by Δ (Baumgarte 1972),
 //
-//   f <- max(0, f + ω (|e| - max(l, l₀ - β max(0, l₀ - L)))/((w_a + w_b) dt²))
+//   f <- max(0, f + ω (|e| - max(l, l₀ - Δ))/((w_a + w_b) dt²)),   Δ = min(β max(0, l₀ - L), rate dt l)
 //
 // and `settle` takes back a share of what is too long all the same, in positions alone, so that it makes no
-// speed. (Sequential impulses with a warm start: Catto 2005; positions apart: Bridson et al. 2002.)
+// speed. (Sequential impulses with a warm start: Catto 2005; positions apart: Bridson et al. 2002.) No force
+// that lasts is stronger than F, or than what would bring the ends together within a substep: where pins leave
+// no room for the limit, forces would grow without end, and where substeps are long, sweeps cannot balance them.
 #include "physics/kernels/alike_rows.h"
 
 namespace weft::WEFT_KERNELS {
@@ -46,9 +47,12 @@ WEFT_INLINE Wide3 solve(const ProjectRows& p, Wide3 e, Wide wa, Wide wb, int j, 
 
 // Relaxation of the forces of a limit, and the share of what is too long that one sweep takes back. Forces
 // meet the change of a load sooner with more than 1; with 2 they would never come to rest. What is taken back
-// at once leaves neighbours slack, whose forces are then lost. Without any share taken back as speed, a sheet
-// that bodies push into stretches to many times its limit; with 0.1 to two times, with 0.3 it is held.
-constexpr float kHoldRelaxation = 1.5f, kSettled = 0.3f, kTakenBack = 0.3f;
+// at once leaves neighbours slack, whose forces are then lost.
+constexpr float kHoldRelaxation = 1.5f, kSettled = 0.3f;
+// Share of what is too long that is taken back as speed, and how fast at most [1/s]. Without it a sheet that
+// bodies push into stretches to many times its limit; with a share of 0.1 to four times, with 0.3 to two. Any
+// faster, and what pins draw apart is thrown about.
+constexpr float kTakenBack = 0.3f, kFastest = 5;
 
 // Of the ends that lie at lane i.
 WEFT_INLINE Wide3 velocity(const ProjectRows& p, const ProjectedRow& r, int i) {
@@ -70,8 +74,8 @@ WEFT_INLINE Wide3 limit_block(const ProjectRows& p, const ProjectedRow& near,
   if (!any(active)) return Wide3{};
   const Wide length = sqrt(square);
   if constexpr (R == Rule::carry) {
-    const Wide left = min(max(wide(1) - (length - wide(p.most)) * wide(p.fading), Wide{}), wide(1));
-    force = select(active, force * left, force);
+    const Wide most = min(wide(p.strongest), wide(p.rest) / (inertia * dt2));
+    force = select(active, min(force, most), force);
     store(forces, force);
     return e * select(active, force * dt2 / length, Wide{});
   }
@@ -79,8 +83,9 @@ WEFT_INLINE Wide3 limit_block(const ProjectRows& p, const ProjectedRow& near,
     return e * select(active, (length - p.rest) * kSettled / (inertia * length), Wide{});
   const Wide start =
       sqrt(squared_length(e - (velocity(p, far, a) - velocity(p, near, a)) * wide(p.dt)));
-  const Wide beyond = min(max(start - wide(p.most), Wide{}), wide(p.taken_back_most));
-  const Wide allowed = max(start - beyond * kTakenBack, wide(p.rest));
+  const Wide beyond = max(start - wide(p.most), Wide{});
+  const Wide back = min(beyond * kTakenBack, wide(kFastest * p.rest * p.dt));
+  const Wide allowed = max(start - back, wide(p.rest));
   const Wide asked = force + (length - allowed) * kHoldRelaxation / (inertia * dt2);
   const Wide held = select(active, select(asked > 0.0f, asked, Wide{}), force);
   store(forces, held);

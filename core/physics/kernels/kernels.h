@@ -146,8 +146,7 @@ struct ProjectRows {
   const std::int32_t* lanes;  // along rows: -1 in the lanes of a colour, 0 elsewhere; both colours
   float rest;                 // m; a strain limit's greatest length, or the one that forces hold,
   float most;                 // and then the greatest [m];
-  float fading;               // how fast forces fade beyond that [1/m],
-  float taken_back_most;      // and how much of what is too long a substep knows of, for speeds [m]
+  float strongest;            // a force that lasts to the next substep [N]
   float weight;               // of w_a + w_b (1/(2 positional_k), 1/Jacobi's relaxation)
   const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
   float* lambda;              // multipliers of row 0 [kg·m], strain limit: forces [N]; or null

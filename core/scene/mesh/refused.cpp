@@ -26,8 +26,8 @@ void check_keys(const Cloth& cloth, const std::string& place, Check& result) {
          "0.5, with a mesh");
   refuse(cloth.stiffness_gradient > 0, "/stiffness_gradient", "a mesh has a gradient",
          "0, with a mesh");
-  refuse(cloth.strain_limit_order != StrainLimitOrder::colours, "/strain_limit_order",
-         "the order is one of grids", "colours, with a mesh");
+  refuse(cloth.strain_limit_order == StrainLimitOrder::course, "/strain_limit_order",
+         "the order is one of grids", "strict or colours, with a mesh");
   refuse(!cloth.cuts.empty(), "/cuts", "a mesh is cut", "none, with a mesh");
   refuse(cloth.tear_strain > 0, "/tear_strain", "a mesh is to tear", "0, with a mesh");
   refuse(cloth.tears != Tears::split, "/tears", "a mesh does not tear", "split, with a mesh");

@@ -45,7 +45,8 @@ struct SweepOptions {
   Multipliers* multipliers = nullptr;
   Rows* corrections = nullptr;  // the compliant Gauss–Seidel sweep gathers what it finds there
   double limit = 0;             // > 0: a sweep of the strain limit,
-  double held = 0;              // what forces hold of it: as much or less
+  double held = 0;              // what forces hold of it: as much or less,
+  double strongest = 0;         // and the greatest that lasts to the next substep [N]
   LimitSweep limit_sweep = LimitSweep::once;  // of this kind; not `once`: with multipliers
 };
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages);

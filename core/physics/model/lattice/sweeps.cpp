@@ -11,13 +11,12 @@
 #include <numbers>
 
 #include "physics/model/lattice/plain_rows.h"
+#include "physics/model/path.h"
 
 namespace weft::physics {
 namespace {
 
 constexpr int kColours = 2;
-// Forces of a limit last as far beyond it as twice the limit, or so much of the rest length.
-constexpr double kLastBeyond = 2, kLeastBeyond = 0.02;
 
 // The stencils of a sweep with one row offset dj, as their kernel takes them.
 class ProjectedStencils {
@@ -103,9 +102,7 @@ class ProjectedStencils {
     const bool holds = options_.limit_sweep == LimitSweep::hold;
     r.rest = float(stencil.rest * (1 + (holds ? options_.held : options_.limit)));
     r.most = float(stencil.rest * (1 + options_.limit));
-    const double lasts = stencil.rest * std::max(kLastBeyond * options_.limit, kLeastBeyond);
-    r.fading = float(1 / lasts);
-    r.taken_back_most = float(0.5 * lasts);
+    r.strongest = float(options_.strongest);
     r.weight = options_.compliant || options_.limit > 0
                    ? 1.0f
                    : float(1 / (2 * parts_.cloth.positional_k));
@@ -332,14 +329,20 @@ void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options,
     }
 }
 
-// What the forces hold lies below the limit by the share that a sudden load may take until they have met it.
+// What the forces hold lies below the limit by the share that a sudden load may take until they have met it. One
+// constraint alone may have to bear the whole sheet; no force lasts that is much more than that.
 void append_held_limit(const LatticeParts& parts, Multipliers& forces, Stages& stages) {
-  constexpr double kHeld = 0.9;  // of the limit
+  constexpr double kHeld = 0.95;  // of the limit
   constexpr int kSweeps = 4;
+  constexpr double kWeights = 2, kGravity = 9.81;  // of the sheet; m/s², where there is less
+  double mass = 0;
+  for (int j = 0; j < parts.lattice.rows; ++j)
+    for (int i = 0; i < parts.lattice.columns; ++i) mass += particle_mass(parts.cloth, i, j);
   SweepOptions options;
   options.multipliers = &forces;
   options.limit = parts.cloth.strain_limit;
   options.held = kHeld * options.limit;
+  options.strongest = kWeights * mass * std::max(greatest_gravity(parts.scene), kGravity);
   const auto append = [&](LimitSweep sweep) {
     options.limit_sweep = sweep;
     append_gauss_seidel(parts, options, stages);
