@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "failure.h"
+#include "random_mesh.h"
 #include "random_scene.h"
 #include "weft/read_scene.h"
 
@@ -58,7 +59,10 @@ Entry entry_of(const std::string& answer, double seconds, const std::string& err
 }  // namespace
 
 std::string examined(const Case& c, Variants variants, const std::string& folder) {
-  const std::string scene = sixteen(text_hash(weft::write_scene_text(c.scene)));
+  std::string text = weft::write_scene_text(c.scene);
+  weft::for_each_mesh(
+      c.scene, [&](const auto& mesh, const std::string&) { text += weft::write_obj(*mesh.shape); });
+  const std::string scene = sixteen(text_hash(text));
   try {
     return scene + " " + sixteen(examine(c, variants, folder)) + " ok";
   } catch (const Failure& failure) {
@@ -162,8 +166,10 @@ void Campaign::count(std::uint64_t seed, const Entry& entry) {
 void Campaign::keep_failure(std::uint64_t seed, const Entry& entry) const {
   std::printf("seed %" PRIu64 ": %s\n", seed, entry.answer.c_str());
   std::fflush(stdout);
-  std::ofstream(settings_.folder + "/" + std::to_string(seed) + ".json")
-      << weft::write_scene_text(random_scene(seed));
+  const std::string name = settings_.folder + "/" + std::to_string(seed);
+  const weft::Scene scene = random_scene(seed);
+  std::ofstream(name + ".json") << weft::write_scene_text(scene);
+  write_meshes(scene, settings_.folder);
 }
 
 }  // namespace fuzz

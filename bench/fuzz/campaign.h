@@ -16,7 +16,7 @@ namespace fuzz {
 struct Settings {
   std::uint64_t first = 0, count = 100;
   double seconds = 0;  // after which none is started; 0: no end
-  double limit = 120;  // s, of one scene
+  double limit = 120;  // s of processor time, of one scene
   int jobs = 1;
   bool resume = false;
   Variants variants = Variants::all;

@@ -20,12 +20,15 @@ class Child {
   Child& operator=(const Child&) = delete;
 
   // The answer once the child has ended: what work() returned, "crash: signal 11", "exit: status 1", or
-  // "hang: …" when it took longer than `limit` seconds. Null while it runs.
+  // "hang: …" when it took more than `limit` seconds of processor time, or ten times as long. Null while it
+  // runs.
   std::optional<std::string> answer(double limit);
 
   double seconds() const;  // since the start
 
  private:
+  double processor_seconds() const;  // of all its threads
+
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   pid_t process_ = -1;
   int pipe_ = -1;

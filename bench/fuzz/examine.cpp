@@ -10,6 +10,7 @@
 #include "failure.h"
 #include "hostile.h"
 #include "judges.h"
+#include "random_mesh.h"
 #include "random_scene.h"
 #include "weft/read_scene.h"
 
@@ -66,10 +67,14 @@ void require_equal(const Trace& expected, const Trace& found) {
     throw Failure("difference: " + where);
 }
 
-// The scene as it comes back from its text.
-Scene read_back(const Scene& scene) {
+// The scene as it comes back from its text, and meshes from their files.
+Scene read_back(const Scene& scene, const std::string& folder) {
   const std::string text = write_scene_text(scene);
-  const SceneFile file = read_scene_text(text);
+  SceneFile file = read_scene_text(text);
+  std::filesystem::create_directories(folder);
+  write_meshes(scene, folder);
+  load_meshes(file.scene, folder, file.faults, file.notes);
+  std::filesystem::remove_all(folder);
   if (!file.faults.empty())
     throw Failure("scene text: " + file.faults[0].place + ": " + file.faults[0].what);
   if (!(file.scene == scene) || !difference(scene, file.scene).empty())
@@ -169,7 +174,9 @@ std::uint64_t examine(const Case& c, Variants variants, const std::string& folde
   const std::vector<Simd> all = available();
   Findings findings;
   Case read = c;
-  findings.look("scene text", [&] { read.scene = read_back(c.scene); });
+  findings.look("scene text", [&] {
+    read.scene = read_back(c.scene, folder + "/" + std::to_string(c.seed) + ".meshes");
+  });
   Trace trace;
   std::string found;
   if (variants == Variants::one) {

@@ -6,6 +6,7 @@
 
 #include "campaign.h"
 #include "minimise.h"
+#include "random_mesh.h"
 #include "random_scene.h"
 #include "weft/read_scene.h"
 
@@ -24,6 +25,7 @@ weft::Scene scene_of_file(const std::string& path) {
 void minimise(const Case& c, const Settings& settings) {
   std::filesystem::create_directories(settings.folder);
   const std::string path = settings.folder + "/" + std::to_string(c.seed) + ".min.json";
+  write_meshes(c.scene, settings.folder);
   const auto keep = [&](const Case& smaller) {
     std::ofstream(path) << weft::write_scene_text(smaller.scene);
   };
@@ -45,7 +47,7 @@ void add_options(CLI::App& app, Settings& s, Wanted& w) {
   app.add_option("--first", s.first, "seed of the first scene")->capture_default_str();
   app.add_option("--count", s.count, "scenes")->capture_default_str();
   app.add_option("--seconds", s.seconds, "starts no scene after so many seconds");
-  app.add_option("--limit", s.limit, "seconds that one scene may take")->capture_default_str();
+  app.add_option("--limit", s.limit, "seconds of processor time that one scene may take")->capture_default_str();
   app.add_option("--jobs", s.jobs, "scenes at once")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
@@ -55,7 +57,7 @@ void add_options(CLI::App& app, Settings& s, Wanted& w) {
       ->check(CLI::ExistingFile);
   app.add_option("--folder", s.folder, "where scenes that fail are written")->capture_default_str();
   app.add_flag("--one", w.one, "runs each scene once, in one of the ways that must not matter");
-  app.add_option("--show", w.show, "prints the scene of a seed");
+  app.add_option("--show", w.show, "prints the scene of a seed, and writes its meshes here");
   app.add_option("--here", w.here, "examines the scene of a seed in this process");
   app.add_option("--minimise", w.minimise,
                  "makes the scene of a seed smaller while it fails alike");
@@ -66,6 +68,7 @@ void add_options(CLI::App& app, Settings& s, Wanted& w) {
 
 int run(const CLI::App& app, const Settings& settings, const Wanted& w) {
   if (app.count("--show") > 0) {
+    write_meshes(random_scene(w.show), ".");
     std::fputs(weft::write_scene_text(random_scene(w.show)).c_str(), stdout);
     return 0;
   }

@@ -17,7 +17,12 @@ constexpr std::uint64_t kChoiceStream = 1'000'000, kHandStream = 2'000'000,
 // A particle of any cloth.
 void aim(Input& input, const Scene& scene, Draw& draw) {
   input.cloth = draw.between(0, int(scene.cloths.size()) - 1);
-  const Grid& g = scene.cloths[std::size_t(input.cloth)].grid;
+  const Cloth& cloth = scene.cloths[std::size_t(input.cloth)];
+  if (cloth.mesh.given()) {
+    input.particle = draw.between(0, particle_count(cloth) - 1);
+    return;
+  }
+  const Grid& g = cloth.grid;
   const int column = draw.between(0, g.nx - 1), row = draw.between(0, g.ny - 1);
   input.particle = particle_number(g, column, row);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "run.h"
 #include "weft/output.h"
 
 namespace fuzz {
@@ -11,9 +12,9 @@ using namespace weft;
 
 namespace {
 
-std::string at(const char* what, std::size_t cloth, int i, int j) {
-  return std::string(what) + " of cloth " + std::to_string(cloth) + " at [" + std::to_string(i) +
-         ", " + std::to_string(j) + "]";
+std::string at(const char* what, std::size_t cloth, std::size_t particle) {
+  return std::string(what) + " of cloth " + std::to_string(cloth) + ", particle " +
+         std::to_string(particle);
 }
 
 void require(bool holds, const char* kind, const std::string& text) {
@@ -21,16 +22,15 @@ void require(bool holds, const char* kind, const std::string& text) {
 }
 
 void check_values(const ClothView& c, std::size_t number) {
-  for (int j = 0; j < c.rows; ++j)
-    for (int i = 0; i < c.columns; ++i) {
-      const std::size_t p = std::size_t(j) * std::size_t(c.stride) + std::size_t(i);
-      const bool finite = std::isfinite(c.x[p]) && std::isfinite(c.y[p]) && std::isfinite(c.z[p]) &&
-                          std::isfinite(c.vx[p]) && std::isfinite(c.vy[p]) &&
-                          std::isfinite(c.vz[p]);
-      require(finite, "finite", at("not finite, particle", number, i, j));
-      require(c.inverse_mass[p] >= 0 && std::isfinite(c.inverse_mass[p]), "view",
-              at("inverse mass", number, i, j));
-    }
+  const std::vector<std::size_t> lanes = lanes_of(c);
+  for (std::size_t n = 0; n < lanes.size(); ++n) {
+    const std::size_t p = lanes[n];
+    const bool finite = std::isfinite(c.x[p]) && std::isfinite(c.y[p]) && std::isfinite(c.z[p]) &&
+                        std::isfinite(c.vx[p]) && std::isfinite(c.vy[p]) && std::isfinite(c.vz[p]);
+    require(finite, "finite", at("not finite", number, n));
+    require(c.inverse_mass[p] >= 0 && std::isfinite(c.inverse_mass[p]), "view",
+            at("inverse mass", number, n));
+  }
 }
 
 void check_spans(const ClothView& c) {
@@ -39,17 +39,18 @@ void check_spans(const ClothView& c) {
   for (const auto* s : {&c.x, &c.y, &c.z, &c.vx, &c.vy, &c.vz, &c.inverse_mass})
     require(s->size() >= floats - std::size_t(c.stride - c.columns), "view",
             "an array of " + std::to_string(s->size()) + " values");
+  std::vector<std::uint8_t> taken(floats, 0);
+  for (const std::size_t lane : lanes_of(c)) taken[lane] = 1;
   for (const auto& t : c.triangles)
     for (const std::uint32_t corner : t)
-      require(corner < floats && corner % std::uint32_t(c.stride) < std::uint32_t(c.columns),
-              "view", "a triangle's corner " + std::to_string(corner));
+      require(corner < floats && taken[corner] != 0, "view",
+              "a triangle's corner " + std::to_string(corner));
   require(c.tear_points.size() == c.tear_particles.size(), "view", "points of seams");
   for (const auto& t : c.tear_triangles)
     for (const std::uint32_t corner : t)
       require(corner < c.tear_points.size(), "view", "a seam's corner " + std::to_string(corner));
   for (const std::uint32_t p : c.tear_particles)
-    require(p < floats && p % std::uint32_t(c.stride) < std::uint32_t(c.columns), "view",
-            "a seam's particle " + std::to_string(p));
+    require(p < floats && taken[p] != 0, "view", "a seam's particle " + std::to_string(p));
 }
 
 void check_view(const Simulation& simulation) {
@@ -57,8 +58,12 @@ void check_view(const Simulation& simulation) {
   const Scene& scene = simulation.scene();
   require(view.cloths.size() == scene.cloths.size(), "view", "cloths");
   for (std::size_t n = 0; n < view.cloths.size(); ++n) {
-    const Grid& g = scene.cloths[n].grid;
-    require(view.cloths[n].columns == g.nx && view.cloths[n].rows == g.ny, "view", "points");
+    const Cloth& cloth = scene.cloths[n];
+    const ClothView& shown = view.cloths[n];
+    if (cloth.mesh.given())
+      require(int(shown.lanes.size()) == particle_count(cloth), "view", "vertices");
+    else
+      require(shown.columns == cloth.grid.nx && shown.rows == cloth.grid.ny, "view", "points");
     check_spans(view.cloths[n]);
     check_values(view.cloths[n], n);
   }
@@ -66,7 +71,7 @@ void check_view(const Simulation& simulation) {
 
 void check_report(const Simulation& simulation, const Report& r) {
   std::int64_t particles = 0;
-  for (const Cloth& c : simulation.scene().cloths) particles += std::int64_t{c.grid.nx} * c.grid.ny;
+  for (const Cloth& c : simulation.scene().cloths) particles += particle_count(c);
   require(r.particles == particles, "report", "particles");
   require(r.asleep >= 0 && r.asleep <= particles, "report", "asleep");
   require(r.torn >= 0 && r.penetration.self_pairs >= 0 && r.penetration.crossings >= 0, "report",
@@ -108,8 +113,10 @@ Judges::Judges(const Simulation& simulation) {
   const View view = simulation.view();
   for (std::size_t n = 0; n < view.cloths.size(); ++n) {
     const ClothView& c = view.cloths[n];
-    for (const Pin& pin : simulation.scene().cloths[n].pins) {
-      const std::size_t p = std::size_t(pin.j) * std::size_t(c.stride) + std::size_t(pin.i);
+    const Cloth& cloth = simulation.scene().cloths[n];
+    const std::vector<std::size_t> lanes = lanes_of(c);
+    for (const Pin& pin : cloth.pins) {
+      const std::size_t p = lanes[std::size_t(particle_number(cloth, pin))];
       if (!pin.moves()) held_.push_back({n, p, {c.x[p], c.y[p], c.z[p]}});
     }
   }
@@ -131,8 +138,7 @@ void Judges::frame(const Simulation& simulation, bool touched) {
   for (const Held& h : held_) {
     const ClothView& c = view.cloths[h.cloth];
     require(h.place == std::array{c.x[h.at], c.y[h.at], c.z[h.at]}, "pins",
-            at("moved: a pin", h.cloth, int(h.at % std::size_t(c.stride)),
-               int(h.at / std::size_t(c.stride))));
+            at("moved: a pin in lane", h.cloth, h.at));
   }
 }
 

@@ -6,6 +6,9 @@
 
 #include "failure.h"
 #include "physics/model/path.h"
+#include "random_parts.h"
+#include "run.h"
+#include "weft/mesh.h"
 #include "weft/shape.h"
 
 namespace fuzz {
@@ -32,14 +35,10 @@ void for_each_cloth(const Simulation& simulation, Visit&& visit) {
   const std::vector<double> x = simulation.positions(), v = simulation.velocities();
   std::size_t first = 0;
   for (const Cloth& c : simulation.scene().cloths) {
-    const std::size_t count = std::size_t(c.grid.nx) * std::size_t(c.grid.ny);
+    const auto count = std::size_t(particle_count(c));
     visit(c, as_points(x, first, count), as_points(v, first, count));
     first += count;
   }
-}
-
-double length(const Vec3& a) {
-  return std::hypot(a[0], a[1], a[2]);
 }
 
 std::string number(double value) {
@@ -69,12 +68,31 @@ bool driven(const Scene& scene) {
          });
 }
 
+bool has_meshes(const Scene& scene) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(),
+                     [](const Cloth& c) { return c.mesh.given(); });
+}
+
+// No triangle's side is longer [m].
+double longest_side(const Cloth& cloth) {
+  if (!cloth.mesh.given())
+    return spacing_u(cloth.grid) + spacing_v(cloth.grid) + 2 * cloth.grid.jitter;
+  const std::vector<Vec3> x = placed_vertices(cloth.mesh);
+  double longest = 0;
+  for (const auto& t : cloth.mesh.shape->triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = x[std::size_t(t[k])], &b = x[std::size_t(t[(k + 1) % 3])];
+      longest = std::max(longest, length({a[0] - b[0], a[1] - b[1], a[2] - b[2]}));
+    }
+  return longest;
+}
+
 // Particles and the triangles between them keep the offset from every collider, now. A triangle lies
 // within a diagonal of its corners; above a plane it is where they are.
 bool outside_of_all(const Simulation& simulation) {
   bool outside = true;
   for_each_cloth(simulation, [&](const Cloth& cloth, const auto& x, const auto&) {
-    const double diagonal = spacing_u(cloth.grid) + spacing_v(cloth.grid) + 2 * cloth.grid.jitter;
+    const double diagonal = longest_side(cloth);
     for (const Collider& c : simulation.scene().colliders) {
       const double least = c.offset + (std::holds_alternative<Plane>(c.shape) ? 0 : diagonal);
       for (const Vec3& p : x) outside &= signed_distance(c, simulation.time(), p) >= least;
@@ -108,7 +126,9 @@ bool pinned_anywhere(const Scene& scene) {
 Laws::Laws(const Simulation& simulation) : springs_(bench::runs_springs(simulation)) {
   const Scene& scene = simulation.scene();
   const bool outside = outside_of_all(simulation);
-  if (!driven(scene) && !has_wind(scene) && !collides_with_itself(scene) && outside)
+  // What a mesh has of energy is not counted.
+  if (!driven(scene) && !has_wind(scene) && !collides_with_itself(scene) && outside &&
+      !has_meshes(scene))
     open_ledgers(simulation);
   momentum_kept_ = left_alone(scene) && !collides_with_itself(scene) && scene.solver.sleep == 0;
   momentum_ = simulation.report(false).momentum;
@@ -150,15 +170,18 @@ void Laws::check_energy(const Simulation& simulation) {
 void Laws::check_momentum(const Simulation& simulation) {
   if (!momentum_kept_) return;
   double flow = 0, mass = 0, size = 0, particles = 0;
-  for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto& v) {
-    const View view = simulation.view();
+  const View view = simulation.view();
+  auto shown = view.cloths.begin();
+  for_each_cloth(simulation, [&](const Cloth&, const auto& x, const auto& v) {
+    const std::vector<std::size_t> lanes = lanes_of(*shown);
     for (std::size_t p = 0; p < x.size(); ++p) {
-      const double m = particle_mass(c, int(p) % c.grid.nx, int(p) / c.grid.nx);
+      const double m = 1 / double(shown->inverse_mass[lanes[p]]);  // none is pinned
       flow += m * length(v[p]);
       mass += m;
       for (std::size_t k = 0; k < 3; ++k) size = std::max(size, std::abs(x[p][k] - view.origin[k]));
     }
     particles += double(x.size());
+    ++shown;
   });
   flow_ = std::max(flow_, flow);
   // Projecting methods take velocities from positions that round a few times a substep, at random.
@@ -175,7 +198,7 @@ void Laws::check_planes(const Simulation& simulation) const {
   const Collider& plane = simulation.scene().colliders[0];
   const View view = simulation.view();
   for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto&) {
-    const double spacing = std::min(spacing_u(c.grid), spacing_v(c.grid));
+    const double spacing = extent(c).spacing;
     for (const Vec3& p : x) {
       double size = 1;
       for (std::size_t k = 0; k < 3; ++k) size = std::max(size, std::abs(p[k] - view.origin[k]));
@@ -193,7 +216,7 @@ void Laws::check_paths(const Simulation& simulation) const {
   for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto&) {
     for (const Pin& pin : c.pins) {
       if (pin.keys.empty() || pin.follow >= 0 || !pin.rotate.keys.empty()) continue;
-      const Vec3 here = x[std::size_t(pin.j) * std::size_t(c.grid.nx) + std::size_t(pin.i)];
+      const Vec3 here = x[std::size_t(particle_number(c, pin))];
       const Vec3 there = physics::position_at(pin.keys, simulation.time());
       const double off = length({here[0] - there[0], here[1] - there[1], here[2] - there[2]});
       const double size =

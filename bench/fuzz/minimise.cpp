@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "random_mesh.h"
 #include "weft/read_scene.h"
 
 namespace fuzz {
@@ -76,8 +77,10 @@ class Minimiser {
   }
 
   bool keep(const Json& document) {
-    const weft::SceneFile file = weft::read_scene_text(document.dump());
+    weft::SceneFile file = weft::read_scene_text(document.dump());
     if (!file.faults.empty() || file.scene == best_.scene) return false;
+    adopt_meshes(file.scene, best_.scene);
+    if (!weft::validate(file.scene).empty()) return false;
     Case c = best_;
     c.scene = file.scene;
     return keep(c);

@@ -9,32 +9,27 @@ using namespace weft;
 
 namespace {
 
-constexpr double kFarthest = 10000;  // m, of any coordinate of a scene
+double dot(const Vec3& a, const Vec3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+}  // namespace
 
 double length(const Vec3& a) {
   return std::hypot(a[0], a[1], a[2]);
 }
 
-Vec3 plus(const Vec3& a, const Vec3& b, double times = 1) {
+Vec3 plus(const Vec3& a, const Vec3& b, double times) {
   Vec3 sum;
   for (std::size_t k = 0; k < 3; ++k)
     sum[k] = std::clamp(a[k] + times * b[k], -kFarthest, kFarthest);
   return sum;
 }
 
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+Extent extent_of(const Grid& g) {
+  return {g.origin, plus(plus(g.origin, g.u, 0.5), g.v, 0.5), std::max(length(g.u), length(g.v)),
+          std::min(spacing_u(g), spacing_v(g))};
 }
-
-Vec3 middle(const Grid& g) {
-  return plus(plus(g.origin, g.u, 0.5), g.v, 0.5);
-}
-
-double size_of(const Grid& g) {
-  return std::max(length(g.u), length(g.v));
-}
-
-}  // namespace
 
 Parts::Parts(Draw& draw) : draw_(draw) {
   richness_ = draw_.of({0.15, 0.5, 1.0, 1.0, 1.6});
@@ -111,7 +106,7 @@ Grid Parts::grid() {
   Grid g;
   points(g);
   sides(g);
-  g.origin = plus(place_, draw_.chance(0.5) ? Vec3{} : draw_.vector(size_of(g)));
+  g.origin = plus(place_, draw_.chance(0.5) ? Vec3{} : draw_.vector(extent_of(g).size));
   if (some(0.25))
     g.jitter = std::min(1.0, spacing_ * (draw_.chance(0.9) ? draw_.decades(1e-4, 1) : 20));
   return g;
@@ -181,7 +176,7 @@ std::vector<Key> Parts::path(const Vec3& start, double size, double frame) {
   return keys;
 }
 
-std::vector<Pin> Parts::pins(const Grid& g, const Time& time) {
+std::vector<Pin> Parts::grid_pins(const Grid& g, const Time& time) {
   std::vector<Pin> pins;
   const auto pin = [&](int i, int j) {
     if (std::any_of(pins.begin(), pins.end(), [&](const Pin& p) { return p.i == i && p.j == j; }))
@@ -189,7 +184,7 @@ std::vector<Pin> Parts::pins(const Grid& g, const Time& time) {
     pins.push_back({i, j, {}});
     const Vec3 here =
         plus(plus(g.origin, g.u, double(i) / (g.nx - 1)), g.v, double(j) / (g.ny - 1));
-    if (some(0.25)) pins.back().keys = path(here, size_of(g), time.frame);
+    if (some(0.25)) pins.back().keys = path(here, extent_of(g).size, time.frame);
   };
   const double kind = draw_.uniform(0, 1);
   if (kind < 0.3) return pins;
@@ -208,10 +203,14 @@ std::vector<Pin> Parts::pins(const Grid& g, const Time& time) {
   return pins;
 }
 
+std::vector<Pin> Parts::pins(const Cloth& c, const Time& time) {
+  return c.mesh.given() ? vertex_pins(c, time) : grid_pins(c.grid, time);
+}
+
 Rotation Parts::rotation(const Grid& g, double frame) {
   Rotation r;
   r.axis = draw_.vector(draw_.decades(1e-3, 1e3));
-  r.about = plus(g.origin, draw_.vector(size_of(g)));
+  r.about = plus(g.origin, draw_.vector(extent_of(g).size));
   double time = draw_.chance(0.6) ? 0 : frame * draw_.decades(0.1, 30);
   double degrees = draw_.chance(0.5) ? 0 : draw_.uniform(-3600, 3600);
   for (int n = draw_.between(1, 4); n > 0; --n) {
@@ -268,7 +267,7 @@ Cloth Parts::cloth(const Solver& solver, const Time& time) {
   limits(c);
   c.cuts = cuts(c.grid);
   c.self_collision = self_collision(c.grid);
-  c.pins = pins(c.grid, time);
+  c.pins = grid_pins(c.grid, time);
   return c;
 }
 
@@ -340,10 +339,10 @@ Friction Parts::friction() {
 }
 
 Collider Parts::collider(const Cloth& cloth, const Time& time) {
-  const Grid& g = cloth.grid;
-  const double size = size_of(g);
-  Vec3 at = plus(middle(g), draw_.vector(size * draw_.decades(0.02, 0.7)));
-  if (draw_.chance(0.5)) at[1] = std::max(-kFarthest, g.origin[1] - size * draw_.uniform(0, 0.6));
+  const Extent of = extent(cloth);
+  const double size = of.size;
+  Vec3 at = plus(of.middle, draw_.vector(size * draw_.decades(0.02, 0.7)));
+  if (draw_.chance(0.5)) at[1] = std::max(-kFarthest, of.corner[1] - size * draw_.uniform(0, 0.6));
   Collider c;
   c.shape = shape(at, size);
   c.friction = friction();

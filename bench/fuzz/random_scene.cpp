@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "random_mesh.h"
 #include "random_parts.h"
+#include "weft/estimate.h"
+#include "weft/simulation.h"
 
 namespace fuzz {
 
@@ -13,10 +16,26 @@ namespace {
 
 constexpr double kFrameWork = 1e6, kSubstepWork = 3e5;  // of one, at most
 
+bool has_meshes(const Scene& scene) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(),
+                     [](const Cloth& c) { return c.mesh.given(); });
+}
+
+// Whether a simulation takes it: membranes of meshes may need substeps that are too short.
+bool can_run(const Scene& scene) {
+  if (!validate(scene).empty()) return false;
+  try {
+    return !has_meshes(scene) || estimate(scene).substeps > 0;
+  } catch (const SceneError&) {
+    return false;
+  }
+}
+
 // Substeps a frame as springs need them, about: the limit is 2/ω with ω² up to four times all springs
 // of a particle over its mass.
 double estimated_substeps(const Scene& scene) {
   if (scene.time.substeps > 0) return scene.time.substeps;
+  if (has_meshes(scene) && can_run(scene)) return estimate(scene).substeps;
   double most = scene.time.frame * 960;
   for (const Cloth& c : scene.cloths) {
     double lightest = particle_mass(c, 0, 0);
@@ -56,6 +75,7 @@ Scene draw_scene(Draw draw) {
   for (int n = draw.chance(0.5) ? 0 : draw.between(1, 3); n > 0; --n)
     scene.colliders.push_back(parts.collider(scene.cloths[0], scene.time));
   parts.add_motion(scene);
+  if (draw.chance(0.3)) parts.add_meshes(scene);
   shorten_frames(scene);
   return scene;
 }
@@ -69,7 +89,7 @@ double work_of_substep(const Scene& scene) {
   double contact = 0;
   for (const Cloth& c : scene.cloths) {
     families = std::max(families, 1.0 + c.level);
-    const double spacing = std::min(spacing_u(c.grid), spacing_v(c.grid));
+    const double spacing = extent(c).spacing;
     const double crowd = std::max(1.0, std::pow(c.self_collision.thickness / spacing, 2));
     if (c.self_collision.mode == SelfCollisionMode::particles)
       contact = std::max(contact, 8 * crowd);
@@ -78,16 +98,21 @@ double work_of_substep(const Scene& scene) {
   }
   const double sweep = projects ? solver.iterations * (solver.sweep == Sweep::line ? 8 : 2) : 1;
   double bodies = 0;
-  for (const Collider& c : scene.colliders) bodies += c.cuts ? 20 : 1;
+  for (const Collider& c : scene.colliders)
+    bodies += c.cuts || std::holds_alternative<MeshBody>(c.shape) ? 20 : 1;
   double particles = 100;  // what a substep costs besides
-  for (const Cloth& c : scene.cloths) particles += double(c.grid.nx) * c.grid.ny;
+  for (const Cloth& c : scene.cloths) particles += particle_count(c);
   return particles * (families * sweep + contact + solver.collision_iterations * bodies);
 }
 
 Scene random_scene(std::uint64_t seed) {
   for (std::uint64_t stream = 0;; ++stream) {
     Scene scene = draw_scene(Draw(seed, stream));
-    if (validate(scene).empty() && work_of_substep(scene) < kSubstepWork) return scene;
+    if (!can_run(scene) || work_of_substep(scene) >= kSubstepWork) continue;
+    for_each_mesh(scene, [&](auto& mesh, const std::string&) {
+      mesh.file = std::to_string(seed) + "-" + mesh.file;
+    });
+    return scene;
   }
 }
 
@@ -106,7 +131,7 @@ Scene changed_scene(const Scene& scene, Draw& draw) {
       cloth.stiffness = {parts.stiffness(), parts.stiffness(), parts.stiffness()};
       break;
     case 3:
-      cloth.pins = parts.pins(cloth.grid, next.time);
+      cloth.pins = parts.pins(cloth, next.time);
       break;
     case 4:
       next.colliders.push_back(parts.collider(cloth, next.time));
@@ -119,15 +144,23 @@ Scene changed_scene(const Scene& scene, Draw& draw) {
       break;
   }
   shorten_frames(next);
-  return validate(next).empty() ? next : scene;
+  return can_run(next) ? next : scene;
 }
 
 Vec3 point_near(const Scene& scene, Draw& draw) {
-  const Grid& g = scene.cloths[std::size_t(draw.between(0, int(scene.cloths.size()) - 1))].grid;
+  const Cloth& cloth = scene.cloths[std::size_t(draw.between(0, int(scene.cloths.size()) - 1))];
   const double i = draw.uniform(-0.1, 1.1), j = draw.uniform(-0.1, 1.1);
   Vec3 p;
-  for (std::size_t k = 0; k < 3; ++k) p[k] = g.origin[k] + i * g.u[k] + j * g.v[k];
-  const double size = std::hypot(g.u[0], g.u[1], g.u[2]);
+  double size;
+  if (cloth.mesh.given()) {
+    const Extent of = extent(cloth);
+    p = of.middle;
+    size = of.size;
+  } else {
+    const Grid& g = cloth.grid;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = g.origin[k] + i * g.u[k] + j * g.v[k];
+    size = std::hypot(g.u[0], g.u[1], g.u[2]);
+  }
   const Vec3 off = draw.vector(size * draw.decades(0.01, 2));
   for (std::size_t k = 0; k < 3; ++k) p[k] += off[k];
   return p;

@@ -30,10 +30,9 @@ class Hash {
 };
 
 void add_cloth(const ClothView& c, Hash& hash) {
-  for (int j = 0; j < c.rows; ++j)
-    for (int i = 0; i < c.columns; ++i)
-      for (const auto* component : {&c.x, &c.y, &c.z, &c.vx, &c.vy, &c.vz, &c.inverse_mass})
-        hash.add((*component)[std::size_t(j) * std::size_t(c.stride) + std::size_t(i)]);
+  for (const std::size_t lane : lanes_of(c))
+    for (const auto* component : {&c.x, &c.y, &c.z, &c.vx, &c.vy, &c.vz, &c.inverse_mass})
+      hash.add((*component)[lane]);
   for (const auto& t : c.triangles)
     for (const std::uint32_t corner : t) hash.add(std::uint64_t{corner});
   for (const auto& t : c.tear_triangles)
@@ -43,6 +42,14 @@ void add_cloth(const ClothView& c, Hash& hash) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> lanes_of(const ClothView& c) {
+  std::vector<std::size_t> lanes(c.lanes.begin(), c.lanes.end());
+  for (int j = 0; c.lanes.empty() && j < c.rows; ++j)
+    for (int i = 0; i < c.columns; ++i)
+      lanes.push_back(std::size_t(j) * std::size_t(c.stride) + std::size_t(i));
+  return lanes;
+}
 
 std::uint64_t hash_of(const Simulation& simulation) {
   Hash hash;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "inputs.h"
 
@@ -25,6 +27,9 @@ struct Trace {
   std::string status;
   friend bool operator==(const Trace&, const Trace&) = default;
 };
+
+// The place in a view's arrays of every particle of a cloth, by its number.
+std::vector<std::size_t> lanes_of(const weft::ClothView& cloth);
 
 // Hash of all that view() shows, of the substeps in use and of the status.
 std::uint64_t hash_of(const weft::Simulation& simulation);

@@ -14,7 +14,7 @@ namespace {
 
 int check(const SceneArgument& argument) {
   const LoadedScene loaded = load(argument);
-  const Estimate needed = estimate(loaded.scene);
+  const Estimate needed = needs_of(loaded);
   std::cout << printable(loaded.path) << ": ok, " << needed.particles << " particles\n"
             << needs_words(needed);
   for (const std::string& note : loaded.notes) std::cout << "note: " << printable(note) << "\n";

@@ -52,6 +52,14 @@ LoadedScene load(const SceneArgument& argument) {
   return {std::move(file.scene), path, std::move(file.notes)};
 }
 
+Estimate needs_of(const LoadedScene& loaded) {
+  try {
+    return estimate(loaded.scene);
+  } catch (const SceneError& error) {
+    throw Failure{kBadScene, in_file(loaded.path, error.faults)};
+  }
+}
+
 Simulation simulate(const LoadedScene& loaded, const Options& options) {
   try {
     require_memory(loaded.scene, loaded.path);

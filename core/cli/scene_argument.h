@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "weft/estimate.h"
 #include "weft/simulation.h"
 
 namespace weft::cli {
@@ -24,6 +25,10 @@ struct LoadedScene {
 
 // Reads and validates; throws a Failure that lists every fault.
 LoadedScene load(const SceneArgument& argument);
+
+// What it needs to run. Throws Failure where no simulation takes it, as a membrane that no substep is short
+// enough for.
+Estimate needs_of(const LoadedScene& loaded);
 
 // Builds the simulation; faults of the scene or of the options, and too little memory, become a
 // Failure.

@@ -25,7 +25,7 @@ inline constexpr double kMemoryWithin = 1.5;  // factor within which Estimate::b
 inline constexpr double kTimeWithin = 3;      // the same of Estimate::frame_seconds
 
 // Takes a moment however large the scene is: where springs give the substeps, it looks at a cutting
-// of each cloth. Throws SceneError (weft/simulation.h) for a scene that validate() faults.
+// of each cloth. Throws SceneError (weft/simulation.h) for a scene that a Simulation refuses.
 Estimate estimate(const Scene& scene);
 
 // "1.2 GB", "850 MB"; of powers of ten.

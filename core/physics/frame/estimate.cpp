@@ -53,29 +53,38 @@ bool is_spring(Method method) {
   return method == Method::spring || method == Method::spring_friction;
 }
 
-// A cutting of a cloth with the same springs: its corner, as heavy as its lightest particle.
-Cloth cutting(const Cloth& from) {
-  if (from.mesh.given()) return from;  // its finest triangles may be anywhere
-  constexpr int kPoints = 24;          // a side; the longest constraint spans 8
-  Cloth cloth;
+// The corner of a grid, as heavy as its lightest particle.
+void cut_grid(const Cloth& from, Cloth& piece) {
+  constexpr int kPoints = 24;  // a side; the longest constraint spans 8
   const Grid& grid = from.grid;
-  cloth.grid.nx = std::min(grid.nx, kPoints);
-  cloth.grid.ny = std::min(grid.ny, kPoints);
+  piece.grid.nx = std::min(grid.nx, kPoints);
+  piece.grid.ny = std::min(grid.ny, kPoints);
   for (int k = 0; k < 3; ++k) {
-    cloth.grid.u[k] = grid.u[k] * (cloth.grid.nx - 1) / (grid.nx - 1);
-    cloth.grid.v[k] = grid.v[k] * (cloth.grid.ny - 1) / (grid.ny - 1);
+    piece.grid.u[k] = grid.u[k] * (piece.grid.nx - 1) / (grid.nx - 1);
+    piece.grid.v[k] = grid.v[k] * (piece.grid.ny - 1) / (grid.ny - 1);
   }
-  cloth.lumping = lumps_by_area(from) ? Lumping::area : Lumping::equal;
+  piece.lumping = lumps_by_area(from) ? Lumping::area : Lumping::equal;
   if (from.particle_mass == 0 && from.masses.empty() && lumps_by_area(from))
-    cloth.density = from.density;
+    piece.density = from.density;
   else
-    cloth.particle_mass = lightest_mass(from);
-  cloth.stiffness = from.stiffness;
-  cloth.membrane = from.membrane;
-  cloth.spring_damping = from.spring_damping;
-  cloth.level = from.level;
-  cloth.bending = from.bending;
-  return cloth;
+    piece.particle_mass = lightest_mass(from);
+  piece.level = from.level;
+}
+
+// A cutting of a cloth with the same springs; a mesh whole, since its finest triangles may be anywhere.
+Cloth cutting(const Cloth& from) {
+  Cloth piece;
+  if (from.mesh.given()) {
+    piece.mesh = from.mesh;
+    piece.density = from.density;
+  } else {
+    cut_grid(from, piece);
+  }
+  piece.stiffness = from.stiffness;
+  piece.membrane = from.membrane;
+  piece.spring_damping = from.spring_damping;
+  piece.bending = from.bending;
+  return piece;
 }
 
 // Small, but with the substeps and the method of the whole.

@@ -75,8 +75,19 @@ void Simulation::State::run_frame() {
 
 // What the frame has come to.
 FrameRun Simulation::State::frame_run() {
-  FrameRun run{scene, method, cloths, records_, asleep_,  frame,
-               dt,    true,   {},     limit_,   driven(), nothing_else_acts()};
+  FrameRun run{scene,
+               method,
+               cloths,
+               records_,
+               asleep_,
+               frame,
+               dt,
+               true,
+               {},
+               limit_,
+               driven(),
+               nothing_else_acts(),
+               !only_explicit()};
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     asleep_[c] = asleep(c);
     if (asleep_[c]) continue;

@@ -61,9 +61,12 @@ struct FarPins {
 };
 FarPins far_pins(const Cloth& cloth, double distance) {
   FarPins far;
+  const bool mesh = cloth.mesh.given();
+  const std::vector<Vec3> vertices = mesh ? placed_vertices(cloth.mesh) : std::vector<Vec3>();
   for (const Pin& pin : cloth.pins) {
-    if (!pin.moves() || cloth.mesh.given()) continue;
-    const Vec3 off = minus(pin_alone_at(cloth, pin, 0), place_on(cloth.grid, pin.i, pin.j));
+    if (!pin.moves()) continue;
+    const Vec3 off = minus(pin_alone_at(cloth, pin, 0), mesh ? vertices[std::size_t(pin.i)]
+                                                             : place_on(cloth.grid, pin.i, pin.j));
     const double length = std::sqrt(dot(off, off));
     if (length <= distance) continue;
     ++far.count;
@@ -72,14 +75,19 @@ FarPins far_pins(const Cloth& cloth, double distance) {
   return far;
 }
 
+// How far neighbours are apart, about [m].
+double spacing_of(const Cloth& cloth) {
+  return cloth.mesh.given() ? mean_edge(cloth.mesh)
+                            : std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
+}
+
 // `surfaces`: whether any cloth meets others by its surface.
 void note_thickness(const std::string& which, const Cloth& cloth, bool surfaces,
                     std::vector<std::string>& notes) {
   const SelfCollision& self = cloth.self_collision;
   if (self.mode == SelfCollisionMode::off) return;
   const bool mesh = cloth.mesh.given();
-  const double spacing =
-      mesh ? mean_edge(cloth.mesh) : std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
+  const double spacing = spacing_of(cloth);
   const std::string thickness = which + ": the thickness of " + number(self.thickness) + " m is ";
   if (self.thickness > spacing)
     notes.push_back(thickness + "above the " + (mesh ? "mean edge of " : "spacing of ") +
@@ -209,9 +217,7 @@ void Simulation::State::note_starts(std::vector<std::string>& notes) const {
     }
     const Cloth& cloth = scene.cloths[c];
     note_thickness(which, cloth, self_collision && self_collision->surfaces(), notes);
-    if (cloth.mesh.given()) continue;
-    const double spacing = std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
-    if (const FarPins far = far_pins(cloth, spacing); far.count > 0)
+    if (const FarPins far = far_pins(cloth, spacing_of(cloth)); far.count > 0)
       notes.push_back(which + ": " + std::to_string(far.count) +
                       (far.count == 1 ? " pin starts " : " pins start up to ") + number(far.most) +
                       " m from where the sheet has " + (far.count == 1 ? "it" : "them") +

@@ -34,9 +34,10 @@ Verdict StepGuard::judge(const FrameRun& run) {
   if (!failed) return Verdict::accept;
   const bool unresolved = beyond_limit && kLimitShare * run.limit < kLeastSubstep;
   const bool hopeless = unresolved || (!beyond_limit && finest);
-  if (!(springs || lines) || (hopeless && flies_away(run))) {
+  if (!(springs || lines) || (hopeless && (!run.replaceable || flies_away(run)))) {
     if (!run.finite) return Verdict::stop;
-    return energy_.holds() ? Verdict::accept : Verdict::clamp;
+    if (!energy_.holds()) return Verdict::clamp;
+    return beyond_limit ? Verdict::unstable : Verdict::accept;
   }
   (since_interaction_ < kInteractionPasses ? failed_by_interaction_ : failed_by_itself_) = true;
   if (hopeless) return Verdict::change_method;

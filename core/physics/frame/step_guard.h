@@ -35,6 +35,7 @@ struct FrameRun {
   double limit;                            // s; the stability limit at its end (springs)
   bool driven;                             // something but gravity did work in it
   bool alone;                              // nothing but gravity and paths of pins can do work
+  bool replaceable;                        // another method can run in the place of this one
 };
 
 enum class Verdict {
@@ -42,6 +43,7 @@ enum class Verdict {
   refine_to_limit,  // run again within the stability limit
   refine,           // run again with twice the substeps
   change_method,    // run again by a method that loses energy
+  unstable,         // stands, though its substeps are longer than is stable, and none can be short enough
   clamp,            // velocities are reduced to what is left without the excess
   stop,             // not finite, and no substep helps
 };

@@ -43,12 +43,16 @@ void Simulation::State::choose_method_and_substeps() {
   if (is_explicit(method)) {
     limit = std::numeric_limits<double>::infinity();
     double safe = limit;  // for automatic substeps
+    std::size_t stiffest = 0;
     for (std::size_t c = 0; c < cloths.size(); ++c) {
       spectra.push_back(cloths[c]->model().spectrum(masses(c).span()));
       limit = std::min(limit, spectra.back().largest_substep());
       Spectrum folded = spectra.back();
       if (cloths[c]->model().folds_freely()) folded.omega_squared *= kFolded;
-      safe = std::min(safe, folded.largest_substep());
+      if (folded.largest_substep() < safe) {
+        safe = folded.largest_substep();
+        stiffest = c;
+      }
     }
     const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
     const bool resolved = needed <= kMostSubsteps && kLimitShare * safe >= kLeastSubstep;
@@ -57,7 +61,9 @@ void Simulation::State::choose_method_and_substeps() {
       notes.push_back("substeps from the stability limit of " + number(limit) + " s");
     } else if (only_explicit() && (!resolved || scene.time.frame / count > limit)) {
       if (!resolved)
-        throw SceneError({{"/cloths", "the mesh needs " + number(needed) + " substeps a frame",
+        throw SceneError({{"/cloths/" + std::to_string(stiffest),
+                           "the cloth needs " + number(needed) +
+                               " substeps a frame, and the membrane of a mesh has no other method",
                            "softer or heavier cloth, larger triangles or shorter frames"}});
       count = clamp_to_int(needed, 1, kMostSubsteps);
       notes.push_back("the mesh needs substeps below " + number(limit) + " s; " +
@@ -126,8 +132,11 @@ bool Simulation::State::carry_out(Verdict verdict) {
       fall_back(which +
                 " gained energy from nowhere; velocities were reduced to what is left without it");
       return false;
+    case Verdict::unstable:
+      fall_back(which +
+                " is stretched beyond what any substep carries; its motion is not accurate");
+      return false;
     case Verdict::change_method:
-      if (only_explicit()) return carry_out(Verdict::clamp);
       restore();
       change_method(which, count);
       break;
