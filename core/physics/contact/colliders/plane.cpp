@@ -27,7 +27,7 @@ RowReach damp_sliding(const CollideRow& r) {
   return damp_sliding_row<PlaneSurface>(r);
 }
 
-// One that something else pushed below goes straight back up.
+// What something else pushed below goes back up, and loses its velocity into the plane.
 RowReach course(const CollideRow& r) {
   const Wide3 point = wide3(r.cx, r.cy, r.cz);
   const Wide3 n = wide3(r.shape.axis[0], r.shape.axis[1], r.shape.axis[2]);
@@ -44,9 +44,10 @@ RowReach course(const CollideRow& r) {
       const Wide length = max(sqrt(dot(path, path)), wide(kTinySquare));
       const Wide fall = select(crossed, height_before - height, wide(1));
       const Wide reach = height_before / fall - r.offset / length;
-      course_correct(r, i, crossed, before + path * reach);
+      course_correct(r, i, crossed, before + path * reach, Wide3{});
     }
-    if (any(sunk)) store3(r.x, i, select(sunk, x + n * (r.offset - height), load3(r.x, i)));
+    if (any(sunk))
+      course_correct(r, i, sunk, x + n * (r.offset - height), n * (r.offset - height_before));
   }
   return {least(clearance), __builtin_sqrtf(greatest(fastest))};
 }
