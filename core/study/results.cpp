@@ -51,6 +51,18 @@ bool write_all(int file, const char* from, std::size_t size, std::uint64_t offse
   return true;
 }
 
+// Returns when the disk has what the descriptor holds; a file system that cannot tell has no say.
+bool reaches_disk(int file) {
+  return ::fdatasync(file) == 0 || errno == EINVAL || errno == ENOSYS;
+}
+// The same of the names in the folder of a file.
+void store_name(const std::string& path) {
+  const std::string folder = std::filesystem::absolute(path).parent_path();
+  Descriptor opened;
+  opened.number = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (opened.number < 0 || !reaches_disk(opened.number)) fail(path, "its name cannot be stored");
+}
+
 std::string shard_words(Shard shard) {
   return std::to_string(shard.number + 1) + "/" + std::to_string(shard.of);
 }
@@ -94,6 +106,8 @@ void Results::open(bool resume) {
   if (end_ > 0) return;
   if (::ftruncate(file_.number, 0) != 0) fail(journal_, "cannot write");
   write_frame(shard_words(shard_) + " " + study_.text());
+  store();
+  store_name(journal_);
 }
 
 // Takes in all whole records; what was cut off in the middle is dropped.
@@ -148,7 +162,7 @@ std::vector<std::uint64_t> Results::missing() const {
   return runs;
 }
 
-std::uint64_t Results::append(const Record& record) {
+void Results::append(const Record& record) {
   const std::string bytes = to_bytes(record);
   const std::lock_guard hold(mutex_);
   if (record.run >= study_.runs() || !shard_.has(record.run) || has_[record.run] ||
@@ -159,7 +173,11 @@ std::uint64_t Results::append(const Record& record) {
   stored_.push_back(
       {record.run, record.particles, bytes.size(),
        [this, at = end_ - bytes.size(), size = bytes.size()] { return read_at(at, size); }});
-  return stored_.size();
+}
+
+void Results::store() {
+  if (!reaches_disk(file_.number))
+    fail(journal_, "storing failed (what was stored before stays; --resume goes on)");
 }
 
 void Results::finish() {
@@ -169,6 +187,7 @@ void Results::finish() {
   OutputFile file(path_);
   write_table(file, study_, shard_, stored_);
   file.commit();
+  store_name(path_);  // not before it is there for good may the journal go
   ::unlink(journal_.c_str());
   finished_ = true;
 }
@@ -178,12 +197,14 @@ bool run_study(const Study& study, const StudyOptions& options) {
   const std::vector<std::uint64_t> runs = results.missing();
   const std::uint64_t all = options.shard.runs(study), before = all - runs.size();
   const int jobs = thread_count(options.jobs), each = threads_for_each(jobs, runs.size());
+  std::uint64_t done = before;
   std::mutex mutex;
   try {
     run_jobs(runs.size(), jobs, [&](std::size_t k) {
-      const Record record = study.run(runs[k], each, options.keep_going);
+      results.append(study.run(runs[k], each, options.keep_going));
+      results.store();  // a run that is told of is safe; others go on meanwhile
       const std::lock_guard hold(mutex);
-      options.progress(results.append(record), all, before);
+      options.progress(++done, all, before);
     });
   } catch (const Abandoned&) {
     return false;

@@ -1,6 +1,6 @@
 // Results of a study on their way to its file. Each finished run is appended to a journal beside it,
-// FILE.h5.runs, at once: whatever ends the program, only runs in flight are lost. When all are there,
-// FILE.h5 is written as a whole, and the journal goes.
+// FILE.h5.runs, at once, and store() waits until the disk has it: whatever ends the program or the machine,
+// only runs in flight are lost. When all are there, FILE.h5 is written as a whole, and the journal goes.
 #pragma once
 
 #include <functional>
@@ -32,9 +32,12 @@ class Results {
 
   // Runs of the shard that have no record yet, in order.
   std::vector<std::uint64_t> missing() const;
-  // Returns how many runs are done. Threads may share it. A record of a run that is there already, or not of this shard, is refused by
+  // Threads may share it. A record of a run that is there already, or not of this shard, is refused by
   // std::invalid_argument. Where the disk is full nothing of the record stays (WriteError).
-  std::uint64_t append(const Record& record);
+  void append(const Record& record);
+  // Returns when the disk has all that was appended before: not even a power cut loses it then. Threads may
+  // share it, and append meanwhile. Throws WriteError.
+  void store();
   // Writes the file and removes the journal. Nothing may be missing.
   void finish();
 

@@ -117,9 +117,11 @@ void register_study(py::module_& module) {
       .def(
           "append",
           [](Results& results, const py::bytes& bytes) {
-            return results.append(record_of(std::string(bytes)));
+            results.append(record_of(std::string(bytes)));
           },
-          py::arg("record"), "Keeps a record; how many there are.")
+          py::arg("record"), "Keeps a record; store() makes it safe.")
+      .def("store", &Results::store, py::call_guard<py::gil_scoped_release>(),
+           "Returns when the disk has all records that were appended.")
       .def("finish", &Results::finish, py::call_guard<py::gil_scoped_release>(),
            "Writes the file.");
   module.def("merge", &merge_study, py::arg("shards"), py::arg("path"),
