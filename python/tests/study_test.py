@@ -15,40 +15,15 @@ import h5py
 import numpy
 import pytest
 import weft
+from conftest import contents
 
 study = pytest.importorskip("weft.study")
 PROGRAM = os.environ["WEFT_PROGRAM"]
 KILLS = int(os.environ.get("WEFT_STUDY_KILLS", "2"))
 
 
-@pytest.fixture
-def spec(scene):
-    return {
-        "weft_study": 1,
-        "scene": scene,
-        "frames": 12,
-        "seed": 5,
-        "parameters": [
-            {"pointer": "/gravity/1", "name": "g", "values": [-9.81, -2]},
-            {"pointer": "/cloths/0/density", "range": {"from": 0.1, "to": 0.4, "count": 3, "scale": "log"}},
-            {"pointer": "/colliders/0/sphere/radius", "draw": {"from": 0.1, "to": 0.28}},
-        ],
-        "draws": {"method": "latin_hypercube", "count": 4},
-        "measures": ["/strain/max", "/energy/total", "/hash", "/finite"],
-        "positions": {"every": 4},
-    }
-
-
 def cli(*words, **more):
     return subprocess.run([PROGRAM, "study", *map(str, words)], capture_output=True, text=True, **more)
-
-
-def contents(path):
-    """All that is in a file, but for times."""
-    with h5py.File(path) as file:
-        found = {name: file[name][()] for name in file}
-    found["runs"]["seconds"] = 0
-    return {name: numpy.asarray(value).tobytes() for name, value in found.items()}
 
 
 def test_the_file_holds_what_each_simulation_alone_does(spec, tmp_path):
@@ -105,27 +80,6 @@ def test_one_content_for_any_jobs_shards_and_programs(spec, tmp_path):
     merged = tmp_path / "again.h5"
     study.merge(shards, merged)
     assert contents(merged) == contents(paths[0])
-
-
-def test_dask_gives_the_same_file_though_workers_are_killed(spec, tmp_path):
-    distributed = pytest.importorskip("distributed")
-    spec = copy.deepcopy(spec)
-    spec["draws"]["count"], spec["frames"] = 12, 40
-    here, there = tmp_path / "here.h5", tmp_path / "there.h5"
-    study.run(spec, path=here)
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, \
-            distributed.Client(cluster) as client:
-        killed = []
-
-        def progress(done, all):
-            if done in (10, 30):  # in the middle of whatever it is at
-                pid = next(iter(client.run(os.getpid).values()))
-                os.kill(pid, signal.SIGKILL)
-                killed.append(pid)
-
-        study.run(spec, client, path=there, progress=progress)
-    assert len(killed) == 2
-    assert contents(here) == contents(there)
 
 
 def test_kill_9_loses_at_most_the_runs_in_flight(spec, tmp_path):

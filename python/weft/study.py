@@ -16,10 +16,14 @@ The file is the same for both, and for `weft study STUDY.json --out ks.h5`, but 
 docs/studies.md has every key.
 """
 
+import contextlib
 import functools
 import itertools
 import json
+import math
 import os
+import queue
+import time
 
 from . import _weft
 
@@ -61,37 +65,74 @@ def run(spec, client=None, *, path, resume=False, shard=(1, 1), jobs=0, retries=
 
 
 def _gather(results, study, client, retries, progress):
-    """Sends out what is missing, a window of runs at a time, and keeps what comes back."""
-    from distributed import CancelledError, KilledWorker, as_completed
+    """Sends out what is missing, as many runs at a time as the cluster has room for, and keeps what comes back."""
+    from distributed import CancelledError, KilledWorker
 
     missing = results.missing
     runs = iter(missing)
-    flying = as_completed()
-    sent = {}  # the run of each future, and how often it was lost
-    done = 0
+    room = _Room(client)
+    back = queue.SimpleQueue()  # (future, run, how often the run was lost)
+    flying = done = 0
 
     def send(run, lost=0):
         # The text goes with every run: data scattered to workers is gone when they are.
         future = client.submit(_work, study.text, run, pure=False, retries=retries)
-        sent[future.key] = run, lost
-        flying.add(future)
+        future.add_done_callback(lambda future: back.put((future, run, lost)))
 
-    for run in itertools.islice(runs, 4 * max(1, sum(client.nthreads().values()))):
-        send(run)
-    for future in flying:
-        run, lost = sent.pop(future.key)
-        try:
-            record = future.result()
-        except (CancelledError, KilledWorker):
-            if lost == retries:
-                raise
-            send(run, lost + 1)
-            continue
-        results.append(record)
-        done += 1
-        progress(done, len(missing))
-        for run in itertools.islice(runs, 1):
+    while done < len(missing):
+        room.require_scheduler()
+        for run in itertools.islice(runs, max(0, room.runs() - flying)):
             send(run)
+            flying += 1
+        kept = 0
+        for future, run, lost in _batch(back):
+            try:
+                record = future.result()
+            except (CancelledError, KilledWorker, OSError):  # OSError: the scheduler ended
+                if lost == retries:
+                    raise
+                room.require_scheduler()
+                send(run, lost + 1)
+            else:
+                results.append(record)
+                kept += 1
+        results.store()  # runs that are told of are safe
+        flying -= kept
+        for _ in range(kept):
+            done += 1
+            progress(done, len(missing))
+
+
+def _batch(back):
+    """All that has come back by now; waits for the first, but no longer than a second."""
+    batch = []
+    try:
+        batch.append(back.get(timeout=1))
+        while True:
+            batch.append(back.get_nowait())
+    except queue.Empty:
+        return batch
+
+
+class _Room:
+    """How many runs may be on their way: four for every thread of the cluster, which grows and shrinks."""
+
+    def __init__(self, client):
+        self._client, self._runs, self._asked = client, 4, -math.inf
+
+    def runs(self):
+        now = time.monotonic()
+        if now > self._asked + 1 and self._client.status == "running":
+            self._asked = now
+            with contextlib.suppress(OSError):  # the scheduler is being lost
+                self._runs = 4 * max(1, sum(self._client.nthreads().values()))
+        return self._runs
+
+    def require_scheduler(self):
+        # A client looks for a lost scheduler for a while (distributed.comm.timeouts.connect), then closes.
+        if self._client.status in ("closing", "closed"):
+            raise ConnectionError(
+                "the scheduler is gone; finished runs are kept, and resume=True goes on with them")
 
 
 @functools.lru_cache(maxsize=4)
