@@ -85,17 +85,16 @@ def _gather(results, study, client, retries, progress):
             send(run)
             flying += 1
         kept = 0
-        for future, run, lost in _batch(back):
-            try:
-                record = future.result()
-            except (CancelledError, KilledWorker, OSError):  # OSError: the scheduler ended
-                if lost == retries:
-                    raise
-                room.require_scheduler()
-                send(run, lost + 1)
-            else:
+        batch = _batch(back)
+        for (_, run, lost), record in zip(batch, _fetch(client, [future for future, *_ in batch])):
+            if isinstance(record, bytes):
                 results.append(record)
                 kept += 1
+            elif isinstance(record, (CancelledError, KilledWorker, OSError)) and lost < retries:
+                room.require_scheduler()  # an OSError: it ended while it was asked
+                send(run, lost + 1)
+            else:
+                raise record
         results.store()  # runs that are told of are safe
         flying -= kept
         for _ in range(kept):
@@ -104,14 +103,25 @@ def _gather(results, study, client, retries, progress):
 
 
 def _batch(back):
-    """All that has come back by now; waits for the first, but no longer than a second."""
+    """What has come back by now, at most as much as one message carries; waits a second for the first."""
     batch = []
     try:
         batch.append(back.get(timeout=1))
-        while True:
+        while len(batch) < 64:
             batch.append(back.get_nowait())
     except queue.Empty:
-        return batch
+        pass
+    return batch
+
+
+def _fetch(client, futures):
+    """The record of each, or the error that it ended with; in one message where all went well."""
+    try:
+        return client.gather(futures)
+    except Exception as error:
+        if len(futures) == 1:
+            return [error]
+        return [_fetch(client, [future])[0] for future in futures]
 
 
 class _Room:
