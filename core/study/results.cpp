@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -93,6 +94,10 @@ Results::Results(const Study& study, std::string path, Shard shard, bool resume)
   open(resume);
 }
 
+Results::~Results() {
+  if (file_.number >= 0 && stored_.empty()) ::unlink(journal_.c_str());  // it holds no run
+}
+
 void Results::open(bool resume) {
   file_.number = ::open(journal_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file_.number < 0) fail(journal_, "cannot write");
@@ -100,8 +105,8 @@ void Results::open(bool resume) {
     throw StudyError({{journal_, "another process is at this study", "another --out"}});
   const bool empty = ::lseek(file_.number, 0, SEEK_END) == 0;
   if (!empty && !resume)
-    throw StudyError({{journal_, "it holds finished runs of a study that was cut off",
-                       "--resume to go on with them; or remove it"}});
+    throw StudyError({{journal_, "it is of a study that was cut off",
+                       "--resume (resume=True) to go on with it; or remove it"}});
   if (!empty) read_journal();
   if (end_ > 0) return;
   if (::ftruncate(file_.number, 0) != 0) fail(journal_, "cannot write");
@@ -213,7 +218,25 @@ bool run_study(const Study& study, const StudyOptions& options) {
   return true;
 }
 
+namespace {
+
+// All shards are open at once, and a process begins with a limit below what the system lets it have.
+void allow_open_files(std::size_t count) {
+  struct rlimit limit {};
+  const rlim_t needed = count + 64;  // and what the process has open besides
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= needed) return;
+  if (limit.rlim_max < needed)
+    throw StudyError({{"--merge", std::to_string(count) + " shards are too many files to open",
+                       "at most " + std::to_string(limit.rlim_max) + " here, see ulimit -Hn"}});
+  limit.rlim_cur = needed;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+}  // namespace
+
 void merge_study(const std::vector<std::string>& shards, const std::string& path) {
+  if (shards.empty()) throw StudyError({{"--merge", "there are no shards", "at least one file"}});
+  allow_open_files(shards.size());
   OutputFile out(path);
   std::vector<TableFile> files;
   for (const std::string& shard : shards) files.emplace_back(shard);

@@ -27,6 +27,8 @@ class Results {
   // Opens the journal and locks it. `resume`: takes over what one of the same study and shard holds;
   // else there must be none. Throws StudyError, WriteError.
   Results(const Study& study, std::string path, Shard shard, bool resume);
+  // Removes the journal where it holds no run.
+  ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
 

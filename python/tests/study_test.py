@@ -109,6 +109,7 @@ def test_kill_9_loses_at_most_the_runs_in_flight(spec, tmp_path):
         assert contents(path) == contents(whole)
         assert not [n for n in os.listdir(tmp_path) if n.startswith(".weft") or n.endswith(".runs")]
     assert kills >= 1
+    print(f"{kills} kills in {KILLS} studies")
 
 
 def test_a_journal_cut_anywhere_keeps_its_whole_records(spec, tmp_path):
@@ -255,6 +256,39 @@ def test_a_billion_combinations(spec, tmp_path):
     del spec["draws"]
     with pytest.raises(study.StudyError, match="1000000000 runs .at most 10000000"):
         study.run(spec, path=tmp_path / "a.h5")
+
+
+def test_values_may_be_arrays_and_what_is_no_json_is_told(spec, tmp_path):
+    path = tmp_path / "a.h5"
+    spec["parameters"][0]["values"] = numpy.array([-9.81, -2])
+    study.run(spec, path=path)
+    assert set(study.table(path)["g"]) == {-9.81, -2}
+    path.unlink()
+    for value, error, message in (({1, 2}, TypeError, "study holds no set"),
+                                  ([float("nan")], ValueError, "not finite")):
+        with pytest.raises(error, match=message):
+            study.run(changed(spec, ("parameters", 0, "values"), value), path=path)
+    with pytest.raises(TypeError, match="Client is needed, not str"):
+        study.run(spec, "tcp://somewhere", path=path)
+    with pytest.raises(ValueError, match="jobs is -1"):
+        study.run(spec, path=path, jobs=-1)
+    with pytest.raises(study.StudyError, match="no shards"):
+        study.merge([], path)
+    assert os.listdir(tmp_path) == []
+
+
+def test_more_shards_than_files_that_a_process_begins_with(spec, tmp_path):
+    shards = [tmp_path / f"{k}.h5" for k in range(1, 25)]
+    for k, shard in enumerate(shards, 1):
+        study.run(spec, path=shard, shard=(k, 24))
+    merge = lambda most: cli("--merge", *shards, "--out", tmp_path / "all.h5", preexec_fn=lambda:
+                             resource.setrlimit(resource.RLIMIT_NOFILE, (40, most)))
+    told = merge(80)  # the system's own limit, which no process may lift
+    assert told.returncode == 2 and "24 shards are too many files to open" in told.stderr
+    assert not (tmp_path / "all.h5").exists()
+    assert merge(1000).returncode == 0
+    study.run(spec, path=tmp_path / "whole.h5")
+    assert contents(tmp_path / "all.h5") == contents(tmp_path / "whole.h5")
 
 
 def test_a_study_that_another_process_is_at_is_refused(spec, tmp_path):

@@ -19,7 +19,6 @@ docs/studies.md has every key.
 import contextlib
 import functools
 import itertools
-import json
 import math
 import os
 import queue
@@ -33,7 +32,7 @@ StudyError = _weft.StudyError
 def read(spec):
     """The study of a dict or of a STUDY file. Raises StudyError with every fault."""
     if isinstance(spec, dict):
-        return _weft.Study(json.dumps(spec, allow_nan=False))
+        return _weft.Study(spec)
     path = os.fspath(spec)
     with open(path, encoding="utf-8") as file:
         return _weft.Study(file.read(), os.path.dirname(path))
@@ -54,6 +53,8 @@ def run(spec, client=None, *, path, resume=False, shard=(1, 1), jobs=0, retries=
     A run that fails is a row with its reason in the column `outcome`. Raises StudyError for what is wrong
     with the study, OSError where a file cannot be written.
     """
+    if client is not None and not hasattr(client, "submit"):
+        raise TypeError(f"client: a dask.distributed.Client is needed, not {type(client).__name__}")
     study = read(spec)
     path = os.fspath(path)
     if client is None:
