@@ -19,6 +19,8 @@ namespace weft {
 
 namespace {
 
+constexpr const char* kStays = " (what is finished stays; --resume goes on)";
+
 // Before each payload of the journal.
 struct Frame {
   std::uint32_t magic = 0x54464557;  // "WEFT"
@@ -148,7 +150,7 @@ void Results::write_frame(const std::string& payload) {
     // A part that stays all the same is told from a whole one by its sum.
     [[maybe_unused]] const int cut = ::ftruncate(file_.number, off_t(end_));
     errno = why;
-    fail(journal_, "writing failed (what is finished stays; --resume goes on)");
+    fail(journal_, "writing failed" + std::string(kStays));
   }
   end_ += bytes.size();
 }
@@ -181,17 +183,20 @@ void Results::append(const Record& record) {
 }
 
 void Results::store() {
-  if (!reaches_disk(file_.number))
-    fail(journal_, "storing failed (what was stored before stays; --resume goes on)");
+  if (!reaches_disk(file_.number)) fail(journal_, "storing failed" + std::string(kStays));
 }
 
 void Results::finish() {
   if (finished_) return;
   if (!missing().empty()) throw std::invalid_argument("there are runs missing");
   std::ranges::sort(stored_, {}, &Stored::run);
-  OutputFile file(path_);
-  write_table(file, study_, shard_, stored_);
-  file.commit();
+  try {
+    OutputFile file(path_);
+    write_table(file, study_, shard_, stored_);
+    file.commit();
+  } catch (const WriteError& error) {
+    throw WriteError(error.path, error.what() + std::string(kStays));
+  }
   store_name(path_);  // not before it is there for good may the journal go
   ::unlink(journal_.c_str());
   finished_ = true;

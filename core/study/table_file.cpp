@@ -164,7 +164,7 @@ void require_room(const OutputFile& file, const std::vector<Stored>& records) {
   const double free = double(disk.f_bavail) * double(disk.f_frsize);
   if (free < bytes)
     throw WriteError(file.path(), "the file takes about " + bytes_words(bytes) +
-                                      ", and the disk has " + bytes_words(free) + " left (what is finished stays; --resume goes on)");
+                                      ", and the disk has " + bytes_words(free) + " left");
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {

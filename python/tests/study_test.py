@@ -1,10 +1,13 @@
 """Studies: what HDF5 readers find in the file, equal files however it was made, and bad input."""
 
+import ast
 import copy
 import fcntl
+import inspect
 import itertools
 import json
 import os
+import pathlib
 import random
 import resource
 import signal
@@ -352,6 +355,15 @@ def test_a_signal_keeps_what_is_finished(spec, tmp_path, sent):
     child.send_signal(sent)
     assert child.wait(20) == 128 + sent and "--resume" in child.stderr.read()
     assert sorted(os.listdir(tmp_path)) == ["a.h5.runs", "spec.json"]
+
+
+def test_stubs_have_every_function_with_its_arguments():
+    stubs = ast.parse((pathlib.Path(study.__file__).with_suffix(".pyi")).read_text()).body
+    stubs = {f.name: [a.arg for a in f.args.args + f.args.kwonlyargs]
+             for f in stubs if isinstance(f, ast.FunctionDef)}
+    functions = {name: list(inspect.signature(f).parameters) for name, f in vars(study).items()
+                 if inspect.isfunction(f) and not name.startswith("_")}
+    assert stubs == functions
 
 
 def test_the_command_line(spec, tmp_path):

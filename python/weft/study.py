@@ -51,7 +51,8 @@ def run(spec, client=None, *, path, resume=False, shard=(1, 1), jobs=0, retries=
     progress: called as progress(done, all) after every run
 
     A run that fails is a row with its reason in the column `outcome`. Raises StudyError for what is wrong
-    with the study, OSError where a file cannot be written.
+    with the study, OSError where a file cannot be written, ConnectionError where the scheduler of Dask is
+    gone; finished runs are kept then.
     """
     if client is not None and not hasattr(client, "submit"):
         raise TypeError(f"client: a dask.distributed.Client is needed, not {type(client).__name__}")
@@ -66,7 +67,7 @@ def run(spec, client=None, *, path, resume=False, shard=(1, 1), jobs=0, retries=
 
 
 def _gather(results, study, client, retries, progress):
-    """Sends out what is missing, as many runs at a time as the cluster has room for, and keeps what comes back."""
+    """Sends out what is missing, as much as the cluster has room for, and keeps what comes back."""
     from distributed import CancelledError, KilledWorker
 
     missing = results.missing
