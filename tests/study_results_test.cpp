@@ -1,12 +1,39 @@
 // Studies as the library runs them: draws, records, and one file for any jobs and shards.
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <set>
 
 #include "folder.h"
 #include "study/draws.h"
 #include "study/results.h"
+
+namespace {
+
+// What a disk would have of a file if the machine stopped now: what the file held when it was last stored.
+std::map<ino_t, std::string>* disk = nullptr;
+std::mutex disk_mutex;
+
+}  // namespace
+
+// In the place of the system's own, so that a test sees what is stored, and when.
+extern "C" int fdatasync(int file) {
+  struct stat status {};
+  if (disk != nullptr && ::fstat(file, &status) == 0 && S_ISREG(status.st_mode)) {
+    std::string bytes(std::size_t(status.st_size), '\0');
+    const ssize_t got = ::pread(file, bytes.data(), bytes.size(), 0);
+    const std::lock_guard hold(disk_mutex);
+    std::string& there = (*disk)[status.st_ino];
+    if (std::size_t(got) > there.size()) there = bytes.substr(0, std::size_t(got));
+  }
+  return int(::syscall(SYS_fdatasync, file));
+}
 
 namespace weft {
 namespace {
@@ -105,6 +132,37 @@ TEST(Studies, OneContentForAnyJobsAndShards) {
   shards.pop_back();
   EXPECT_THROW(merge_study(shards, folder / "less.h5"), StudyError);
   EXPECT_FALSE(folder.has("less.h5"));
+}
+
+TEST(Studies, APowerCutLosesNoRunThatWasToldOf) {
+  const Folder folder;
+  const Study study(kStudy, "");
+  ASSERT_TRUE(run_study(study, {.path = folder / "whole.h5"}));
+  for (const int jobs : {1, 3}) {
+    std::map<ino_t, std::string> stored;
+    std::vector<std::string> cuts;  // the journal on the disk whenever a run was told of
+    StudyOptions options{.path = folder / "a.h5", .jobs = jobs};
+    options.progress = [&](std::uint64_t, std::uint64_t, std::uint64_t) {
+      struct stat status {};
+      ASSERT_EQ(::stat((folder / "a.h5.runs").c_str(), &status), 0);
+      const std::lock_guard hold(disk_mutex);
+      cuts.push_back(stored[status.st_ino]);
+    };
+    disk = &stored;
+    EXPECT_TRUE(run_study(study, options));
+    disk = nullptr;
+    ASSERT_EQ(cuts.size(), study.runs());
+    for (std::size_t told = 1; told <= cuts.size(); told += 4) {
+      const std::string path = folder / ("cut" + std::to_string(told) + ".h5");
+      folder.write("cut" + std::to_string(told) + ".h5.runs", cuts[told - 1]);
+      std::uint64_t before = 0;
+      StudyOptions again{.path = path, .resume = true};
+      again.progress = [&](std::uint64_t, std::uint64_t, std::uint64_t there) { before = there; };
+      EXPECT_TRUE(run_study(study, again));
+      EXPECT_GE(before, told);
+      EXPECT_EQ(contents(study, path), contents(study, folder / "whole.h5"));
+    }
+  }
 }
 
 TEST(Studies, WhatIsFinishedStaysWhereItIsGivenUp) {

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -17,6 +18,8 @@
 namespace weft {
 
 namespace {
+
+constexpr const char* kStays = " (what is finished stays; --resume goes on)";
 
 // Before each payload of the journal.
 struct Frame {
@@ -51,6 +54,18 @@ bool write_all(int file, const char* from, std::size_t size, std::uint64_t offse
   return true;
 }
 
+// Returns when the disk has what the descriptor holds; a file system that cannot tell has no say.
+bool reaches_disk(int file) {
+  return ::fdatasync(file) == 0 || errno == EINVAL || errno == ENOSYS;
+}
+// The same of the names in the folder of a file.
+void store_name(const std::string& path) {
+  const std::string folder = std::filesystem::absolute(path).parent_path();
+  Descriptor opened;
+  opened.number = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (opened.number < 0 || !reaches_disk(opened.number)) fail(path, "its name cannot be stored");
+}
+
 std::string shard_words(Shard shard) {
   return std::to_string(shard.number + 1) + "/" + std::to_string(shard.of);
 }
@@ -81,6 +96,10 @@ Results::Results(const Study& study, std::string path, Shard shard, bool resume)
   open(resume);
 }
 
+Results::~Results() {
+  if (file_.number >= 0 && stored_.empty()) ::unlink(journal_.c_str());  // it holds no run
+}
+
 void Results::open(bool resume) {
   file_.number = ::open(journal_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file_.number < 0) fail(journal_, "cannot write");
@@ -88,12 +107,14 @@ void Results::open(bool resume) {
     throw StudyError({{journal_, "another process is at this study", "another --out"}});
   const bool empty = ::lseek(file_.number, 0, SEEK_END) == 0;
   if (!empty && !resume)
-    throw StudyError({{journal_, "it holds finished runs of a study that was cut off",
-                       "--resume to go on with them; or remove it"}});
+    throw StudyError({{journal_, "it is of a study that was cut off",
+                       "--resume (resume=True) to go on with it; or remove it"}});
   if (!empty) read_journal();
   if (end_ > 0) return;
   if (::ftruncate(file_.number, 0) != 0) fail(journal_, "cannot write");
   write_frame(shard_words(shard_) + " " + study_.text());
+  store();
+  store_name(journal_);
 }
 
 // Takes in all whole records; what was cut off in the middle is dropped.
@@ -129,7 +150,7 @@ void Results::write_frame(const std::string& payload) {
     // A part that stays all the same is told from a whole one by its sum.
     [[maybe_unused]] const int cut = ::ftruncate(file_.number, off_t(end_));
     errno = why;
-    fail(journal_, "writing failed (what is finished stays; --resume goes on)");
+    fail(journal_, "writing failed" + std::string(kStays));
   }
   end_ += bytes.size();
 }
@@ -148,7 +169,7 @@ std::vector<std::uint64_t> Results::missing() const {
   return runs;
 }
 
-std::uint64_t Results::append(const Record& record) {
+void Results::append(const Record& record) {
   const std::string bytes = to_bytes(record);
   const std::lock_guard hold(mutex_);
   if (record.run >= study_.runs() || !shard_.has(record.run) || has_[record.run] ||
@@ -159,16 +180,24 @@ std::uint64_t Results::append(const Record& record) {
   stored_.push_back(
       {record.run, record.particles, bytes.size(),
        [this, at = end_ - bytes.size(), size = bytes.size()] { return read_at(at, size); }});
-  return stored_.size();
+}
+
+void Results::store() {
+  if (!reaches_disk(file_.number)) fail(journal_, "storing failed" + std::string(kStays));
 }
 
 void Results::finish() {
   if (finished_) return;
   if (!missing().empty()) throw std::invalid_argument("there are runs missing");
   std::ranges::sort(stored_, {}, &Stored::run);
-  OutputFile file(path_);
-  write_table(file, study_, shard_, stored_);
-  file.commit();
+  try {
+    OutputFile file(path_);
+    write_table(file, study_, shard_, stored_);
+    file.commit();
+  } catch (const WriteError& error) {
+    throw WriteError(error.path, error.what() + std::string(kStays));
+  }
+  store_name(path_);  // not before it is there for good may the journal go
   ::unlink(journal_.c_str());
   finished_ = true;
 }
@@ -178,12 +207,14 @@ bool run_study(const Study& study, const StudyOptions& options) {
   const std::vector<std::uint64_t> runs = results.missing();
   const std::uint64_t all = options.shard.runs(study), before = all - runs.size();
   const int jobs = thread_count(options.jobs), each = threads_for_each(jobs, runs.size());
+  std::uint64_t done = before;
   std::mutex mutex;
   try {
     run_jobs(runs.size(), jobs, [&](std::size_t k) {
-      const Record record = study.run(runs[k], each, options.keep_going);
+      results.append(study.run(runs[k], each, options.keep_going));
+      results.store();  // a run that is told of is safe; others go on meanwhile
       const std::lock_guard hold(mutex);
-      options.progress(results.append(record), all, before);
+      options.progress(++done, all, before);
     });
   } catch (const Abandoned&) {
     return false;
@@ -192,7 +223,25 @@ bool run_study(const Study& study, const StudyOptions& options) {
   return true;
 }
 
+namespace {
+
+// All shards are open at once, and a process begins with a limit below what the system lets it have.
+void allow_open_files(std::size_t count) {
+  struct rlimit limit {};
+  const rlim_t needed = count + 64;  // and what the process has open besides
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= needed) return;
+  if (limit.rlim_max < needed)
+    throw StudyError({{"--merge", std::to_string(count) + " shards are too many files to open",
+                       "at most " + std::to_string(limit.rlim_max) + " here, see ulimit -Hn"}});
+  limit.rlim_cur = needed;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+}  // namespace
+
 void merge_study(const std::vector<std::string>& shards, const std::string& path) {
+  if (shards.empty()) throw StudyError({{"--merge", "there are no shards", "at least one file"}});
+  allow_open_files(shards.size());
   OutputFile out(path);
   std::vector<TableFile> files;
   for (const std::string& shard : shards) files.emplace_back(shard);

@@ -1,6 +1,6 @@
 // Results of a study on their way to its file. Each finished run is appended to a journal beside it,
-// FILE.h5.runs, at once: whatever ends the program, only runs in flight are lost. When all are there,
-// FILE.h5 is written as a whole, and the journal goes.
+// FILE.h5.runs, at once, and store() waits until the disk has it: whatever ends the program or the machine,
+// only runs in flight are lost. When all are there, FILE.h5 is written as a whole, and the journal goes.
 #pragma once
 
 #include <functional>
@@ -27,14 +27,19 @@ class Results {
   // Opens the journal and locks it. `resume`: takes over what one of the same study and shard holds;
   // else there must be none. Throws StudyError, WriteError.
   Results(const Study& study, std::string path, Shard shard, bool resume);
+  // Removes the journal where it holds no run.
+  ~Results();
   Results(const Results&) = delete;
   Results& operator=(const Results&) = delete;
 
   // Runs of the shard that have no record yet, in order.
   std::vector<std::uint64_t> missing() const;
-  // Returns how many runs are done. Threads may share it. A record of a run that is there already, or not of this shard, is refused by
+  // Threads may share it. A record of a run that is there already, or not of this shard, is refused by
   // std::invalid_argument. Where the disk is full nothing of the record stays (WriteError).
-  std::uint64_t append(const Record& record);
+  void append(const Record& record);
+  // Returns when the disk has all that was appended before: not even a power cut loses it then. Threads may
+  // share it, and append meanwhile. Throws WriteError.
+  void store();
   // Writes the file and removes the journal. Nothing may be missing.
   void finish();
 

@@ -14,6 +14,8 @@ class Batch {
  public:
   Batch(const py::iterable& scenes, const py::object& seeds, int threads)
       : threads_(thread_count(checked(threads))) {
+    if (py::isinstance<py::dict>(scenes) || py::isinstance<py::str>(scenes))
+      throw py::type_error("scenes: a list of scenes is needed, not one scene");
     const py::list list(scenes);
     if (list.empty()) throw py::value_error("scenes: at least one is needed");
     const std::vector<std::uint64_t> seed = seeds_of(seeds, list.size());

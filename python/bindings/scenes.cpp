@@ -77,12 +77,18 @@ py::dict estimate_of(const py::object& scene, const py::dict& values) {
 std::string json_text(const py::handle& value) {
   const py::cpp_function plain([](const py::object& other) {
     if (py::hasattr(other, "tolist")) return other.attr("tolist")();
-    throw py::type_error("a scene holds no " +
+    if (py::hasattr(other, "__fspath__")) return other.attr("__fspath__")();
+    throw py::type_error("a scene or study holds no " +
                          std::string(py::str(py::type::of(other).attr("__name__"))));
   });
-  return py::cast<std::string>(py::module_::import("json").attr("dumps")(
-      value, py::arg("default") = plain, py::arg("allow_nan") = false,
-      py::arg("ensure_ascii") = false));
+  try {
+    return py::cast<std::string>(py::module_::import("json").attr("dumps")(
+        value, py::arg("default") = plain, py::arg("allow_nan") = false,
+        py::arg("ensure_ascii") = false));
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_ValueError)) throw;
+    throw py::value_error("a number is not finite, or a list holds itself");
+  }
 }
 
 py::object json_value(const std::string& text) {

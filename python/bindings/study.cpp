@@ -51,6 +51,7 @@ class Signals {
 
 void run(const Study& study, const std::string& path, int jobs, bool resume,
          const std::pair<std::uint64_t, std::uint64_t>& shard, const py::object& progress) {
+  if (jobs < 0) throw py::value_error("jobs is " + std::to_string(jobs) + " (allowed: >= 0)");
   Signals signals;
   StudyOptions options{.path = path, .shard = shard_of(shard), .resume = resume, .jobs = jobs};
   options.keep_going = [&] { return signals.keep_going(); };
@@ -96,10 +97,12 @@ void register_study_error(py::module_& module) {
 void register_study(py::module_& module) {
   register_study_error(module);
   py::class_<Study>(module, "Study", "A study: its runs, and how to run them (weft.study).")
-      .def(py::init([](const std::string& text, const std::string& folder) {
-             return std::make_unique<Study>(text, folder);
+      .def(py::init([](const py::object& spec, const std::string& folder) {
+             const bool text = py::isinstance<py::str>(spec);
+             return std::make_unique<Study>(text ? py::cast<std::string>(spec) : json_text(spec),
+                                            folder);
            }),
-           py::arg("text"), py::arg("folder") = "")
+           py::arg("spec"), py::arg("folder") = "", "Of a dict, or of the text of a STUDY file.")
       .def("__len__", &Study::runs)
       .def_property_readonly("text", &Study::text, "The study with its scene inside, as JSON.")
       .def("run", &one_run, py::arg("run"), py::arg("threads") = 1,
@@ -117,9 +120,11 @@ void register_study(py::module_& module) {
       .def(
           "append",
           [](Results& results, const py::bytes& bytes) {
-            return results.append(record_of(std::string(bytes)));
+            results.append(record_of(std::string(bytes)));
           },
-          py::arg("record"), "Keeps a record; how many there are.")
+          py::arg("record"), "Keeps a record; store() makes it safe.")
+      .def("store", &Results::store, py::call_guard<py::gil_scoped_release>(),
+           "Returns when the disk has all records that were appended.")
       .def("finish", &Results::finish, py::call_guard<py::gil_scoped_release>(),
            "Writes the file.");
   module.def("merge", &merge_study, py::arg("shards"), py::arg("path"),

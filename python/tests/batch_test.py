@@ -48,6 +48,12 @@ def test_each_is_a_simulation(scene):
     assert numpy.array_equal(kept, expected)
 
 
+@pytest.mark.parametrize("one", [{"weft": 1}, "hello"])
+def test_one_scene_is_no_list(one):
+    with pytest.raises(TypeError, match="list of scenes"):
+        weft.Batch(one)
+
+
 @pytest.mark.parametrize("make", [
     lambda s: weft.Batch([]), lambda s: weft.Batch([s], seeds=[1, 2]),
     lambda s: weft.Batch([s, "hello"]), lambda s: weft.Batch([s], threads=-1),

@@ -1,10 +1,13 @@
 """Studies: what HDF5 readers find in the file, equal files however it was made, and bad input."""
 
+import ast
 import copy
 import fcntl
+import inspect
 import itertools
 import json
 import os
+import pathlib
 import random
 import resource
 import signal
@@ -15,40 +18,15 @@ import h5py
 import numpy
 import pytest
 import weft
+from conftest import contents
 
 study = pytest.importorskip("weft.study")
 PROGRAM = os.environ["WEFT_PROGRAM"]
 KILLS = int(os.environ.get("WEFT_STUDY_KILLS", "2"))
 
 
-@pytest.fixture
-def spec(scene):
-    return {
-        "weft_study": 1,
-        "scene": scene,
-        "frames": 12,
-        "seed": 5,
-        "parameters": [
-            {"pointer": "/gravity/1", "name": "g", "values": [-9.81, -2]},
-            {"pointer": "/cloths/0/density", "range": {"from": 0.1, "to": 0.4, "count": 3, "scale": "log"}},
-            {"pointer": "/colliders/0/sphere/radius", "draw": {"from": 0.1, "to": 0.28}},
-        ],
-        "draws": {"method": "latin_hypercube", "count": 4},
-        "measures": ["/strain/max", "/energy/total", "/hash", "/finite"],
-        "positions": {"every": 4},
-    }
-
-
 def cli(*words, **more):
     return subprocess.run([PROGRAM, "study", *map(str, words)], capture_output=True, text=True, **more)
-
-
-def contents(path):
-    """All that is in a file, but for times."""
-    with h5py.File(path) as file:
-        found = {name: file[name][()] for name in file}
-    found["runs"]["seconds"] = 0
-    return {name: numpy.asarray(value).tobytes() for name, value in found.items()}
 
 
 def test_the_file_holds_what_each_simulation_alone_does(spec, tmp_path):
@@ -107,27 +85,6 @@ def test_one_content_for_any_jobs_shards_and_programs(spec, tmp_path):
     assert contents(merged) == contents(paths[0])
 
 
-def test_dask_gives_the_same_file_though_workers_are_killed(spec, tmp_path):
-    distributed = pytest.importorskip("distributed")
-    spec = copy.deepcopy(spec)
-    spec["draws"]["count"], spec["frames"] = 12, 40
-    here, there = tmp_path / "here.h5", tmp_path / "there.h5"
-    study.run(spec, path=here)
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, \
-            distributed.Client(cluster) as client:
-        killed = []
-
-        def progress(done, all):
-            if done in (10, 30):  # in the middle of whatever it is at
-                pid = next(iter(client.run(os.getpid).values()))
-                os.kill(pid, signal.SIGKILL)
-                killed.append(pid)
-
-        study.run(spec, client, path=there, progress=progress)
-    assert len(killed) == 2
-    assert contents(here) == contents(there)
-
-
 def test_kill_9_loses_at_most_the_runs_in_flight(spec, tmp_path):
     spec["draws"]["count"], spec["frames"] = 40, 40
     file, path, whole = tmp_path / "spec.json", tmp_path / "a.h5", tmp_path / "whole.h5"
@@ -155,6 +112,7 @@ def test_kill_9_loses_at_most_the_runs_in_flight(spec, tmp_path):
         assert contents(path) == contents(whole)
         assert not [n for n in os.listdir(tmp_path) if n.startswith(".weft") or n.endswith(".runs")]
     assert kills >= 1
+    print(f"{kills} kills in {KILLS} studies")
 
 
 def test_a_journal_cut_anywhere_keeps_its_whole_records(spec, tmp_path):
@@ -303,6 +261,39 @@ def test_a_billion_combinations(spec, tmp_path):
         study.run(spec, path=tmp_path / "a.h5")
 
 
+def test_values_may_be_arrays_and_what_is_no_json_is_told(spec, tmp_path):
+    path = tmp_path / "a.h5"
+    spec["parameters"][0]["values"] = numpy.array([-9.81, -2])
+    study.run(spec, path=path)
+    assert set(study.table(path)["g"]) == {-9.81, -2}
+    path.unlink()
+    for value, error, message in (({1, 2}, TypeError, "study holds no set"),
+                                  ([float("nan")], ValueError, "not finite")):
+        with pytest.raises(error, match=message):
+            study.run(changed(spec, ("parameters", 0, "values"), value), path=path)
+    with pytest.raises(TypeError, match="Client is needed, not str"):
+        study.run(spec, "tcp://somewhere", path=path)
+    with pytest.raises(ValueError, match="jobs is -1"):
+        study.run(spec, path=path, jobs=-1)
+    with pytest.raises(study.StudyError, match="no shards"):
+        study.merge([], path)
+    assert os.listdir(tmp_path) == []
+
+
+def test_more_shards_than_files_that_a_process_begins_with(spec, tmp_path):
+    shards = [tmp_path / f"{k}.h5" for k in range(1, 25)]
+    for k, shard in enumerate(shards, 1):
+        study.run(spec, path=shard, shard=(k, 24))
+    merge = lambda most: cli("--merge", *shards, "--out", tmp_path / "all.h5", preexec_fn=lambda:
+                             resource.setrlimit(resource.RLIMIT_NOFILE, (40, most)))
+    told = merge(80)  # the system's own limit, which no process may lift
+    assert told.returncode == 2 and "24 shards are too many files to open" in told.stderr
+    assert not (tmp_path / "all.h5").exists()
+    assert merge(1000).returncode == 0
+    study.run(spec, path=tmp_path / "whole.h5")
+    assert contents(tmp_path / "all.h5") == contents(tmp_path / "whole.h5")
+
+
 def test_a_study_that_another_process_is_at_is_refused(spec, tmp_path):
     journal = tmp_path / "a.h5.runs"
     with open(journal, "w") as file:
@@ -364,6 +355,15 @@ def test_a_signal_keeps_what_is_finished(spec, tmp_path, sent):
     child.send_signal(sent)
     assert child.wait(20) == 128 + sent and "--resume" in child.stderr.read()
     assert sorted(os.listdir(tmp_path)) == ["a.h5.runs", "spec.json"]
+
+
+def test_stubs_have_every_function_with_its_arguments():
+    stubs = ast.parse((pathlib.Path(study.__file__).with_suffix(".pyi")).read_text()).body
+    stubs = {f.name: [a.arg for a in f.args.args + f.args.kwonlyargs]
+             for f in stubs if isinstance(f, ast.FunctionDef)}
+    functions = {name: list(inspect.signature(f).parameters) for name, f in vars(study).items()
+                 if inspect.isfunction(f) and not name.startswith("_")}
+    assert stubs == functions
 
 
 def test_the_command_line(spec, tmp_path):

@@ -5,6 +5,8 @@ from typing import Any, TypedDict
 import numpy as np
 import numpy.typing as npt
 
+from . import study as study
+
 __version__: str
 
 Scene = dict[str, Any] | str | os.PathLike[str]

@@ -16,10 +16,13 @@ The file is the same for both, and for `weft study STUDY.json --out ks.h5`, but 
 docs/studies.md has every key.
 """
 
+import contextlib
 import functools
 import itertools
-import json
+import math
 import os
+import queue
+import time
 
 from . import _weft
 
@@ -29,7 +32,7 @@ StudyError = _weft.StudyError
 def read(spec):
     """The study of a dict or of a STUDY file. Raises StudyError with every fault."""
     if isinstance(spec, dict):
-        return _weft.Study(json.dumps(spec, allow_nan=False))
+        return _weft.Study(spec)
     path = os.fspath(spec)
     with open(path, encoding="utf-8") as file:
         return _weft.Study(file.read(), os.path.dirname(path))
@@ -48,8 +51,11 @@ def run(spec, client=None, *, path, resume=False, shard=(1, 1), jobs=0, retries=
     progress: called as progress(done, all) after every run
 
     A run that fails is a row with its reason in the column `outcome`. Raises StudyError for what is wrong
-    with the study, OSError where a file cannot be written.
+    with the study, OSError where a file cannot be written, ConnectionError where the scheduler of Dask is
+    gone; finished runs are kept then.
     """
+    if client is not None and not hasattr(client, "submit"):
+        raise TypeError(f"client: a dask.distributed.Client is needed, not {type(client).__name__}")
     study = read(spec)
     path = os.fspath(path)
     if client is None:
@@ -61,37 +67,84 @@ def run(spec, client=None, *, path, resume=False, shard=(1, 1), jobs=0, retries=
 
 
 def _gather(results, study, client, retries, progress):
-    """Sends out what is missing, a window of runs at a time, and keeps what comes back."""
-    from distributed import CancelledError, KilledWorker, as_completed
+    """Sends out what is missing, as much as the cluster has room for, and keeps what comes back."""
+    from distributed import CancelledError, KilledWorker
 
     missing = results.missing
     runs = iter(missing)
-    flying = as_completed()
-    sent = {}  # the run of each future, and how often it was lost
-    done = 0
+    room = _Room(client)
+    back = queue.SimpleQueue()  # (future, run, how often the run was lost)
+    flying = done = 0
 
     def send(run, lost=0):
         # The text goes with every run: data scattered to workers is gone when they are.
         future = client.submit(_work, study.text, run, pure=False, retries=retries)
-        sent[future.key] = run, lost
-        flying.add(future)
+        future.add_done_callback(lambda future: back.put((future, run, lost)))
 
-    for run in itertools.islice(runs, 4 * max(1, sum(client.nthreads().values()))):
-        send(run)
-    for future in flying:
-        run, lost = sent.pop(future.key)
-        try:
-            record = future.result()
-        except (CancelledError, KilledWorker):
-            if lost == retries:
-                raise
-            send(run, lost + 1)
-            continue
-        results.append(record)
-        done += 1
-        progress(done, len(missing))
-        for run in itertools.islice(runs, 1):
+    while done < len(missing):
+        room.require_scheduler()
+        for run in itertools.islice(runs, max(0, room.runs() - flying)):
             send(run)
+            flying += 1
+        kept = 0
+        batch = _batch(back)
+        for (_, run, lost), record in zip(batch, _fetch(client, [future for future, *_ in batch])):
+            if isinstance(record, bytes):
+                results.append(record)
+                kept += 1
+            elif isinstance(record, (CancelledError, KilledWorker, OSError)) and lost < retries:
+                room.require_scheduler()  # an OSError: it ended while it was asked
+                send(run, lost + 1)
+            else:
+                raise record
+        results.store()  # runs that are told of are safe
+        flying -= kept
+        for _ in range(kept):
+            done += 1
+            progress(done, len(missing))
+
+
+def _batch(back):
+    """What has come back by now, at most as much as one message carries; waits a second for the first."""
+    batch = []
+    try:
+        batch.append(back.get(timeout=1))
+        while len(batch) < 64:
+            batch.append(back.get_nowait())
+    except queue.Empty:
+        pass
+    return batch
+
+
+def _fetch(client, futures):
+    """The record of each, or the error that it ended with; in one message where all went well."""
+    try:
+        return client.gather(futures)
+    except Exception as error:
+        if len(futures) == 1:
+            return [error]
+        return [_fetch(client, [future])[0] for future in futures]
+
+
+class _Room:
+    """How many runs may be on their way: four for every thread of the cluster, which grows and shrinks."""
+
+    def __init__(self, client):
+        self._client, self._runs, self._asked = client, 4, -math.inf
+
+    def runs(self):
+        now = time.monotonic()
+        if now > self._asked + 1 and self._client.status == "running":
+            self._asked = now
+            with contextlib.suppress(OSError):  # the scheduler is being lost
+                self._runs = 4 * max(1, sum(self._client.nthreads().values()))
+        return self._runs
+
+    def require_scheduler(self):
+        # A client looks for a lost scheduler for a while (distributed.comm.timeouts.connect), then closes.
+        if self._client.status in ("closing", "closed"):
+            raise ConnectionError(
+                "the scheduler is gone; finished runs are kept, and resume=True goes on with them")
 
 
 @functools.lru_cache(maxsize=4)
