@@ -91,7 +91,7 @@ std::string to_svg(const HeatMap& map) {
   const double height = bottom + 40 + 17 * double(map.marks.size());
   std::ostringstream out;
   out << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " << width << ' ' << height
-      << "\" font-stencil=\"Inter, 'Helvetica Neue', Arial, sans-serif\" font-size=\"11.5\" "
+      << "\" font-family=\"Inter, 'Helvetica Neue', Arial, sans-serif\" font-size=\"11.5\" "
          "fill=\"#1d2430\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
   text(out, kLeft, 30, map.title, "font-size=\"18\" font-weight=\"700\"");
   text(out, kLeft, 50, map.subtitle, "fill=\"#5b6472\"");

@@ -224,7 +224,7 @@ std::string to_svg(const Plot& plot) {
   const Axis x(e.x0, e.x1, kLeft, kRight), y(e.y0, e.y1, kBottom, kTop);
   std::ostringstream out;
   out << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " << kWidth << ' ' << kHeight
-      << "\" font-stencil=\"Inter, 'Helvetica Neue', Arial, sans-serif\" font-size=\"12\" fill=\""
+      << "\" font-family=\"Inter, 'Helvetica Neue', Arial, sans-serif\" font-size=\"12\" fill=\""
       << kInk << "\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
       << "<text x=\"" << kLeft << "\" y=\"36\" font-size=\"19\" font-weight=\"700\">"
       << escaped(plot.title) << "</text>\n<text x=\"" << kLeft << "\" y=\"59\" fill=\"#5b6472\">"
