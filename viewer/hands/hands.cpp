@@ -95,14 +95,14 @@ void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer
       workspace.messages.warn("Meshes are not cut, only grids are", workspace.now());
     return;
   }
-  if (tool == Tool::move && pusher.take_gizmo(workspace, area, pointer.x, pointer.y)) {
+  if (tool == Tool::move && pusher.take_handle(workspace, area, pointer.x, pointer.y)) {
     drag_ = Drag::body;
     return;
   }
   const auto body = pick_body(workspace.frame_data(), ray);
   const bool cloth_first = cloth && (!body || cloth->distance <= body->distance);
   if (cloth_first && tool == Tool::move) {
-    pusher.choose(Pusher::kCloth);
+    pusher.choose(Part{Kind::cloth, static_cast<std::size_t>(cloth->cloth)});
   } else if (cloth_first) {
     drag_ = Drag::cloth;
     held_ = *cloth;
@@ -158,9 +158,11 @@ void Hands::cut(Workspace& workspace) {
   joined_ = workspace.edit(changes, joined_, "cut") || joined_;
 }
 
-void Hands::choose_newest(const Workspace& workspace) {
+void Hands::choose_newest(const Workspace& workspace, Kind kind) {
   tool = Tool::move;
-  pusher.choose(static_cast<int>(workspace.document().scene().colliders.size()) - 1);
+  const Scene& scene = workspace.document().scene();
+  pusher.choose(
+      Part{kind, (kind == Kind::body ? scene.colliders.size() : scene.cloths.size()) - 1});
 }
 
 // A small one is a click on the nearest particle.

@@ -33,8 +33,8 @@ class Hands {
   // Marks over the picture: pins, what is held, the stroke, arrows of the chosen body.
   void draw(const Workspace& workspace, const Area& area, ImDrawList& list) const;
 
-  // Takes up the newest body, to be moved.
-  void choose_newest(const Workspace& workspace);
+  // Takes up the newest cloth or body, to be moved.
+  void choose_newest(const Workspace& workspace, Kind kind);
 
   bool busy() const { return drag_ != Drag::none; }
 

@@ -17,8 +17,10 @@ void draw_fabrics(Workspace& workspace) {
     if (&fabric != kFabrics.data()) ImGui::SameLine(0, gap);
     if (ImGui::Button(std::string(fabric.name).c_str(), {width, 0})) {
       std::vector<Document::Change> changes;
-      for (std::size_t c = 0; c < workspace.document().scene().cloths.size(); ++c)
-        for (Document::Change& change : changes_to(fabric, c)) changes.push_back(std::move(change));
+      const std::vector<Cloth>& cloths = workspace.document().scene().cloths;
+      for (std::size_t c = 0; c < cloths.size(); ++c)
+        for (Document::Change& change : changes_to(fabric, c, cloths[c].mesh.given()))
+          changes.push_back(std::move(change));
       workspace.edit(changes, false, std::string(fabric.name));
     }
     mark(std::string(fabric.name));

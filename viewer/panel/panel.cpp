@@ -81,7 +81,9 @@ void Panel::draw_side(Workspace& workspace, Requests& requests) {
 
 void Panel::draw(Workspace& workspace, Hands& hands, Requests& requests) {
   if (has_side()) draw_side(workspace, requests);
-  if (requests.newest) hands.choose_newest(workspace);
+  if (requests.mesh) mesh_form.ask("");
+  mesh_form.draw(workspace, requests);
+  if (requests.newest) hands.choose_newest(workspace, *requests.newest);
   const Area area = picture_area();
   if (visible) {
     draw_tools(hands, area, keys_);

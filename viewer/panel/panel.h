@@ -4,6 +4,7 @@
 #include "hands/hands.h"
 #include "panel/gallery.h"
 #include "panel/history.h"
+#include "panel/mesh_form.h"
 #include "panel/parameters.h"
 #include "window/keys.h"
 #include "window/workspace.h"
@@ -20,8 +21,9 @@ struct PictureRequest {
 struct Requests {
   std::optional<PictureRequest> picture;
   bool film = false;
-  bool newest = false;   // the newest body is to be moved
-  bool gallery = false;  // to be opened
+  std::optional<Kind> newest;  // the newest of the kind is to be moved
+  bool gallery = false;        // to be opened
+  bool mesh = false;           // a file of a mesh is to be added
 };
 
 // What a person has put into the forms of pictures and exports.
@@ -48,6 +50,7 @@ class Panel {
   bool help = false;
   bool filming = false;
   Gallery gallery;
+  MeshForm mesh_form;
   History history;
 
  private:

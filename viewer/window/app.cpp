@@ -183,19 +183,17 @@ void App::dispatch(Action action) {
   dispatch_part(action);
 }
 
-// The body that the arrows move.
+// What the handles are about.
 void App::dispatch_part(Action action) {
-  const int chosen = hands_.pusher.chosen();
   if (action != Action::remove && action != Action::duplicate) return;
-  if (hands_.tool != Tool::move || chosen < 0) {
-    workspace_.messages.tell("Choose a body with the tool Move first; cloths are in the panel",
-                             workspace_.now());
+  const std::optional<Part> chosen = hands_.pusher.chosen();
+  if (hands_.tool != Tool::move || !chosen) {
+    workspace_.messages.tell("Choose a cloth or a body with the tool Move first", workspace_.now());
     return;
   }
-  const Part part{Kind::body, static_cast<std::size_t>(chosen)};
-  if (part.number >= workspace_.document().scene().colliders.size()) return;
-  if (action == Action::remove && workspace_.remove(part)) hands_.pusher.choose(Pusher::kNothing);
-  if (action == Action::duplicate && workspace_.duplicate(part)) hands_.choose_newest(workspace_);
+  if (action == Action::remove && workspace_.remove(*chosen)) hands_.pusher.choose({});
+  if (action == Action::duplicate && workspace_.duplicate(*chosen))
+    hands_.choose_newest(workspace_, chosen->kind);
 }
 
 // The list or the help that is open; where nothing is, says how to leave.
@@ -250,7 +248,7 @@ void App::push_bodies(double seconds) {
       seconds);
 }
 
-// A picture becomes the texture, anything else is a scene.
+// A picture becomes the texture, of a mesh the person is asked what it is to be, anything else is a scene.
 void App::take_dropped() {
   for (const std::string& path : window_.take_dropped()) {
     std::string extension = std::filesystem::path(path).extension().string();
@@ -259,6 +257,8 @@ void App::take_dropped() {
     if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
       workspace_.pictures.texture = path;
       workspace_.look = find_look("texture");
+    } else if (extension == ".obj") {
+      panel_.mesh_form.ask(path);
     } else {
       workspace_.open(path);
     }

@@ -38,6 +38,8 @@ class Workspace {
   // Puts a cloth, or a body of the shape (kShapeNames), where the camera looks.
   bool add_cloth();
   bool add_body(std::size_t shape);
+  // Puts in what a file of a mesh has, which is read (weft/mesh.h).
+  bool add_mesh(Kind kind, const MeshSource& mesh);
   // Puts the part beside itself once more, or takes it away.
   bool duplicate(const Part& part);
   bool remove(const Part& part);
