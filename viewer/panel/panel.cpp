@@ -47,7 +47,8 @@ void Panel::draw_side(Workspace& workspace, Requests& requests) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
   ImGui::Begin("side", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoNav);
   draw_scenes(workspace, requests, path_);
   draw_files(workspace, requests, forms_, filming);
   ImGui::Dummy({0, 2});

@@ -61,7 +61,8 @@ struct LookSettings {
   float force_scale = 1;  // colours per weight of a particle
   float strain_range = 0.1f;
   bool shadows = true;
-  int shadow_softness = 4;  // samples along each side of the shadow's soft edge, 1 … 4
+  int shadow_softness = 3;  // samples along each side of the shadow's soft edge, 1 … 4
+  int shadow_size = 2048;   // of the map of depths that shadows come from, each side
   bool ground = true;
   int tessellation = 64;  // of spheres around, 16 … 128
   int refinement = 0;     // vertices per grid cell side; 0: as many as the detail asks for

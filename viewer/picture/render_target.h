@@ -1,5 +1,5 @@
-// Where a picture is drawn: an off-screen image with several samples per pixel, made one by
-// resolve(). Colours are stored as sRGB.
+// Where a picture is drawn: an off-screen image, with several samples per pixel that resolve() makes one.
+// Colours are stored as sRGB.
 #pragma once
 
 #include "picture/gl.h"
@@ -23,6 +23,7 @@ class RenderTarget {
 
  private:
   int width_, height_;
+  bool several_;  // samples
   Renderbuffer samples_color_, samples_depth_, color_;
   Framebuffer samples_, result_;
 };
@@ -32,6 +33,7 @@ class ShadowMap {
  public:
   explicit ShadowMap(int size);
   void begin() const;
+  int size() const { return size_; }
   GLuint texture() const { return depth_.id(); }
 
  private:

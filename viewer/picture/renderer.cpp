@@ -38,7 +38,6 @@ void set(float (&to)[4], Vec3f v, float w) {
 
 Renderer::Renderer(const PictureFiles& files)
     : folder_(find_shaders()),
-      shadow_map_(2048),
       frame_(make_buffer()),
       nothing_(make_vertex_array()) {
   set_pictures(files);
@@ -93,10 +92,10 @@ void Renderer::draw(const FrameData& frame_data, const Setting& setting, const L
   const float aspect = static_cast<float>(target.width()) / static_cast<float>(target.height());
   update_meshes(frame_data, setting, look, settings);
   update_bodies(frame_data, setting, settings);
-  draw_shadow_map(frame_data, setting, settings);
+  draw_shadow_map(frame_data, setting, look, settings);
   upload_frame(setting, settings, camera, aspect);
   const std::pair<GLenum, GLuint> textures[] = {
-      {GL_TEXTURE_CUBE_MAP, sky_.id()},   {GL_TEXTURE_2D, shadow_map_.texture()},
+      {GL_TEXTURE_CUBE_MAP, sky_.id()},   {GL_TEXTURE_2D, shadow_map_->texture()},
       {GL_TEXTURE_2D, texture_.id()},     {GL_TEXTURE_2D, height_map_.id()},
       {GL_TEXTURE_2D, material_[0].id()}, {GL_TEXTURE_2D, material_[1].id()},
       {GL_TEXTURE_2D, material_[2].id()}, {GL_TEXTURE_2D, material_[3].id()}};
@@ -190,9 +189,16 @@ void Renderer::Body::draw(const Shader& shader) const {
   mesh.draw();
 }
 
+// Where the camera alone has moved, the map of before serves.
 void Renderer::draw_shadow_map(const FrameData& frame_data, const Setting& setting,
-                               const LookSettings& settings) {
+                               const Look& look, const LookSettings& settings) {
+  shadow_map_ = &shadow_maps_.try_emplace(settings.shadow_size, settings.shadow_size).first->second;
   if (!settings.shadows) return;
+  const Shadowed now{frame_data.scene_serial, frame_data.change,    frame_data.frame,
+                     settings.shadow_size,    settings.detail,      settings.refinement,
+                     settings.tessellation,   &look};
+  if (now == shadowed_) return;
+  shadowed_ = now;
   const Bounds bounds = visible_bounds(frame_data);
   const float r = 1.02f * bounds.radius();
   const Vec3f eye = bounds.center() + kLight * (1.5f * r);
@@ -200,7 +206,7 @@ void Renderer::draw_shadow_map(const FrameData& frame_data, const Setting& setti
                      look_at(eye, bounds.center(), any_normal(kLight));
   const Mat4 to_texture{{0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0, 0.5f, 0.5f, 0.5f, 1}};
   shadow_matrix_ = to_texture * light;
-  shadow_map_.begin();
+  shadow_map_->begin();
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5f, 4);
   const Shader& depth = shader("shadow");
@@ -220,7 +226,9 @@ void Renderer::upload_frame(const Setting& setting, const LookSettings& settings
   block.shadow_matrix = shadow_matrix_;
   const float t = std::tan(camera.fov() / 2);
   set(block.eye, camera.eye(), setting.size);
-  set(block.light, kLight, 0.0025f * setting.size);
+  // Small maps are coarse.
+  const float coarse = std::max(1.0f, 1024.0f / static_cast<float>(settings.shadow_size));
+  set(block.light, kLight, 0.0025f * setting.size * coarse);
   set(block.light_color, kLightColor,
       settings.shadows ? static_cast<float>(settings.shadow_softness) : 0.0f);
   set(block.right, camera.right() * (t * aspect), 0);
@@ -255,10 +263,9 @@ void Renderer::set_material(const Shader& shader, const LookSettings& settings, 
 
 void Renderer::draw_ground(const Setting& setting) {
   if (floor_.empty()) return;
-  const Shader& ground = shader("ground");
+  const Shader& ground = shader(setting.solid ? "ground" : "grid");
   ground.use();
   ground.set("u_ground", floor_center_, 4 * setting.size);
-  ground.set("u_solid", setting.solid ? 1.0f : 0.0f);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   floor_.front().draw();
@@ -271,7 +278,11 @@ void Renderer::draw_bodies(const Look& look, const LookSettings& settings, const
   for (const Body& body : bodies_) {
     // A wall between the eye and the cloth would hide what it pushes.
     const Plane* plane = std::get_if<Plane>(&body.collider.shape);
-    if (!plane || in_front_of(*plane, camera.eye())) body.draw(material);
+    if (plane && !in_front_of(*plane, camera.eye())) continue;
+    const bool closed = !plane && !std::holds_alternative<MeshBody>(body.shape);
+    if (closed) glEnable(GL_CULL_FACE);
+    body.draw(material);
+    glDisable(GL_CULL_FACE);
   }
 }
 

@@ -44,7 +44,7 @@ class Renderer {
                      const LookSettings& settings);
   void update_bodies(const FrameData& frame_data, const Setting& setting,
                      const LookSettings& settings);
-  void draw_shadow_map(const FrameData& frame_data, const Setting& setting,
+  void draw_shadow_map(const FrameData& frame_data, const Setting& setting, const Look& look,
                        const LookSettings& settings);
   void upload_frame(const Setting& setting, const LookSettings& settings, const Camera& camera,
                     float aspect);
@@ -58,7 +58,16 @@ class Renderer {
 
   std::filesystem::path folder_;
   std::map<std::string, Shader, std::less<>> shaders_;
-  ShadowMap shadow_map_;
+  std::map<int, ShadowMap> shadow_maps_;  // by size
+  const ShadowMap* shadow_map_ = nullptr; // as drawn last
+  // Of what the shadow map was drawn.
+  struct Shadowed {
+    std::uint64_t scene = ~std::uint64_t{0}, change = 0;
+    std::int64_t frame = -1;
+    int size = 0, detail = 0, refinement = 0, tessellation = 0;
+    const Look* look = nullptr;
+    friend bool operator==(const Shadowed&, const Shadowed&) = default;
+  } shadowed_;
   PictureFiles files_;
   Texture texture_, height_map_, sky_;
   std::array<Texture, 4> material_;  // in the order of MaterialMap

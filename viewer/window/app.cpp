@@ -82,7 +82,7 @@ void App::run() {
     turn_ = {};
     turn();
     const double took = seconds_now() - start;
-    view_.took(1e3 * took);
+    if (turn_.drawn) view_.took(1e3 * took);
     window_.poll(std::max(0.0, kTurn - took));
     turn_.all_ms = 1e3 * (seconds_now() - start);
     panel_.history.add(workspace_.telemetry(), workspace_.frame_data().scene_serial, turn_);
@@ -108,21 +108,42 @@ std::string App::end() {
   return problem + (problem.empty() || other.empty() ? "" : "\n") + other;
 }
 
-// The first second, in which shaders are compiled, does not count.
+// The first second, in which shaders are compiled, does not count. At the end the scene is paused, and it is
+// measured how long the full picture takes to come.
 bool App::measured(double begun) {
-  const double since = seconds_now() - begun;
+  constexpr double kPatience = 10;  // s
+  const double now = seconds_now(), since = now - begun;
+  if (paused_at_ > 0) {
+    const bool full = turn_.picture && !view_.coarse() && workspace_.telemetry().paused;
+    if (full) std::printf("pause to full picture %.0f ms\n", 1e3 * (now - paused_at_));
+    return full || now - paused_at_ > kPatience;
+  }
   if (since > 1) turns_.push_back(turn_);
   if (since < 1 + measure_) return false;
   std::fputs(words(turns_).c_str(), stdout);
-  return true;
+  if (workspace_.telemetry().paused) return true;
+  paused_at_ = now;
+  workspace_.play(false);
+  return false;
+}
+
+// Nothing is drawn while there is nothing new: where the processor draws, that is time for the simulation.
+// What fades, and the figures, are looked at now and then.
+bool App::due(double now, bool fresh) {
+  constexpr double kSettles = 0.3, kNowAndThen = 0.1;  // s
+  if (window_.take_stir()) stirred_ = now;
+  return fresh || hands_.busy() || ImGui::IsAnyMouseDown() || film_ || now - stirred_ < kSettles ||
+         now - last_turn_ >= kNowAndThen;
 }
 
 void App::turn() {
   const double now = seconds_now();
-  workspace_.refresh(now);
+  const bool fresh = workspace_.refresh(now);
+  const bool draws = due(now, fresh);
   take_dropped();
   view_.reload(workspace_);
-  if (!window_.visible()) return;
+  if (!window_.visible() || !draws) return;
+  turn_.drawn = true;
   const double panel_start = cpu_ms();
   landmarks_.clear();
   window_.begin_panel();
@@ -146,7 +167,7 @@ void App::turn() {
   const double picture_start = cpu_ms();
   draw_picture();
   const double picture_end = cpu_ms();
-  window_.end_panel();
+  window_.end_panel(window_.width() - picture_size().first);
   turn_.panel_ms = cpu_ms() - picture_end + picture_start - panel_start;
   turn_.picture = view_.drawn();
   if (view_.drawn()) turn_.surface_ms = view_.own_ms();

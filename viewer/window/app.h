@@ -36,6 +36,7 @@ class App {
   void push_bodies(double seconds);
   void take_dropped();
   bool measured(double begun);
+  bool due(double now, bool fresh);
   void turn();
   void draw_picture();
   void apply(const Requests& requests);
@@ -59,7 +60,9 @@ class App {
   double measure_;                                             // s, 0: not at all
   std::vector<Turn> turns_;
   Turn turn_;             // the present one
-  double last_turn_ = 0;  // s
+  double last_turn_ = 0;  // s, of those that drew
+  double stirred_ = 0;    // s, when somebody did something
+  double paused_at_ = 0;  // s, at the end of a measurement
   EndAtExit end_at_exit_{[this] { return end(); }};
 };
 

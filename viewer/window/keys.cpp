@@ -198,7 +198,7 @@ Action Keys::action_of(const KeyPress& press) const {
 bool Keys::held(Action action, const Window& window) const {
   const auto& bindings = bindings_[static_cast<std::size_t>(action)];
   return std::any_of(bindings.begin(), bindings.end(),
-                     [&](const Binding& b) { return window.key_down(b.key); });
+                     [&](const Binding& b) { return window.key_down(b.key, b.mods); });
 }
 
 std::string Keys::names_of(Action action) const {

@@ -10,11 +10,14 @@ namespace {
 constexpr struct {
   int samples;
   float scale;
-  int shadow_softness, detail;
-} kQuality[] = {{4, 1.0f, 4, 200}, {2, 0.8f, 2, 120}, {1, 0.6f, 1, 70}, {1, 0.45f, 1, 40}};
+  int shadow_softness, shadow_size, detail, tessellation;
+} kQuality[] = {{4, 1.0f, 3, 2048, 200, 128},
+                {2, 0.8f, 2, 1024, 120, 64},
+                {1, 0.6f, 1, 1024, 70, 48},
+                {1, 0.45f, 1, 512, 40, 32}};
 constexpr int kCoarsest = std::size(kQuality) - 1;
 constexpr double kSlow = 28, kQuick = 9;  // ms a frame: coarser beyond, finer below
-constexpr double kRest = 0.25;            // s without a change while paused, then the full picture
+constexpr double kRest = 0.25;            // s without a change in a paused scene, then the full picture
 
 // Drawn by the processor.
 bool is_software() {
@@ -61,7 +64,12 @@ void View::draw(Workspace& workspace, int x, int y, int width, int height) {
                  height};
   const bool changed = stale_ || !(now == seen_);
   if (changed) last_change_ = workspace.now();
-  const bool rests = workspace.telemetry().paused && workspace.now() - last_change_ > kRest;
+  // Who pauses wants to see it at once; who turns a paused scene, when it stands still.
+  const bool paused = workspace.telemetry().paused;
+  // The first picture is in full, too: so drivers have compiled what they need when somebody pauses.
+  const bool first = !target_;
+  const bool rests = first || (paused && (!was_paused_ || workspace.now() - last_change_ > kRest));
+  was_paused_ = paused;
   const int coarseness = rests ? 0 : coarseness_;
   drawn_ = changed || (rests && drawn_coarseness_ > 0);
   if (drawn_) {
@@ -73,7 +81,9 @@ void View::draw(Workspace& workspace, int x, int y, int width, int height) {
       target_.emplace(w, h, quality.samples);
     LookSettings settings = workspace.settings;
     settings.shadow_softness = quality.shadow_softness;
+    settings.shadow_size = quality.shadow_size;
     settings.detail = quality.detail;
+    settings.tessellation = std::min(settings.tessellation, quality.tessellation);
     if (coarseness > 0) settings.refinement = 0;
     renderer_.draw(frame_data, workspace.setting(), *workspace.look, settings, camera, *target_);
     seen_ = now;

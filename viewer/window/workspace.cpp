@@ -281,7 +281,7 @@ void Workspace::tell_kept() {
   if (!path.empty()) messages.tell("Changes that were not saved are kept in " + path, now_);
 }
 
-void Workspace::refresh(double now) {
+bool Workspace::refresh(double now) {
   now_ = now;
   messages.forget(now);
   const bool fresh = session_->refresh();
@@ -310,6 +310,7 @@ void Workspace::refresh(double now) {
   post_change();
   watch_file();
   keep_edits();
+  return fresh;
 }
 
 }  // namespace weft::viewer

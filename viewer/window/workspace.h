@@ -64,8 +64,9 @@ class Workspace {
   void show_home();
   void show_along(float azimuth, float elevation);
 
-  // Once a frame: takes the newest state, posts what waits, looks after the scene's file.
-  void refresh(double now);
+  // Once a turn: takes the newest state, posts what waits, looks after the scene's file. True: there is a new
+  // state.
+  bool refresh(double now);
 
   const Document& document() const { return document_; }
   // Frames from this time of the simulation on [s] wait.
