@@ -1,6 +1,7 @@
 // All controls around and over the picture. Each part is a file of its own.
 #pragma once
 
+#include "film/film_request.h"
 #include "hands/hands.h"
 #include "panel/gallery.h"
 #include "panel/history.h"
@@ -20,7 +21,7 @@ struct PictureRequest {
 // What a person asks for that the window itself must do.
 struct Requests {
   std::optional<PictureRequest> picture;
-  bool film = false;
+  std::optional<FilmRequest> film;  // begun, or ended
   std::optional<Kind> newest;  // the newest of the kind is to be moved
   bool gallery = false;        // to be opened
   bool mesh = false;           // a file of a mesh is to be added
@@ -32,8 +33,9 @@ struct FileForms {
   int format = 0;          // of animation_extensions()
   std::string path;        // of the export
   bool named = false;      // the path was typed
-  bool endless = true;     // from now on, until it is ended
-  int frames[2] = {0, 0};  // else the first and the last
+  FrameRange frames;       // of the export
+  bool film_as_view = true;
+  FilmRequest film{1920, 1080, {}};
 };
 
 class Panel {

@@ -68,6 +68,18 @@ void RenderTarget::resolve() const {
   glDisable(GL_FRAMEBUFFER_SRGB);  // the panel's colours are sRGB already
 }
 
+void RenderTarget::begin_over() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, result_.id());
+  glViewport(0, 0, width_, height_);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+}
+
+void RenderTarget::copy_depth(GLuint framebuffer) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, several_ ? samples_.id() : result_.id());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+}
+
 void RenderTarget::show(GLuint framebuffer, int x, int y, int width, int height) const {
   const bool same = width == width_ && height == height_;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, result_.id());

@@ -17,6 +17,10 @@ class RenderTarget {
 
   void begin() const;    // draws go here from now on
   void resolve() const;  // joins the samples; further draws (the panel) go onto the result
+  // Draws go onto the result from now on, without depths.
+  void begin_over() const;
+  // Copies the depths into a framebuffer of the same size, of 24 bits and one sample.
+  void copy_depth(GLuint framebuffer) const;
   // Copies the result there, stretched to a rectangle with its lower left corner at (x, y).
   void show(GLuint framebuffer, int x, int y, int width, int height) const;
   Picture read() const;

@@ -1,9 +1,11 @@
 // The passes of a picture, in order: draw() reads like the list.
 #include "picture/renderer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "picture/cpu_time.h"
+#include "weft/mesh.h"
 
 namespace weft::viewer {
 
@@ -28,6 +30,19 @@ void shrink(Collider& body, double s) {
   };
   if (Sphere* sphere = std::get_if<Sphere>(&body.shape)) sphere->radius = less(sphere->radius);
   if (Capsule* capsule = std::get_if<Capsule>(&body.shape)) capsule->radius = less(capsule->radius);
+}
+
+// Of a sheet along u and v; of a mesh, whose texture coordinates are its file's or span its two longest sides,
+// about what they are for.
+std::pair<float, float> sides_of(const Cloth& cloth) {
+  if (!cloth.mesh.given()) return {length(to_float(cloth.grid.u)), length(to_float(cloth.grid.v))};
+  Bounds bounds;
+  for (const Vec3& p : cloth.mesh.shape->vertices) bounds.add(to_float(p));
+  const auto scale = static_cast<float>(cloth.mesh.scale);
+  const Vec3f size = (bounds.high - bounds.low) * scale;
+  float sides[3] = {size.x, size.y, size.z};
+  std::sort(std::begin(sides), std::end(sides));
+  return {sides[2], sides[1]};
 }
 
 void set(float (&to)[4], Vec3f v, float w) {
@@ -112,9 +127,12 @@ void Renderer::draw(const FrameData& frame_data, const Setting& setting, const L
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_DEPTH_TEST);
   draw_bodies(look, settings, camera);
-  draw_cloths(look, settings, target, setting);
+  draw_cloths(frame_data, look, settings, target, setting);
   if (settings.ground && setting.has_ground) draw_ground(setting);  // it may be seen through
   target.resolve();
+  constexpr float kReach = 0.1f;  // sizes of the scene
+  if (settings.occlusion)
+    occlusion_.apply(target, shader("occlusion"), shader("occlude"), camera, kReach * setting.size);
 }
 
 void Renderer::update_meshes(const FrameData& frame_data, const Setting& setting, const Look& look,
@@ -246,7 +264,9 @@ void Renderer::set_material(const Shader& shader, const LookSettings& settings, 
   shader.set("u_roughness", settings.roughness);
   shader.set("u_metallic", settings.metallic);
   shader.set("u_maps", settings.maps ? 1.0f : 0.0f);
-  shader.set("u_translucency", cloth ? 0.22f : 0.0f);
+  shader.set("u_translucency", cloth ? settings.translucency : 0.0f);
+  shader.set("u_weave", static_cast<float>(settings.weave));
+  shader.set("u_sheen", settings.sheen);
   shader.set("u_two_sided", cloth ? 1.0f : 0.0f);
   shader.set("u_parts", Vec3f{settings.ambient ? 1.0f : 0.0f, settings.diffuse ? 1.0f : 0.0f,
                               settings.specular ? 1.0f : 0.0f});
@@ -297,8 +317,9 @@ void Renderer::draw_faces(const ClothMesh& cloth, const Shader& material, float 
   glDisable(GL_CULL_FACE);
 }
 
-void Renderer::draw_cloths(const Look& look, const LookSettings& settings,
-                           const RenderTarget& target, const Setting& setting) {
+void Renderer::draw_cloths(const FrameData& frame_data, const Look& look,
+                           const LookSettings& settings, const RenderTarget& target,
+                           const Setting& setting) {
   const Shader& material = shader(look.name);
   set_material(material, settings, true);
   const float spacing = setting.size / 150;
@@ -307,7 +328,10 @@ void Renderer::draw_cloths(const Look& look, const LookSettings& settings,
   const std::pair<bool, Vec3f> kinds[] = {{settings.structural, kStructuralColor},
                                           {settings.shear, kShearColor},
                                           {settings.bend, kBendColor}};
-  for (const ClothMesh& cloth : cloths_) {
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    const ClothMesh& cloth = cloths_[c];
+    const auto [along_u, along_v] = sides_of(frame_data.scene->cloths[c]);
+    material.set("u_threads", settings.threads * along_u, settings.threads * along_v);
     if (look.draw == Look::Draw::surface && !look.raised) cloth.draw_surface();
     if (look.draw == Look::Draw::surface && look.raised)
       draw_faces(cloth, material, settings.height_scale);

@@ -9,6 +9,7 @@
 #include "picture/camera.h"
 #include "picture/look.h"
 #include "picture/meshes.h"
+#include "picture/occlusion.h"
 #include "picture/render_target.h"
 #include "picture/setting.h"
 #include "picture/shader.h"
@@ -53,8 +54,8 @@ class Renderer {
   void draw_bodies(const Look& look, const LookSettings& settings, const Camera& camera);
   // The two faces of a cloth, each raised to its side.
   static void draw_faces(const ClothMesh& cloth, const Shader& material, float height);
-  void draw_cloths(const Look& look, const LookSettings& settings, const RenderTarget& target,
-                   const Setting& setting);
+  void draw_cloths(const FrameData& frame_data, const Look& look, const LookSettings& settings,
+                   const RenderTarget& target, const Setting& setting);
 
   std::filesystem::path folder_;
   std::map<std::string, Shader, std::less<>> shaders_;
@@ -73,6 +74,7 @@ class Renderer {
   std::array<Texture, 4> material_;  // in the order of MaterialMap
   std::vector<std::string> picture_problems_;
   Buffer frame_;
+  Occlusion occlusion_;
   VertexArray nothing_;  // for the background's triangle
 
   std::vector<ClothMesh> cloths_;

@@ -97,13 +97,7 @@ void App::run() {
 
 // All files that are not finished are; nobody looks at the window any more: what went wrong, or "".
 std::string App::end() {
-  std::string problem;
-  try {
-    if (film_) film_->finish();
-  } catch (const Failure& failure) {
-    problem = failure.what();
-  }
-  film_.reset();
+  const std::string problem = filming_.finish();
   const std::string other = workspace_.end();
   return problem + (problem.empty() || other.empty() ? "" : "\n") + other;
 }
@@ -115,7 +109,9 @@ bool App::measured(double begun) {
   const double now = seconds_now(), since = now - begun;
   if (paused_at_ > 0) {
     const bool full = turn_.picture && !view_.coarse() && workspace_.telemetry().paused;
-    if (full) std::printf("pause to full picture %.0f ms\n", 1e3 * (now - paused_at_));
+    if (full)
+      std::printf("pause to full picture %.0f ms (%.0f ms of processor time)\n",
+                  1e3 * (now - paused_at_), cpu_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms_);
     return full || now - paused_at_ > kPatience;
   }
   if (since > 1) turns_.push_back(turn_);
@@ -123,6 +119,7 @@ bool App::measured(double begun) {
   std::fputs(words(turns_).c_str(), stdout);
   if (workspace_.telemetry().paused) return true;
   paused_at_ = now;
+  worked_ms_ = cpu_ms(CLOCK_PROCESS_CPUTIME_ID);
   workspace_.play(false);
   return false;
 }
@@ -132,7 +129,7 @@ bool App::measured(double begun) {
 bool App::due(double now, bool fresh) {
   constexpr double kSettles = 0.3, kNowAndThen = 0.1;  // s
   if (window_.take_stir()) stirred_ = now;
-  return fresh || hands_.busy() || ImGui::IsAnyMouseDown() || film_ || now - stirred_ < kSettles ||
+  return fresh || hands_.busy() || ImGui::IsAnyMouseDown() || filming_.on() || now - stirred_ < kSettles ||
          now - last_turn_ >= kNowAndThen;
 }
 
@@ -162,7 +159,7 @@ void App::turn() {
   hands_.update(workspace_, area, pointer_now());
   hands_.draw(workspace_, area, *ImGui::GetBackgroundDrawList());
   Requests requests;
-  panel_.filming = film_.has_value();
+  panel_.filming = filming_.on();
   panel_.draw(workspace_, hands_, requests);
   const double picture_start = cpu_ms();
   draw_picture();
@@ -173,7 +170,7 @@ void App::turn() {
   if (view_.drawn()) turn_.surface_ms = view_.own_ms();
   window_.swap();
   apply(requests);
-  film();
+  filming_.turn(workspace_, view_);
   log_.write(workspace_, view_, hands_, panel_.help, landmarks_);
 }
 
@@ -196,7 +193,7 @@ void App::dispatch(Action action) {
   if (action == Action::help) panel_.help = !panel_.help;
   if (action == Action::panel) panel_.visible = !panel_.visible;
   if (action == Action::screenshot) take_picture({});
-  if (action == Action::film) start_or_end_film();
+  if (action == Action::film) start_or_end_film({});
   if (action >= Action::hand && action <= Action::ball)
     hands_.tool = static_cast<Tool>(static_cast<int>(action) - static_cast<int>(Action::hand));
   dispatch_scene(action);
@@ -288,7 +285,7 @@ void App::take_dropped() {
 
 void App::apply(const Requests& requests) {
   if (requests.picture) take_picture(*requests.picture);
-  if (requests.film) start_or_end_film();
+  if (requests.film) start_or_end_film(*requests.film);
 }
 
 void App::take_picture(const PictureRequest& asked) {
@@ -303,49 +300,12 @@ void App::take_picture(const PictureRequest& asked) {
   }
 }
 
-void App::start_or_end_film() {
-  if (film_) {
-    end_film();
-    return;
-  }
+void App::start_or_end_film(const FilmRequest& asked) {
   const auto [width, height] = picture_size();
-  try {
-    film_.emplace(workspace_.document().name(), workspace_.record(), width & ~1, height & ~1,
-                  workspace_.frame_data().time);
-    waits_at_ = film_->next();
-    workspace_.wait_at(waits_at_);
-    workspace_.messages.tell("The film goes to " + full_path(film_->path()) + " until you end it",
-                             workspace_.now());
-  } catch (const Failure& failure) {
-    workspace_.messages.warn("No film: " + std::string(failure.what()), workspace_.now());
-  }
-}
-
-void App::end_film() {
-  try {
-    film_->finish();
-    workspace_.messages.tell("Film saved to " + full_path(film_->path()), workspace_.now());
-  } catch (const Failure& failure) {
-    workspace_.messages.warn("No film: " + std::string(failure.what()), workspace_.now());
-  }
-  film_.reset();
-}
-
-void App::film() {
-  if (film_) {
-    const int due = film_->due(workspace_.frame_data().time);
-    try {
-      if (due > 0) film_->add(view_.picture(workspace_, film_->width(), film_->height()), due);
-    } catch (const Failure& failure) {
-      workspace_.messages.warn("The film ends: " + std::string(failure.what()), workspace_.now());
-      film_.reset();
-    }
-  }
-  // Each picture is of a moment of its own, however slowly they are drawn.
-  const double next = film_ ? film_->next() : std::numeric_limits<double>::infinity();
-  if (next == waits_at_) return;
-  waits_at_ = next;
-  workspace_.wait_at(next);
+  if (filming_.on())
+    filming_.end(workspace_);
+  else
+    filming_.start(asked, width, height, workspace_);
 }
 
 }  // namespace weft::viewer

@@ -16,6 +16,7 @@ constexpr struct {
                 {1, 0.6f, 1, 1024, 70, 48},
                 {1, 0.45f, 1, 512, 40, 32}};
 constexpr int kCoarsest = std::size(kQuality) - 1;
+constexpr int kSoftest = 4;               // samples along a side of a fine shadow's edge
 constexpr double kSlow = 28, kQuick = 9;  // ms a frame: coarser beyond, finer below
 constexpr double kRest = 0.25;            // s without a change in a paused scene, then the full picture
 
@@ -30,7 +31,15 @@ bool is_software() {
 }  // namespace
 
 View::View(const PictureFiles& pictures)
-    : renderer_(pictures), pictures_(pictures), coarseness_(is_software() ? 2 : 0) {}
+    : renderer_(pictures),
+      pictures_(pictures),
+      software_(is_software()),
+      coarseness_(software_ ? 2 : 0) {}
+
+bool View::fine(const LookSettings& settings) const {
+  return settings.quality == Quality::fine ||
+         (settings.quality == Quality::automatic && !software_);
+}
 
 void View::reload(Workspace& workspace) {
   if (workspace.now() < next_reload_) return;
@@ -70,8 +79,9 @@ void View::draw(Workspace& workspace, int x, int y, int width, int height) {
   const bool first = !target_;
   const bool rests = first || (paused && (!was_paused_ || workspace.now() - last_change_ > kRest));
   was_paused_ = paused;
-  const int coarseness = rests ? 0 : coarseness_;
-  drawn_ = changed || (rests && drawn_coarseness_ > 0);
+  const bool quick = workspace.settings.quality == Quality::quick;
+  const int coarseness = rests ? (quick ? 1 : 0) : coarseness_;
+  drawn_ = changed || (rests && drawn_coarseness_ > coarseness);
   if (drawn_) {
     const auto& quality = kQuality[coarseness];
     const int w = std::max(16, static_cast<int>(static_cast<float>(width) * quality.scale));
@@ -81,6 +91,8 @@ void View::draw(Workspace& workspace, int x, int y, int width, int height) {
       target_.emplace(w, h, quality.samples);
     LookSettings settings = workspace.settings;
     settings.shadow_softness = quality.shadow_softness;
+    settings.occlusion = coarseness == 0 && fine(settings);
+    if (settings.occlusion) settings.shadow_softness = kSoftest;
     settings.shadow_size = quality.shadow_size;
     settings.detail = quality.detail;
     settings.tessellation = std::min(settings.tessellation, quality.tessellation);
@@ -107,7 +119,10 @@ void View::took(double ms) {
 
 Picture View::picture(const Workspace& workspace, int width, int height, int samples) {
   const RenderTarget target(width, height, samples);
-  renderer_.draw(workspace.frame_data(), workspace.setting(), *workspace.look, workspace.settings,
+  LookSettings settings = workspace.settings;
+  settings.occlusion = fine(settings);
+  if (settings.occlusion) settings.shadow_softness = kSoftest;
+  renderer_.draw(workspace.frame_data(), workspace.setting(), *workspace.look, settings,
                  workspace.camera, target);
   return target.read();
 }

@@ -44,6 +44,9 @@ class View {
   PictureFiles pictures_;
   std::optional<RenderTarget> target_;
   Seen seen_;
+  bool fine(const LookSettings& settings) const;
+
+  bool software_;
   bool drawn_ = false, stale_ = true, was_paused_ = false;
   int coarseness_ = 0, drawn_coarseness_ = 0;  // 0: in full
   double smoothed_ms_ = 0, last_change_ = 0, next_reload_ = 0;
