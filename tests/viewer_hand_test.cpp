@@ -17,7 +17,8 @@ double white_at(const std::string& rgb, const Json& at) {
     for (int x = -3; x <= 3; ++x, ++all) {
       const auto p = static_cast<std::size_t>(
           3 * (Screen::kWidth * (at[1].get<int>() + y) + at[0].get<int>() + x));
-      white += static_cast<unsigned char>(rgb[p]) > 210 && static_cast<unsigned char>(rgb[p + 1]) > 200;
+      white +=
+          static_cast<unsigned char>(rgb[p]) > 210 && static_cast<unsigned char>(rgb[p + 1]) > 200;
     }
   return white / all;
 }

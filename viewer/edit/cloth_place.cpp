@@ -49,10 +49,9 @@ Cloth placed(Cloth cloth, const Placing& placing) {
 Vec3 middle_of(const Cloth& cloth) {
   const Grid& g = cloth.grid;
   const std::vector<Vec3> points =
-      cloth.mesh.given()
-          ? placed_vertices(cloth.mesh)
-          : std::vector<Vec3>{g.origin, plus(g.origin, g.u), plus(g.origin, g.v),
-                              plus(plus(g.origin, g.u), g.v)};
+      cloth.mesh.given() ? placed_vertices(cloth.mesh)
+                         : std::vector<Vec3>{g.origin, plus(g.origin, g.u), plus(g.origin, g.v),
+                                             plus(plus(g.origin, g.u), g.v)};
   Vec3 low = points.front(), high = low;
   for (const Vec3& p : points)
     for (std::size_t k = 0; k < 3; ++k)

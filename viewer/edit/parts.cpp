@@ -30,9 +30,10 @@ void shift(std::vector<Key>& keys, const Vec3& by) {
 
 Cloth copy_of(const Cloth& cloth) {
   const Grid& g = cloth.grid;
-  return moved(cloth, cloth.mesh.given() ? beside(placed_vertices(cloth.mesh))
-                                         : beside({g.origin, plus(g.origin, g.u), plus(g.origin, g.v),
-                                                   plus(plus(g.origin, g.u), g.v)}));
+  return moved(cloth, cloth.mesh.given()
+                          ? beside(placed_vertices(cloth.mesh))
+                          : beside({g.origin, plus(g.origin, g.u), plus(g.origin, g.v),
+                                    plus(plus(g.origin, g.u), g.v)}));
 }
 
 Collider copy_of(const Collider& body) {

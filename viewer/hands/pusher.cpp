@@ -22,8 +22,7 @@ std::string place_key(const Shape& shape) {
 void Pusher::follow_scene(const Workspace& workspace) {
   const Scene& scene = workspace.document().scene();
   const bool gone =
-      chosen_ && chosen_->number >=
-                     (is(Kind::body) ? scene.colliders.size() : scene.cloths.size());
+      chosen_ && chosen_->number >= (is(Kind::body) ? scene.colliders.size() : scene.cloths.size());
   if (scene_ == workspace.document().path() && !gone) return;
   scene_ = workspace.document().path();
   bool carried = false;
@@ -61,8 +60,7 @@ Handles Pusher::handles(const Workspace& workspace) const {
 
 bool Pusher::take_handle(const Workspace& workspace, const Area& area, float x, float y) {
   if (!there(workspace)) return false;
-  const auto grip =
-      grip_under(workspace.camera, area, place(workspace), handles(workspace), x, y);
+  const auto grip = grip_under(workspace.camera, area, place(workspace), handles(workspace), x, y);
   if (!grip) return false;
   take(workspace, *grip, {});
   grip_ = on_plane(ray_through(workspace.camera, area, x, y), start_,
@@ -113,10 +111,10 @@ void Pusher::reshape(Workspace& workspace, Vec3f to) {
   now_ = to;
   Scene scene = before_;
   const Vec3f from = grip_ - start_, now = to - start_;
-  const double factor = std::clamp(
-      static_cast<double>(length(now) / std::max(length(from), 1e-6f)), kLeast, kMost);
-  const auto angle = static_cast<double>(
-      std::atan2(dot(cross(from, now), kAxes[held_.axis]), dot(from, now)));
+  const double factor =
+      std::clamp(static_cast<double>(length(now) / std::max(length(from), 1e-6f)), kLeast, kMost);
+  const auto angle =
+      static_cast<double>(std::atan2(dot(cross(from, now), kAxes[held_.axis]), dot(from, now)));
   const bool sizes = held_.kind == Grip::Kind::square, turns = held_.kind == Grip::Kind::ring;
   std::string name = "cloth";
   if (is(Kind::body)) {

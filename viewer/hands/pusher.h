@@ -42,11 +42,11 @@ class Pusher {
   std::optional<Part> chosen_;
   std::string scene_;  // that the choice belongs to
   Grip held_;
-  Vec3f grip_{};        // where it was taken
-  Scene before_;        // the scene then
+  Vec3f grip_{};         // where it was taken
+  Scene before_;         // the scene then
   bool joined_ = false;  // the scene has changed since
-  Vec3f start_{};       // the part's place then
-  Vec3f now_{};         // a body's place as last asked for; else the pointer's
+  Vec3f start_{};        // the part's place then
+  Vec3f now_{};          // a body's place as last asked for; else the pointer's
   bool moved_ = false, pushing_ = false, carrying_ = false;
 };
 

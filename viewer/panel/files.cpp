@@ -97,6 +97,16 @@ void draw_film_form(const Scene& scene, Requests& requests, FileForms& forms) {
   ImGui::EndPopup();
 }
 
+// Whether the cloth's triangles change, or will.
+bool comes_apart(const Workspace& workspace) {
+  const auto& cloths = workspace.document().scene().cloths;
+  const auto& shown = workspace.frame_data().cloths;
+  return std::any_of(cloths.begin(), cloths.end(),
+                     [](const Cloth& c) { return !c.cuts.empty(); }) ||
+         std::any_of(shown.begin(), shown.end(),
+                     [](const ClothCopy& c) { return c.torn && !c.mesh; });
+}
+
 void draw_export_form(Workspace& workspace, FileForms& forms) {
   if (!ImGui::BeginPopup("export")) return;
   const std::vector<std::string> formats = animation_extensions();
@@ -114,9 +124,16 @@ void draw_export_form(Workspace& workspace, FileForms& forms) {
   if (std::filesystem::exists(forms.path, error))
     ImGui::TextColored(kAccent, "What is there now is replaced.");
   draw_range(workspace.document().scene(), "export", forms.frames);
-  const bool known = std::filesystem::path(forms.path).extension() ==
-                     formats[static_cast<std::size_t>(forms.format)];
-  if (button("Start export", known, known ? "" : "The file's name ends as the format is called")) {
+  const std::string format = formats[static_cast<std::size_t>(forms.format)];
+  const bool apart = comes_apart(workspace), morphs = format == ".gltf" || format == ".glb";
+  if (apart && format != ".obj")
+    ImGui::TextColored(kBad,
+                       morphs ? "The cloth is cut, which %s cannot follow: .obj can"
+                              : "%s has points alone: which triangles a cut took, .obj tells",
+                       format.c_str());
+  const bool known = std::filesystem::path(forms.path).extension() == format;
+  if (button("Start export", known && !(apart && morphs),
+             known ? "" : "The file's name ends as the format is called")) {
     const std::int64_t now = workspace.frame_data().frame;
     if (forms.frames.endless)
       workspace.start_export(forms.path, now, {});

@@ -73,16 +73,14 @@ MeshSource MeshForm::placed(const Workspace& workspace) const {
   mesh.shape = std::make_shared<const TriangleMesh>(file_.mesh);
   if (as_in_file_) return mesh;
   const Vec3 at = workspace.in_scene(workspace.camera.target());
-  for (std::size_t k = 0; k < 3; ++k)
-    mesh.translate[k] = at[k] - scale_ * (low_[k] + high_[k]) / 2;
+  for (std::size_t k = 0; k < 3; ++k) mesh.translate[k] = at[k] - scale_ * (low_[k] + high_[k]) / 2;
   return mesh;
 }
 
 void MeshForm::draw_path(const Workspace& workspace) {
   ImGui::SetNextItemWidth(30 * ImGui::GetFontSize());
-  const bool entered =
-      ImGui::InputTextWithHint("##file", "a Wavefront file (.obj), then Enter", &path_,
-                               ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool entered = ImGui::InputTextWithHint("##file", "a Wavefront file (.obj), then Enter",
+                                                &path_, ImGuiInputTextFlags_EnterReturnsTrue);
   mark("mesh file");
   if (entered || (ImGui::IsItemDeactivatedAfterEdit() && path_ != taken_)) take(path_, workspace);
   if (!taken_.empty()) return;

@@ -25,8 +25,8 @@ class MeshForm {
   MeshSource placed(const Workspace& workspace) const;
 
   std::deque<std::string> waiting_;
-  std::string path_;            // as it is typed
-  std::string taken_;           // the one that was read
+  std::string path_;                 // as it is typed
+  std::string taken_;                // the one that was read
   std::vector<std::string> beside_;  // meshes in the same folder
   MeshFile file_;
   Vec3 low_{}, high_{};      // of its vertices, in its units

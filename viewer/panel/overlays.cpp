@@ -38,7 +38,8 @@ void draw_tools(Hands& hands, const Area& area, const Keys& keys) {
        "Click on the cloth: holds a point, or lets it go; drag: a lasso around several"},
       {"Cut", Tool::cut, Action::cut, "Draw a stroke: severs all cloth that it passes over"},
       {"Move", Tool::move, Action::move,
-       "Choose a cloth or a body: arrows move it, rings turn it, the square sizes it; arrow keys move a "
+       "Choose a cloth or a body: arrows move it, rings turn it, the square sizes it; arrow keys "
+       "move a "
        "body and carry what is held of the cloth"},
       {"Ball", Tool::ball, Action::ball, "Click to shoot a ball into the scene"},
   };

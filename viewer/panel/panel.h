@@ -22,18 +22,18 @@ struct PictureRequest {
 struct Requests {
   std::optional<PictureRequest> picture;
   std::optional<FilmRequest> film;  // begun, or ended
-  std::optional<Kind> newest;  // the newest of the kind is to be moved
-  bool gallery = false;        // to be opened
-  bool mesh = false;           // a file of a mesh is to be added
+  std::optional<Kind> newest;       // the newest of the kind is to be moved
+  bool gallery = false;             // to be opened
+  bool mesh = false;                // a file of a mesh is to be added
 };
 
 // What a person has put into the forms of pictures and exports.
 struct FileForms {
   PictureRequest picture{1920, 1080, 8};
-  int format = 0;          // of animation_extensions()
-  std::string path;        // of the export
-  bool named = false;      // the path was typed
-  FrameRange frames;       // of the export
+  int format = 0;      // of animation_extensions()
+  std::string path;    // of the export
+  bool named = false;  // the path was typed
+  FrameRange frames;   // of the export
   bool film_as_view = true;
   FilmRequest film{1920, 1080, {}};
 };

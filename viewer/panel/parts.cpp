@@ -1,8 +1,7 @@
 // What a scene is made of: buttons that add a cloth or a body.
-#include "panel/panel.h"
-
 #include <string_view>
 
+#include "panel/panel.h"
 #include "panel/theme.h"
 
 namespace weft::viewer {

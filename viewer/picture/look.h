@@ -67,7 +67,7 @@ struct LookSettings {
   float sheen = 0.3f;          // of fibres
   float translucency = 0.22f;  // share of light that shines through
   Quality quality = Quality::automatic;
-  bool occlusion = false;  // ambient, of the picture that is drawn
+  bool occlusion = false;      // ambient, of the picture that is drawn
   float height_scale = 0.01f;  // m
   float texture_repeats = 3;   // over the cloth
   float height_repeats = 1;

@@ -12,7 +12,8 @@ constexpr GLuint kDepthUnit = 8, kOpenUnit = 9;  // see Shader
 Texture image(GLenum format, GLenum parts, GLenum type, GLint filter, int width, int height) {
   Texture texture = make_texture();
   glBindTexture(GL_TEXTURE_2D, texture.id());
-  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, parts, type, nullptr);
+  glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(format), width, height, 0, parts, type,
+               nullptr);
   for (const GLenum which : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
     glTexParameteri(GL_TEXTURE_2D, which, filter);
   for (const GLenum which : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
@@ -26,7 +27,8 @@ void Occlusion::size(int width, int height) {
   if (width == width_ && height == height_) return;
   width_ = width, height_ = height;
   glActiveTexture(GL_TEXTURE0 + kDepthUnit);
-  depth_ = image(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_NEAREST, width, height);
+  depth_ =
+      image(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, GL_NEAREST, width, height);
   open_ = image(GL_R8, GL_RED, GL_UNSIGNED_BYTE, GL_LINEAR, (width + 1) / 2, (height + 1) / 2);
   glActiveTexture(GL_TEXTURE0);
   depth_target_ = make_framebuffer();

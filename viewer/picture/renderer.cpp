@@ -52,9 +52,7 @@ void set(float (&to)[4], Vec3f v, float w) {
 }  // namespace
 
 Renderer::Renderer(const PictureFiles& files)
-    : folder_(find_shaders()),
-      frame_(make_buffer()),
-      nothing_(make_vertex_array()) {
+    : folder_(find_shaders()), frame_(make_buffer()), nothing_(make_vertex_array()) {
   set_pictures(files);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_PROGRAM_POINT_SIZE);
@@ -212,9 +210,9 @@ void Renderer::draw_shadow_map(const FrameData& frame_data, const Setting& setti
                                const Look& look, const LookSettings& settings) {
   shadow_map_ = &shadow_maps_.try_emplace(settings.shadow_size, settings.shadow_size).first->second;
   if (!settings.shadows) return;
-  const Shadowed now{frame_data.scene_serial, frame_data.change,    frame_data.frame,
-                     settings.shadow_size,    settings.detail,      settings.refinement,
-                     settings.tessellation,   &look};
+  const Shadowed now{
+      frame_data.scene_serial, frame_data.change,   frame_data.frame,      settings.shadow_size,
+      settings.detail,         settings.refinement, settings.tessellation, &look};
   if (now == shadowed_) return;
   shadowed_ = now;
   const Bounds bounds = visible_bounds(frame_data);

@@ -59,8 +59,8 @@ class Renderer {
 
   std::filesystem::path folder_;
   std::map<std::string, Shader, std::less<>> shaders_;
-  std::map<int, ShadowMap> shadow_maps_;  // by size
-  const ShadowMap* shadow_map_ = nullptr; // as drawn last
+  std::map<int, ShadowMap> shadow_maps_;   // by size
+  const ShadowMap* shadow_map_ = nullptr;  // as drawn last
   // Of what the shadow map was drawn.
   struct Shadowed {
     std::uint64_t scene = ~std::uint64_t{0}, change = 0;

@@ -129,8 +129,8 @@ bool App::measured(double begun) {
 bool App::due(double now, bool fresh) {
   constexpr double kSettles = 0.3, kNowAndThen = 0.1;  // s
   if (window_.take_stir()) stirred_ = now;
-  return fresh || hands_.busy() || ImGui::IsAnyMouseDown() || filming_.on() || now - stirred_ < kSettles ||
-         now - last_turn_ >= kNowAndThen;
+  return fresh || hands_.busy() || ImGui::IsAnyMouseDown() || filming_.on() ||
+         now - stirred_ < kSettles || now - last_turn_ >= kNowAndThen;
 }
 
 void App::turn() {

@@ -51,7 +51,7 @@ class App {
   Log log_;
   Landmarks landmarks_;
   Filming filming_;
-  double measure_;                                             // s, 0: not at all
+  double measure_;  // s, 0: not at all
   std::vector<Turn> turns_;
   Turn turn_;             // the present one
   double last_turn_ = 0;  // s, of those that drew

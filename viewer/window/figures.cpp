@@ -36,8 +36,8 @@ std::string words(const std::vector<Turn>& turns) {
                 "pictures %.1f/s\n"
                 "processor time a turn: normals and upload %.2f ms, panel %.2f ms (medians)\n",
                 static_cast<double>(turns.size()) / seconds, quantile(turns, 0.5, all),
-                quantile(turns, 0.95, all), drawn / seconds, pictures / seconds, quantile(turns, 0.5, surface),
-                quantile(turns, 0.5, panel));
+                quantile(turns, 0.95, all), drawn / seconds, pictures / seconds,
+                quantile(turns, 0.5, surface), quantile(turns, 0.5, panel));
   return text;
 }
 

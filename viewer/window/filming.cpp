@@ -31,10 +31,10 @@ void Filming::start(FilmRequest request, int width, int height, Workspace& works
     workspace.reset();
   }
   if (!range.endless) workspace.play(true);
-  workspace.messages.tell("The film goes to " + full_path(film_->path()) +
-                              (range.endless ? " until you end it"
-                                             : " up to frame " + std::to_string(range.last)),
-                          workspace.now());
+  workspace.messages.tell(
+      "The film goes to " + full_path(film_->path()) +
+          (range.endless ? " until you end it" : " up to frame " + std::to_string(range.last)),
+      workspace.now());
 }
 
 void Filming::end(Workspace& workspace) {

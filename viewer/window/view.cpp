@@ -18,7 +18,7 @@ constexpr struct {
 constexpr int kCoarsest = std::size(kQuality) - 1;
 constexpr int kSoftest = 4;               // samples along a side of a fine shadow's edge
 constexpr double kSlow = 28, kQuick = 9;  // ms a frame: coarser beyond, finer below
-constexpr double kRest = 0.25;            // s without a change in a paused scene, then the full picture
+constexpr double kRest = 0.25;  // s without a change in a paused scene, then the full picture
 
 // Drawn by the processor.
 bool is_software() {
