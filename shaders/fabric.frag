@@ -47,7 +47,7 @@ void main() {
     // The weft of a twill is undyed, as in denim; its back shows more of it.
     float dyed = s.back ? 1.0 - thread.z : thread.z;
     if (u_weave > 0.5 && u_weave < 1.5)
-      color = mix(color, vec3(0.55, 0.53, 0.48), 0.4 * mix(s.back ? 0.75 : 0.25, 1.0 - dyed, seen));
+      color = mix(color, vec3(0.55, 0.53, 0.48), 0.4 * mix(s.back ? 0.5 : 0.25, 1.0 - dyed, seen));
   }
   vec3 smooth_normal = s.normal;
   s.normal = normalize(surface_axes(s.normal) * vec3(seen * slope, 1.0));

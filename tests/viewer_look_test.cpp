@@ -80,7 +80,7 @@ TEST_F(Window, FabricsAreWornAndQualityIsChosen) {
   screen.wait_picture("blue cloth", [&](const std::string& rgb) {
     std::size_t blue = 0;
     for (std::size_t k = 0; k + 2 < rgb.size(); k += 3)
-      blue += static_cast<unsigned char>(rgb[k + 2]) > 1.5 * static_cast<unsigned char>(rgb[k]);
+      blue += static_cast<unsigned char>(rgb[k + 2]) > 1.35 * static_cast<unsigned char>(rgb[k]);
     return blue > 10000;
   });
   screen.wait_for("coarse", false);

@@ -23,7 +23,7 @@ constexpr std::array<FabricLook, std::tuple_size_v<std::remove_cv_t<decltype(kFa
         {Weave::satin, 900, 0.28f, 0.12f, 0.40f, {0.62f, 0.50f, 0.36f}, {0.52f, 0.42f, 0.31f}},
         {Weave::plain, 450, 0.75f, 0.20f, 0.30f, {0.60f, 0.58f, 0.53f}, {0.56f, 0.54f, 0.50f}},
         {Weave::twill, 250, 0.90f, 0.60f, 0.12f, {0.20f, 0.21f, 0.16f}, {0.18f, 0.19f, 0.15f}},
-        {Weave::twill, 380, 0.80f, 0.15f, 0.05f, {0.03f, 0.07f, 0.22f}, {0.10f, 0.15f, 0.28f}},
+        {Weave::twill, 380, 0.80f, 0.15f, 0.05f, {0.03f, 0.07f, 0.22f}, {0.05f, 0.10f, 0.27f}},
         {Weave::leather, 500, 0.45f, 0.02f, 0.0f, {0.16f, 0.065f, 0.03f}, {0.27f, 0.17f, 0.10f}},
     }};
 
