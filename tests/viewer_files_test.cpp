@@ -199,6 +199,9 @@ TEST_F(WindowFiles, FilmsHaveTheSizeAndTheFramesAskedFor) {
   screen.wait("some frames", [](const Json& now) { return now["frame"] > 10; });
   screen.click("Film");
   screen.click("film as view");
+  screen.wait("the size", [](const Json& now) {  // above what is clicked next
+    return now["controls"].contains("picture width");
+  });
   screen.click("film endless");
   type_number(screen, "picture width", "640");
   type_number(screen, "picture height", "360");
