@@ -103,14 +103,14 @@ std::string App::end() {
 }
 
 // The first second, in which shaders are compiled, does not count. At the end the scene is paused, and it is
-// measured how long the full picture takes to come.
+// measured how long the picture of every pixel takes to come.
 bool App::measured(double begun) {
   constexpr double kPatience = 10;  // s
   const double now = seconds_now(), since = now - begun;
   if (paused_at_ > 0) {
-    const bool full = turn_.picture && !view_.coarse() && workspace_.telemetry().paused;
+    const bool full = turn_.picture && view_.whole() && workspace_.telemetry().paused;
     if (full)
-      std::printf("pause to full picture %.0f ms (%.0f ms of processor time)\n",
+      std::printf("pause to picture of every pixel %.0f ms (%.0f ms of processor time)\n",
                   1e3 * (now - paused_at_), cpu_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms_);
     return full || now - paused_at_ > kPatience;
   }

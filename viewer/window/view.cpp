@@ -12,6 +12,7 @@ constexpr struct {
   float scale;
   int shadow_softness, shadow_size, detail, tessellation;
 } kQuality[] = {{4, 1.0f, 3, 2048, 200, 128},
+                {2, 1.0f, 2, 1024, 200, 64},
                 {2, 0.8f, 2, 1024, 120, 64},
                 {1, 0.6f, 1, 1024, 70, 48},
                 {1, 0.45f, 1, 512, 40, 32}};
@@ -34,7 +35,7 @@ View::View(const PictureFiles& pictures)
     : renderer_(pictures),
       pictures_(pictures),
       software_(is_software()),
-      coarseness_(software_ ? 2 : 0) {}
+      coarseness_(software_ ? 3 : 0) {}
 
 bool View::fine(const LookSettings& settings) const {
   return settings.quality == Quality::fine ||
@@ -73,13 +74,13 @@ void View::draw(Workspace& workspace, int x, int y, int width, int height) {
                  height};
   const bool changed = stale_ || !(now == seen_);
   if (changed) last_change_ = workspace.now();
-  // Who pauses wants to see it at once; who turns a paused scene, when it stands still.
+  // Who pauses wants to see it at once; who turns a paused scene, when it stands still. The first picture has what
+  // a pause has, so that drivers have compiled what it needs.
   const bool paused = workspace.telemetry().paused;
-  // The first picture is in full, too: so drivers have compiled what they need when somebody pauses.
-  const bool first = !target_;
-  const bool rests = first || (paused && (!was_paused_ || workspace.now() - last_change_ > kRest));
+  const bool at_once = !target_ || (paused && !was_paused_);
+  const bool rests = at_once || (paused && workspace.now() - last_change_ > kRest);
   was_paused_ = paused;
-  const bool quick = workspace.settings.quality == Quality::quick;
+  const bool quick = workspace.settings.quality == Quality::quick || (at_once && software_);
   const int coarseness = rests ? (quick ? 1 : 0) : coarseness_;
   drawn_ = changed || (rests && drawn_coarseness_ > coarseness);
   if (drawn_) {

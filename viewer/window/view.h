@@ -25,6 +25,8 @@ class View {
 
   bool drawn() const { return drawn_; }  // whether the last draw() drew anew
   bool coarse() const { return drawn_coarseness_ > 0; }
+  // Whether it has every pixel and vertex, if not every sample.
+  bool whole() const { return drawn_coarseness_ <= 1; }
   double own_ms() const { return renderer_.upload_ms(); }  // normals and upload of the last state
   // How long the window took for a frame with a new picture.
   void took(double ms);
