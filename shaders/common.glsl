@@ -111,8 +111,8 @@ float lit(vec3 position, vec3 normal) {
   vec3 p = position + (side * normal + u_light.xyz) * u_light.w;
   vec3 at = (u_shadow_matrix * vec4(p, 1.0)).xyz;
   if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
-  vec2 texel = 1.3 / vec2(textureSize(u_shadow, 0));
   int n = int(u_light_color.w);
+  vec2 texel = (n > 2 ? 1.8 : 1.3) / vec2(textureSize(u_shadow, 0));
   float sum = 0.0;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)

@@ -3,7 +3,4 @@
 
 uniform mat4 u_light_view_projection;
 
-void main() {
-  surface_vertex(0.0);
-  gl_Position = u_light_view_projection * vec4(v_position, 1.0);
-}
+void main() { gl_Position = u_light_view_projection * vec4(u_place + vec3(a_x, a_y, a_z), 1.0); }

@@ -76,6 +76,19 @@ class WindowFiles : public Window {
   }
 };
 
+// Into a control, by Ctrl + click.
+void type_number(const Screen& screen, const std::string& control, const std::string& value) {
+  const Json at = screen.wait(control, [&](const Json& now) {
+    return now["controls"].contains(control);
+  })["controls"][control];
+  screen.type("mousemove " + at[0].dump() + " " + at[1].dump() +
+              " sleep 0.5 keydown ctrl sleep 0.3 click 1 sleep 0.3 keyup ctrl");
+  screen.wait_for("typing", true);
+  screen.type("key ctrl+a type " + value);
+  screen.key("Return");
+  screen.wait_for("typing", false);
+}
+
 #ifdef WEFT_DROP_PROGRAM
 
 TEST_F(WindowFiles, DroppedScenesAreOpenedAndPicturesWorn) {
@@ -177,6 +190,32 @@ TEST_F(WindowFiles, FilmsHaveThirtyPicturesForASecondOfTheScene) {
   EXPECT_EQ(screen.quit(), 0) << screen.said();
   EXPECT_EQ(run("ffprobe -v error pinned2-2.mp4"), 0);
   EXPECT_EQ(count(".tmp"), 0u);
+}
+
+// Of its own size, from frame 3 to 8: 0.06 s … 0.16 s. The scene has gone past them and starts anew.
+TEST_F(WindowFiles, FilmsHaveTheSizeAndTheFramesAskedFor) {
+  Screen screen(folder);
+  screen.open("pinned2 --set /time/frame=0.02");
+  screen.wait("some frames", [](const Json& now) { return now["frame"] > 10; });
+  screen.click("Film");
+  screen.click("film as view");
+  screen.wait("the size", [](const Json& now) {  // above what is clicked next
+    return now["controls"].contains("picture width");
+  });
+  screen.click("film endless");
+  type_number(screen, "picture width", "640");
+  type_number(screen, "picture height", "360");
+  type_number(screen, "first frame", "3");
+  type_number(screen, "last frame", "8");
+  screen.click("Start film");
+  screen.wait("the film saved", [](const Json& now) { return tells(now, "Film saved"); });
+  ASSERT_EQ(run("ffprobe -v error -count_frames -select_streams v:0 -of csv=p=0 -show_entries "
+                "stream=width,height,nb_read_frames pinned2.mp4 >probe"),
+            0);
+  EXPECT_EQ(folder.read("probe"), "640,360,4\n");
+  const Json now = screen.now();
+  screen.wait("frames go on", [&](const Json& later) { return later["frame"] > now["frame"]; });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 
 TEST_F(WindowFiles, FilmsAreNumberedPicturesWithoutFfmpeg) {
@@ -286,17 +325,8 @@ TEST_F(WindowFiles, ExportsHaveEveryFormatAndTheFramesAskedFor) {
     }
   }
   screen.click("Export");
-  for (const auto& [control, value] : {std::pair("first frame", "3"), {"last frame", "7"}}) {
-    const Json at = screen.wait(control, [&](const Json& now) {
-      return now["controls"].contains(control);
-    })["controls"][control];
-    screen.type("mousemove " + at[0].dump() + " " + at[1].dump() +
-                " sleep 0.5 keydown ctrl sleep 0.3 click 1 sleep 0.3 keyup ctrl");
-    screen.wait_for("typing", true);
-    screen.type(std::string("key ctrl+a type ") + value);
-    screen.key("Return");
-    screen.wait_for("typing", false);
-  }
+  type_number(screen, "first frame", "3");
+  type_number(screen, "last frame", "7");
   screen.key("Escape");
   exported(".pc2", folder / "wave-2.pc2");
   EXPECT_EQ(screen.quit(), 0) << screen.said();

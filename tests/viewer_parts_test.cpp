@@ -116,6 +116,58 @@ TEST_F(Window, ClothsAreAddedCopiedAndTakenAway) {
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 
+// Sheets by the same handles as bodies: where they start, so that a run starts anew.
+TEST_F(Window, ClothsAreMovedTurnedAndSizedByTheHandles) {
+  folder.write("sheet.json", kSheet);
+  Screen screen(folder);
+  screen.open("sheet.json --paused");
+  screen.step_to(2);
+  screen.key("4");
+  screen.type("mousemove 808 340 sleep 0.5 click 1 sleep 0.5");
+  const std::string before = screen.picture();
+  const auto pull = [&](std::array<int, 2> from, std::array<int, 2> to, const std::string& name) {
+    const Json at = screen.wait("handles", [](const Json& now) {
+      return now["controls"].contains("handles");
+    })["controls"]["handles"];
+    const int x = at[0], y = at[1];
+    screen.drag({{x + from[0], y + from[1]},
+                 {x + (from[0] + to[0]) / 2, y + (from[1] + to[1]) / 2},
+                 {x + to[0], y + to[1]}},
+                name, [&](const Json& now) { return now["undo"] == name; });
+  };
+  pull({60, 0}, {110, 0}, "move cloth");
+  screen.wait_for("frame", 0);
+  screen.wait_picture("another place",
+                      [&](const std::string& now) { return difference(now, before) > 1; });
+  screen.key("ctrl+s");
+  screen.wait_for("edited", false);
+  const Json moved = Json::parse(folder.read("sheet.json"))["cloths"][0];
+  const double by = moved["grid"]["origin"][0].get<double>() + 0.5;
+  EXPECT_GT(by, 0.05);
+  EXPECT_NEAR(moved["grid"]["origin"][1], 0, 1e-6);
+  EXPECT_NEAR(moved["pins"][1]["keys"][0][1], 0.5 + by, 1e-6);
+
+  pull({48, -48}, {72, -72}, "size cloth");
+  pull({76, -76}, {28, -104}, "turn cloth");
+  screen.key("ctrl+s");
+  screen.wait_for("edited", false);
+  const Json grid = Json::parse(folder.read("sheet.json"))["cloths"][0]["grid"];
+  const double ux = grid["u"][0], uy = grid["u"][1];
+  EXPECT_NEAR(std::hypot(ux, uy), 1.5, 0.1);
+  EXPECT_NEAR(std::atan2(uy, ux) * 180 / 3.14159265, 30, 3);
+  EXPECT_EQ(weft("check sheet.json"), 0) << folder.read("weft.out");
+
+  screen.key("ctrl+d");
+  screen.wait_for("cloths", 2);
+  screen.key("Delete");
+  screen.wait_for("cloths", 1);
+  for (const char* left : {"duplicate", "turn cloth", "size cloth", "move cloth", ""}) {
+    screen.key("ctrl+z");
+    screen.wait_for("undo", left);
+  }
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
 // Pins turn and follow, and a cut is sewn up again, from the panel.
 TEST_F(Window, PinsTurnAndFollowAndCutsAreTakenBackInThePanel) {
   folder.write("sheet.json", R"({"weft": 1, "cloths": [{"grid": {"points": [12, 12]},

@@ -34,7 +34,7 @@ TEST(Pictures, EveryLookRendersItsOwn) {
   int looks = 0;
   for (const char* look :
        {"colour", "phong_force", "ggx_force", "blinn_phong", "diffuse", "normals", "texture",
-        "bump", "displacement", "mirror", "pbr", "strain", "wireframe", "points"}) {
+        "bump", "displacement", "mirror", "pbr", "fabric", "strain", "wireframe", "points"}) {
     const fs::path out = folder / (std::string(look) + ".png");
     ASSERT_EQ(run("sphere --headless --frames 20 --size 160x120 --shader " + std::string(look) +
                   " --out " + out.string()),
@@ -115,7 +115,7 @@ TEST(Pictures, EveryLookIsAsKept) {
     EXPECT_LT(plain / double(kept.rgb.size()), 0.01) << look;
     ++looks;
   }
-  EXPECT_EQ(looks, 14);
+  EXPECT_EQ(looks, 15);
   fs::remove(out);
 }
 
@@ -142,6 +142,34 @@ TEST(Pictures, RaisedClothHidesWhatLiesBeneath) {
   EXPECT_GT(cloth, 5000);
   EXPECT_LT(lost, 0.01 * cloth);
   fs::remove(out);
+}
+
+// Ambient occlusion darkens folds and what rests on the floor, brightens nothing, and leaves open ground alone.
+TEST(Pictures, FinePicturesHaveAmbientOcclusion) {
+  const fs::path out = fs::temp_directory_path() / "weft_viewer_fine.png";
+  const auto draw = [&](const char* quality) {
+    EXPECT_EQ(
+        run("selfCollision --headless --frames 110 --size 320x240 --shader diffuse --quality " +
+            std::string(quality) + " --out " + out.string()),
+        0);
+    return decode(out);
+  };
+  const Decoded plain = draw("standard"), fine = draw("fine");
+  fs::remove(out);
+  ASSERT_EQ(plain.rgb.size(), 3u * 320 * 240);
+  ASSERT_EQ(fine.rgb.size(), plain.rgb.size());
+  double darker = 0, brighter = 0, below = 0, ground = 0;
+  for (std::size_t k = 0; k < plain.rgb.size(); k += 3) {
+    const int less = int(plain.rgb[k]) - int(fine.rgb[k]);
+    darker += less > 12;
+    brighter += less < -12;
+    const bool lowest = k > 3u * 320 * 220;  // open floor before the cloth
+    ground += lowest;
+    below += lowest && less > 3;
+  }
+  EXPECT_GT(darker, 400);
+  EXPECT_LT(brighter, 0.1 * darker);
+  EXPECT_LT(below, 0.02 * ground);
 }
 
 TEST(Pictures, EveryShippedSceneIsShown) {
@@ -172,6 +200,7 @@ TEST(Pictures, WrongWordsAreRefused) {
   EXPECT_EQ(run("sphere --headless"), 2);
   EXPECT_EQ(run("sphere --headless --out a.png --shader plaid"), 2);
   EXPECT_EQ(run("sphere --headless --out a.png --size 3x3"), 2);
+  EXPECT_EQ(run("sphere --headless --out a.png --quality best"), 2);
   EXPECT_EQ(run("no_such_scene --headless --out a.png"), 3);
   EXPECT_EQ(run("sphere --headless --frames 1 --size 64x64 --out /no/such/folder/a.png"), 5);
 }

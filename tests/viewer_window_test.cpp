@@ -29,66 +29,6 @@ TEST_F(Window, PlaysPausesStepsAndResets) {
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 
-TEST_F(Window, EveryLookShowsAtItsKey) {
-  Screen screen(folder);
-  screen.open("sphere --paused");
-  screen.step_to(3);
-  std::set<std::string> looks;
-  std::string before = screen.picture();
-  for (int k = 0; k < 14; ++k) {
-    const Json now = screen.now();
-    screen.key("l");
-    const std::string look = screen.wait(
-        "another look", [&](const Json& later) { return later["look"] != now["look"]; })["look"];
-    looks.insert(look);
-    before = screen.wait_picture(
-        look, [&](const std::string& picture) { return difference(picture, before) > 0.05; });
-  }
-  EXPECT_EQ(looks.size(), 14u);
-  EXPECT_TRUE(screen.now()["faults"].empty()) << screen.now()["faults"];
-  EXPECT_EQ(screen.quit(), 0);
-}
-
-TEST_F(Window, LooksHaveControlsOfTheirOwn) {
-  Screen screen(folder);
-  screen.open("sphere --paused");
-  screen.wait("hints", [](const Json& now) { return now["controls"].contains("hints"); });
-  screen.click(1200, 600);  // beside the cloth; hints go at the first touch
-  screen.wait("none", [](const Json& now) { return !now["controls"].contains("hints"); });
-  screen.click("Look");
-  screen.click("look pbr");
-  screen.wait_for("look", "pbr");
-  screen.wait("its controls", [](const Json& now) { return now["controls"].contains("metallic"); });
-  // Each changes the picture; what is drawn at rest is in full quality, and so always the same.
-  const auto settled = [&](const std::string& than) {
-    screen.type("mousemove 100 790");  // off the control, so that no help covers the picture
-    screen.wait_picture("another picture",
-                        [&](const std::string& now) { return difference(now, than) > 0.01; });
-    screen.wait_for("coarse", false);
-    return screen.picture();
-  };
-  const std::string standard = settled("");
-  std::string before = standard;
-  for (const char* control : {"floor", "shadow", "roughness", "metallic"}) {
-    screen.click(control);
-    before = settled(before);
-  }
-  screen.click("Standard look");
-  before = settled(before);
-  EXPECT_LT(difference(before, standard), 0.01);
-
-  screen.click("look wireframe");
-  screen.wait("its controls", [](const Json& now) {
-    return now["controls"].contains("structural") && !now["controls"].contains("metallic");
-  });
-  before = settled(before);
-  screen.click("structural");
-  before = settled(before);
-  screen.click("Measures");
-  screen.wait("the other tab", [](const Json& now) { return !now["controls"].contains("floor"); });
-  EXPECT_EQ(screen.quit(), 0) << screen.said();
-}
-
 double apart(const Json& a, const Json& b) {
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) sum += std::pow(a[k].get<double>() - b[k].get<double>(), 2);

@@ -71,6 +71,14 @@ void add_options(CLI::App& program, Arguments& a, std::string& size,
   program.add_option("--size", size, "Size of the picture in pixels (1280x720)")
       ->type_name("WxH")
       ->check(CLI::Validator(fault_of_size, ""));
+  program
+      .add_option("--quality", a.settings.quality, "Of pictures: automatic, quick, standard, fine")
+      ->type_name("NAME")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, Quality>{{"automatic", Quality::automatic},
+                                                                 {"quick", Quality::quick},
+                                                                 {"standard", Quality::standard},
+                                                                 {"fine", Quality::fine}}));
   program.add_option("--out", a.out, "The picture to write")->type_name("FILE.png");
   program.add_option("--threads", a.threads, "Worker threads; never changes the result")
       ->type_name("P")

@@ -97,8 +97,9 @@ void render_picture(const Arguments& arguments) {
     Bounds bounds = seen_bounds(frame_data, setting);
     if (arguments.strip > 1) bounds.add(setting.room);  // one view for all
     if (k == 0) aim(sight_of(arguments, file.scene), bounds, aspect, 1, camera);
-    renderer.draw(frame_data, setting, *find_look(arguments.look), arguments.settings, camera,
-                  target);
+    LookSettings settings = arguments.settings;
+    settings.occlusion = settings.quality == Quality::fine;
+    renderer.draw(frame_data, setting, *find_look(arguments.look), settings, camera, target);
     refuse_problems(renderer);
     paste(target.read(), k, strip);
   }

@@ -11,8 +11,13 @@ const std::array<Fabric, 5> kFabrics{{
     {"leather", 0.80, 20000, 6000, 1.7e-3, 0.55},
 }};
 
-std::vector<Document::Change> changes_to(const Fabric& fabric, std::size_t cloth) {
+std::vector<Document::Change> changes_to(const Fabric& fabric, std::size_t cloth, bool mesh) {
   const std::string place = "/cloths/" + std::to_string(cloth);
+  if (mesh)
+    return {{place + "/density", fabric.weight},
+            {place + "/stiffness/structural", fabric.tensile},
+            {place + "/bending", fabric.rigidity},
+            {place + "/self_collision/friction", fabric.friction}};
   return {{place + "/density", fabric.weight},
           {place + "/particle_mass", 0.0},
           {place + "/masses", text::Json::array()},

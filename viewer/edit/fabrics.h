@@ -21,7 +21,8 @@ struct Fabric {
 extern const std::array<Fabric, 5> kFabrics;
 
 // The changes that make a cloth of the scene that fabric. Of a square grid of springs kn along the
-// threads and kd across, C11 = kn + kd and C66 = kd; no bending springs.
-std::vector<Document::Change> changes_to(const Fabric& fabric, std::size_t cloth);
+// threads and kd across, C11 = kn + kd and C66 = kd; no bending springs. A mesh has springs along its edges alone,
+// which carry the stretch along the threads.
+std::vector<Document::Change> changes_to(const Fabric& fabric, std::size_t cloth, bool mesh);
 
 }  // namespace weft::viewer

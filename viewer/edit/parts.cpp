@@ -3,63 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "edit/cloth_place.h"
+#include "edit/turn.h"
 #include "weft/mesh.h"
 #include "weft/shape.h"
 
 namespace weft::viewer {
 
 namespace {
-
-using Matrix = std::array<Vec3, 3>;  // rows
-
-constexpr double kDegree = std::numbers::pi / 180;
-
-Vec3 plus(const Vec3& a, const Vec3& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-
-// A turn about a coordinate axis.
-Matrix rotation(std::size_t axis, double angle) {
-  Matrix m{};
-  const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
-  m[axis][axis] = 1;
-  m[a][a] = m[b][b] = std::cos(angle);
-  m[b][a] = std::sin(angle);
-  m[a][b] = -m[b][a];
-  return m;
-}
-
-Vec3 times(const Matrix& m, const Vec3& v) {
-  Vec3 out{};
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = 0; c < 3; ++c) out[r] += m[r][c] * v[c];
-  return out;
-}
-
-Matrix times(const Matrix& m, const Matrix& n) {
-  Matrix out{};
-  for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = 0; c < 3; ++c)
-      for (std::size_t k = 0; k < 3; ++k) out[r][c] += m[r][k] * n[k][c];
-  return out;
-}
-
-// Of turns about x, then y, then z [degrees]: Rz Ry Rx.
-Matrix matrix_of(const Vec3& degrees) {
-  return times(rotation(2, degrees[2] * kDegree),
-               times(rotation(1, degrees[1] * kDegree), rotation(0, degrees[0] * kDegree)));
-}
-
-// The angles again. Where y is a quarter turn, x and z turn about one axis, and z is taken as 0.
-Vec3 angles_of(const Matrix& m) {
-  const double sine = std::clamp(-m[2][0], -1.0, 1.0);
-  if (std::abs(sine) > 1 - 1e-9)
-    return {std::atan2(-m[1][2], m[1][1]) / kDegree, std::asin(sine) / kDegree, 0};
-  return {std::atan2(m[2][1], m[2][2]) / kDegree, std::asin(sine) / kDegree,
-          std::atan2(m[1][0], m[0][0]) / kDegree};
-}
 
 // How wide points are along x, or along z where that is more.
 Vec3 beside(const std::vector<Vec3>& points) {
@@ -77,19 +29,11 @@ void shift(std::vector<Key>& keys, const Vec3& by) {
 }
 
 Cloth copy_of(const Cloth& cloth) {
-  Cloth copy = cloth;
-  Grid& g = copy.grid;
-  const bool mesh = cloth.mesh.given();
-  const Vec3 by = mesh ? beside(placed_vertices(cloth.mesh))
-                       : beside({g.origin, plus(g.origin, g.u), plus(g.origin, g.v),
-                                 plus(plus(g.origin, g.u), g.v)});
-  Vec3& place = mesh ? copy.mesh.translate : g.origin;
-  place = plus(place, by);
-  for (Pin& pin : copy.pins) {
-    shift(pin.keys, by);
-    pin.rotate.about = plus(pin.rotate.about, by);
-  }
-  return copy;
+  const Grid& g = cloth.grid;
+  return moved(cloth, cloth.mesh.given()
+                          ? beside(placed_vertices(cloth.mesh))
+                          : beside({g.origin, plus(g.origin, g.u), plus(g.origin, g.v),
+                                    plus(plus(g.origin, g.u), g.v)}));
 }
 
 Collider copy_of(const Collider& body) {
@@ -98,6 +42,14 @@ Collider copy_of(const Collider& body) {
   copy.shape = moved(body.shape, by);
   shift(copy.keys, by);
   return copy;
+}
+
+// kg/m²
+double density_of(const Cloth& cloth) {
+  if (cloth.mesh.given() || (cloth.particle_mass == 0 && cloth.masses.empty()))
+    return cloth.density;
+  const Grid& g = cloth.grid;
+  return particle_mass(cloth, g.nx / 2, g.ny / 2) / (spacing_u(g) * spacing_v(g));
 }
 
 Shape made(std::size_t shape, const Vec3& at, double size) {
@@ -128,6 +80,37 @@ Scene with_cloth(Scene scene, const Vec3& at, double size) {
   cloth.masses.clear();
   cloth.velocity = cloth.spin = {};
   scene.cloths.push_back(std::move(cloth));
+  return scene;
+}
+
+// What a mesh cannot have is left at its standard value; a method that cannot move meshes gives way to one
+// that is near it.
+Scene with_mesh(Scene scene, Kind kind, const MeshSource& mesh) {
+  if (kind == Kind::body) {
+    Collider body;
+    MeshBody shape;
+    static_cast<MeshSource&>(shape) = mesh;
+    body.shape = std::move(shape);
+    body.friction = {FrictionModel::coulomb, 0.3, 0.3};
+    body.offset = 0.1 * mean_edge(mesh);
+    scene.colliders.push_back(std::move(body));
+    return scene;
+  }
+  const Cloth& like = scene.cloths.front();
+  Cloth cloth;
+  cloth.mesh = mesh;
+  cloth.density = density_of(like);
+  cloth.stiffness.structural = like.stiffness.structural;
+  cloth.bending = like.bending;
+  cloth.drag = like.drag;
+  cloth.self_collision = like.self_collision;
+  cloth.self_collision.response = SelfCollisionResponse::stiff;
+  constexpr double kThickest = 0.5;  // mean edges
+  cloth.self_collision.thickness =
+      std::min(cloth.self_collision.thickness, kThickest * mean_edge(mesh));
+  scene.cloths.push_back(std::move(cloth));
+  if (scene.solver.method == Method::positional) scene.solver.method = Method::compliant;
+  if (scene.solver.sweep == Sweep::jacobi) scene.solver.sweep = Sweep::gauss_seidel;
   return scene;
 }
 

@@ -16,6 +16,8 @@ struct Part {
 Scene with_body(Scene scene, std::size_t shape, const Vec3& at, double size);
 // A level sheet about `at` of sides of `size` [m], of the first cloth's material.
 Scene with_cloth(Scene scene, const Vec3& at, double size);
+// A body, or a cloth of the first cloth's material, of a mesh that is read.
+Scene with_mesh(Scene scene, Kind kind, const MeshSource& mesh);
 // The part a second time, beside itself; the copy is the last of its kind.
 Scene with_copy(Scene scene, const Part& part);
 // Without the part. Pins that follow a body which is gone stay where they are.

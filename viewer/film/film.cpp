@@ -56,8 +56,9 @@ std::string free_name(const std::string& base, const std::string& extension,
   return path;
 }
 
-Film::Film(const std::string& base, const std::string& besides, int width, int height, double start)
-    : width_(width), height_(height), start_(start), last_(start) {
+Film::Film(const std::string& base, const std::string& besides, int width, int height, double start,
+           bool waits)
+    : width_(width), height_(height), start_(start), last_(start), waits_(waits) {
   if (!has_ffmpeg()) {
     static constexpr std::string_view kFirst = "_00000.png";
     path_ = free_name(base, std::string(kFirst), besides);
@@ -82,10 +83,11 @@ Film::~Film() {
 }
 
 int Film::due(double time) {
+  if (time < start_ && count_ == 0) return 0;
   if (time < last_) start_ = time - static_cast<double>(count_) / kRate;
   last_ = time;
   // The scene had run on before it knew of the film.
-  if (count_ == 1) start_ = std::max(start_, time - 1 / kRate);
+  if (count_ == 1 && !waits_) start_ = std::max(start_, time - 1 / kRate);
   constexpr double kRounding = 1e-6;  // pictures
   const double wanted = std::floor((time - start_) * kRate + kRounding) + 1;
   return static_cast<int>(std::clamp(wanted - static_cast<double>(count_), 0.0, 30.0));

@@ -17,16 +17,18 @@ class Film {
   static constexpr double kRate = 30;  // pictures per second
 
   // Width and height are even. `base`: the file without extension; `besides`: a file that it is not,
-  // "" = any. Throws Failure when the film cannot be written there.
-  Film(const std::string& base, const std::string& besides, int width, int height, double start);
+  // "" = any. `waits`: the scene waits for the start [s]; else it runs on, and the film begins where it is.
+  // Throws Failure when the film cannot be written there.
+  Film(const std::string& base, const std::string& besides, int width, int height, double start,
+       bool waits);
   ~Film();  // a film that is not finished leaves no MP4
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;
 
   int width() const { return width_; }
   int height() const { return height_; }
-  // How many pictures are due at a time of the simulation [s]. When it has gone back, the film goes
-  // on from there.
+  // How many pictures are due at a time of the simulation [s]: none before the start. When it has gone back,
+  // the film goes on from there.
   int due(double time);
   // The time of the simulation at which the next picture is due [s].
   double next() const { return start_ + static_cast<double>(count_) / kRate; }
@@ -45,6 +47,7 @@ class Film {
   std::optional<OutputFile> file_;  // MP4
   int width_, height_;
   double start_, last_;  // s, of the first picture and of the newest
+  bool waits_;
   long count_ = 0;
   std::unique_ptr<std::FILE, Close> pipe_;
 };

@@ -5,6 +5,8 @@
 
 #include <set>
 
+#include "panel/theme.h"
+
 namespace weft::viewer {
 
 namespace {
@@ -40,6 +42,7 @@ void Hands::update(Workspace& workspace, const Area& area, const Pointer& pointe
   if (pointer.inside && pointer.wheel != 0)
     workspace.camera.zoom(pointer.wheel, 2 * (pointer.x - area.x) / area.width - 1,
                           1 - 2 * (pointer.y - area.y) / area.height, area.aspect());
+  watch_waiting(workspace);
   if (pointer.inside && pointer.pressed) press(workspace, area, pointer);
   const bool free = drag_ == Drag::none;
   if (pointer.inside && pointer.right && free) panning_ = true;
@@ -73,6 +76,7 @@ void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer
     return;
   }
   drag_ = Drag::orbit;
+  let_go(workspace);
   const auto cloth = pick_cloth(workspace.frame_data(), ray);
   if (tool == Tool::pin || pointer.shift) {
     drag_ = Drag::lasso;
@@ -95,14 +99,14 @@ void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer
       workspace.messages.warn("Meshes are not cut, only grids are", workspace.now());
     return;
   }
-  if (tool == Tool::move && pusher.take_gizmo(workspace, area, pointer.x, pointer.y)) {
+  if (tool == Tool::move && pusher.take_handle(workspace, area, pointer.x, pointer.y)) {
     drag_ = Drag::body;
     return;
   }
   const auto body = pick_body(workspace.frame_data(), ray);
   const bool cloth_first = cloth && (!body || cloth->distance <= body->distance);
   if (cloth_first && tool == Tool::move) {
-    pusher.choose(Pusher::kCloth);
+    pusher.choose(Part{Kind::cloth, static_cast<std::size_t>(cloth->cloth)});
   } else if (cloth_first) {
     drag_ = Drag::cloth;
     held_ = *cloth;
@@ -128,11 +132,43 @@ void Hands::drag(Workspace& workspace, const Area& area, const Pointer& pointer)
 
 void Hands::release(Workspace& workspace, const Area& area) {
   if (drag_ == Drag::lasso) take_lasso(workspace, area);
-  if (drag_ == Drag::cloth) workspace.give(Input{.kind = Input::Kind::release});
+  if (drag_ == Drag::cloth) {
+    const FrameData& now = workspace.frame_data();
+    waiting_ = Waiting{workspace.document().path(), now.frame, now.time};
+    if (!workspace.telemetry().paused)
+      let_go(workspace);
+    else
+      workspace.messages.tell("The hand pulls when the scene goes on; a click lets go",
+                              workspace.now());
+  }
   if (drag_ == Drag::body) pusher.let_go(workspace);
   stroke_.end();
   lasso_.clear();
   drag_ = Drag::none;
+}
+
+void Hands::let_go(Workspace& workspace) {
+  if (waiting_) workspace.give(Input{.kind = Input::Kind::release});
+  waiting_.reset();
+}
+
+// It is done when the point has come near, or cannot.
+void Hands::watch_waiting(Workspace& workspace) {
+  constexpr float kNear = 0.02f;  // sizes of the scene
+  constexpr double kLongest = 2;  // s
+  if (!waiting_) return;
+  const FrameData& now = workspace.frame_data();
+  const auto cloth = static_cast<std::size_t>(held_.cloth);
+  if (waiting_->scene != workspace.document().path() || now.frame < waiting_->frame ||
+      cloth >= now.cloths.size() ||
+      held_.particle >= now.cloths[cloth].columns * now.cloths[cloth].rows) {
+    waiting_.reset();  // another scene, or a new start: no hand is there
+    return;
+  }
+  const float away = length(now.cloths[cloth].position(held_.particle) - target_);
+  const bool moved = now.frame > waiting_->frame;
+  if (moved && (away < kNear * workspace.setting().size || now.time - waiting_->since > kLongest))
+    let_go(workspace);
 }
 
 // The particle follows the pointer in the plane across the view through where it was taken.
@@ -158,9 +194,11 @@ void Hands::cut(Workspace& workspace) {
   joined_ = workspace.edit(changes, joined_, "cut") || joined_;
 }
 
-void Hands::choose_newest(const Workspace& workspace) {
+void Hands::choose_newest(const Workspace& workspace, Kind kind) {
   tool = Tool::move;
-  pusher.choose(static_cast<int>(workspace.document().scene().colliders.size()) - 1);
+  const Scene& scene = workspace.document().scene();
+  pusher.choose(
+      Part{kind, (kind == Kind::body ? scene.colliders.size() : scene.cloths.size()) - 1});
 }
 
 // A small one is a click on the nearest particle.
@@ -285,11 +323,13 @@ void Hands::draw(const Workspace& workspace, const Area& area, ImDrawList& list)
         list.AddCircleFilled({p.x, p.y}, 4, IM_COL32(20, 22, 28, 200));
         list.AddCircleFilled({p.x, p.y}, 2.6f, IM_COL32(255, 209, 102, 255));
       }
-  if (drag_ == Drag::cloth) {
+  if (drag_ == Drag::cloth || waiting_) {
     const ClothCopy& cloth = workspace.frame_data().cloths[static_cast<std::size_t>(held_.cloth)];
     const ScreenPoint a = project(cloth.position(held_.particle)), b = project(target_);
     if (a.seen && b.seen) list.AddLine({a.x, a.y}, {b.x, b.y}, IM_COL32(255, 255, 255, 160), 1.5f);
     if (a.seen) list.AddCircle({a.x, a.y}, 7, IM_COL32(255, 255, 255, 220), 0, 2);
+    if (b.seen) list.AddCircleFilled({b.x, b.y}, 5, IM_COL32(255, 255, 255, 220));
+    if (b.seen) mark("hand", {b.x, b.y});
   }
   draw_path(list, stroke_.points(), IM_COL32(255, 107, 107, 230), false);
   draw_path(list, lasso_, IM_COL32(255, 209, 102, 230), true);

@@ -33,10 +33,12 @@ class Hands {
   // Marks over the picture: pins, what is held, the stroke, arrows of the chosen body.
   void draw(const Workspace& workspace, const Area& area, ImDrawList& list) const;
 
-  // Takes up the newest body, to be moved.
-  void choose_newest(const Workspace& workspace);
+  // Takes up the newest cloth or body, to be moved.
+  void choose_newest(const Workspace& workspace, Kind kind);
 
   bool busy() const { return drag_ != Drag::none; }
+  // Whether a hand pulls that nobody holds any more.
+  bool waits() const { return waiting_.has_value(); }
 
   Pusher pusher;  // moves what is chosen
 
@@ -53,12 +55,21 @@ class Hands {
   void toggle_pins(Workspace& workspace, const std::vector<std::vector<int>>& particles) const;
   void take_lasso(Workspace& workspace, const Area& area) const;
   void shoot(Workspace& workspace, const Ray& ray) const;
+  void let_go(Workspace& workspace);
+  void watch_waiting(Workspace& workspace);
 
   Drag drag_ = Drag::none;
   bool panning_ = false;
   std::optional<Vec3f> pivot_;  // of the orbit that goes on
   ClothHit held_;
   Vec3f target_;
+  // A hand that was let go in a paused scene goes on pulling when the scene does, until the point is there.
+  struct Waiting {
+    std::string scene;
+    std::int64_t frame = 0;
+    double since = 0;  // s, of the simulation
+  };
+  std::optional<Waiting> waiting_;
   CutStroke stroke_;
   std::vector<std::vector<CutLine>> cuts_;  // of the cloths, before the stroke
   bool joined_ = false;                     // the stroke has changed the scene already

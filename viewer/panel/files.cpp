@@ -40,15 +40,19 @@ void whole_number(const char* name, int& value, int low, int high) {
   mark(name);
 }
 
-void draw_picture_form(Requests& requests, PictureRequest& form) {
-  if (!ImGui::BeginPopup("picture")) return;
-  whole_number("picture width", form.width, 16, 8192);
+void draw_size(int& width, int& height) {
+  whole_number("picture width", width, 16, 8192);
   ImGui::SameLine();
   ImGui::TextUnformatted("×");
   ImGui::SameLine();
-  whole_number("picture height", form.height, 16, 8192);
+  whole_number("picture height", height, 16, 8192);
   ImGui::SameLine();
   ImGui::TextUnformatted("pixels");
+}
+
+void draw_picture_form(Requests& requests, PictureRequest& form) {
+  if (!ImGui::BeginPopup("picture")) return;
+  draw_size(form.width, form.height);
   ImGui::SliderInt("samples of a pixel", &form.samples, 1, 16, "%d", ImGuiSliderFlags_AlwaysClamp);
   mark("picture samples");
   if (button("Save picture", true, "PNG, in the current folder")) {
@@ -58,24 +62,49 @@ void draw_picture_form(Requests& requests, PictureRequest& form) {
   ImGui::EndPopup();
 }
 
-// The frames of an export; the scene's own length is offered.
-void draw_range(const Scene& scene, FileForms& forms) {
-  ImGui::Checkbox("from now on, until it is ended", &forms.endless);
-  mark("export endless");
-  if (forms.endless) return;
+// The frames of an export or a film, whose name is in the names of the controls; the scene's own length is
+// offered.
+void draw_range(const Scene& scene, const std::string& of, FrameRange& range) {
+  ImGui::Checkbox("from now on, until it is ended", &range.endless);
+  mark(of + " endless");
+  if (range.endless) return;
   constexpr int kMost = 1'000'000;
   const double length = std::round(scene.time.seconds / scene.time.frame);
-  if (forms.frames[1] == 0) forms.frames[1] = static_cast<int>(std::min(length, 1.0 * kMost));
+  if (range.last == 0) range.last = static_cast<int>(std::min(length, 1.0 * kMost));
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("frames");
   ImGui::SameLine();
-  whole_number("first frame", forms.frames[0], 0, kMost);
+  whole_number("first frame", range.first, 0, kMost);
   ImGui::SameLine();
   ImGui::TextUnformatted("to");
   ImGui::SameLine();
-  whole_number("last frame", forms.frames[1], 0, kMost);
-  forms.frames[1] = std::max(forms.frames[1], forms.frames[0]);
+  whole_number("last frame", range.last, 0, kMost);
+  range.last = std::max(range.last, range.first);
   ImGui::TextColored(kQuiet, "A scene that is past the first frame starts anew.");
+}
+
+void draw_film_form(const Scene& scene, Requests& requests, FileForms& forms) {
+  if (!ImGui::BeginPopup("film")) return;
+  ImGui::Checkbox("as large as the view", &forms.film_as_view);
+  mark("film as view");
+  if (!forms.film_as_view) draw_size(forms.film.width, forms.film.height);
+  draw_range(scene, "film", forms.film.range);
+  if (button("Start film", true, "MP4 where ffmpeg is installed, else numbered PNG files")) {
+    requests.film = forms.film;
+    if (forms.film_as_view) requests.film->width = requests.film->height = 0;
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+// Whether the cloth's triangles change, or will.
+bool comes_apart(const Workspace& workspace) {
+  const auto& cloths = workspace.document().scene().cloths;
+  const auto& shown = workspace.frame_data().cloths;
+  return std::any_of(cloths.begin(), cloths.end(),
+                     [](const Cloth& c) { return !c.cuts.empty(); }) ||
+         std::any_of(shown.begin(), shown.end(),
+                     [](const ClothCopy& c) { return c.torn && !c.mesh; });
 }
 
 void draw_export_form(Workspace& workspace, FileForms& forms) {
@@ -94,15 +123,22 @@ void draw_export_form(Workspace& workspace, FileForms& forms) {
   std::error_code error;
   if (std::filesystem::exists(forms.path, error))
     ImGui::TextColored(kAccent, "What is there now is replaced.");
-  draw_range(workspace.document().scene(), forms);
-  const bool known = std::filesystem::path(forms.path).extension() ==
-                     formats[static_cast<std::size_t>(forms.format)];
-  if (button("Start export", known, known ? "" : "The file's name ends as the format is called")) {
+  draw_range(workspace.document().scene(), "export", forms.frames);
+  const std::string format = formats[static_cast<std::size_t>(forms.format)];
+  const bool apart = comes_apart(workspace), morphs = format == ".gltf" || format == ".glb";
+  if (apart && format != ".obj")
+    ImGui::TextColored(kBad,
+                       morphs ? "The cloth is cut, which %s cannot follow: .obj can"
+                              : "%s has points alone: which triangles a cut took, .obj tells",
+                       format.c_str());
+  const bool known = std::filesystem::path(forms.path).extension() == format;
+  if (button("Start export", known && !(apart && morphs),
+             known ? "" : "The file's name ends as the format is called")) {
     const std::int64_t now = workspace.frame_data().frame;
-    if (forms.endless)
+    if (forms.frames.endless)
       workspace.start_export(forms.path, now, {});
     else
-      workspace.start_export(forms.path, forms.frames[0], forms.frames[1]);
+      workspace.start_export(forms.path, forms.frames.first, forms.frames.last);
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
@@ -141,9 +177,14 @@ void draw_files(Workspace& workspace, Requests& requests, FileForms& forms, bool
     ImGui::OpenPopup("picture");
   ImGui::SameLine();
   if (lasting("Film", filming,
-              "Films the view to MP4 where ffmpeg is installed, else to numbered PNG files",
-              "Ends the film"))
-    requests.film = true;
+              "A film of the view, of any size, all of it or some frames; F11: as it is seen",
+              "Ends the film")) {
+    if (filming)
+      requests.film = FilmRequest{};
+    else
+      ImGui::OpenPopup("film");
+  }
+  draw_film_form(document.scene(), requests, forms);
   ImGui::SameLine();
   draw_export(workspace, forms);
   draw_picture_form(requests, forms.picture);

@@ -72,7 +72,18 @@ void draw_material(Workspace& workspace) {
   ImGui::SameLine();
   color("back", s.back_color);
   bool plain = false;
-  if (is("colour") || is("ggx_force") || is("pbr"))
+  if (is("fabric")) {
+    int weave = static_cast<int>(s.weave);
+    if (ImGui::Combo("weave", &weave, "plain\0twill\0satin\0leather\0"))
+      s.weave = static_cast<Weave>(weave);
+    mark("weave");
+    slider("threads [1/m]", s.threads, 50, 2000, "%.0f", ImGuiSliderFlags_Logarithmic);
+    tooltip("Threads finer than the picture shows are flat");
+    slider("sheen", s.sheen, 0, 1);
+    slider("translucency", s.translucency, 0, 0.6f);
+    slider("normal scale", s.normal_scale, 0, 10);
+  }
+  if (is("colour") || is("ggx_force") || is("pbr") || is("fabric"))
     plain = slider("roughness", s.roughness, 0.05f, 1);
   if (is("pbr")) {
     plain = slider("metallic", s.metallic, 0, 1) || plain;
@@ -112,6 +123,13 @@ void draw_looks(Workspace& workspace) {
   heading("Material");
   draw_material(workspace);
   heading("Picture");
+  int quality = static_cast<int>(s.quality);
+  if (ImGui::Combo("quality", &quality, "automatic\0quick\0standard\0fine\0"))
+    s.quality = static_cast<Quality>(quality);
+  mark("quality");
+  tooltip(
+      "fine: ambient occlusion and softer shadows; quick: less at rest, too; automatic: fine where "
+      "there is a graphics card");
   switches({{"shadow", s.shadows}, {"floor", s.ground}});
   slider("roundness of bodies", s.tessellation, 16, 128);
   slider("smoothness", s.refinement, 0, 6, s.refinement == 0 ? "auto" : "%d");

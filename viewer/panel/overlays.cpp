@@ -38,7 +38,9 @@ void draw_tools(Hands& hands, const Area& area, const Keys& keys) {
        "Click on the cloth: holds a point, or lets it go; drag: a lasso around several"},
       {"Cut", Tool::cut, Action::cut, "Draw a stroke: severs all cloth that it passes over"},
       {"Move", Tool::move, Action::move,
-       "Choose a body and move it by its arrows or the arrow keys; choose the cloth to carry it"},
+       "Choose a cloth or a body: arrows move it, rings turn it, the square sizes it; arrow keys "
+       "move a "
+       "body and carry what is held of the cloth"},
       {"Ball", Tool::ball, Action::ball, "Click to shoot a ball into the scene"},
   };
   begin_overlay("tools", area.x + kMargin, area.y + kMargin, 0, 0);
@@ -248,7 +250,7 @@ void draw_help(bool& open, const Keys& keys) {
         {"Right or Ctrl+left drag", "pan"},
         {"Wheel", "nearer, farther"},
         {"Shift+click", "pin or unpin"},
-        {"Drop a file", "a scene, or a picture as texture"},
+        {"Drop a file", "a scene, a picture as texture, a mesh (.obj) as cloth or body"},
         {"Click on a message", "dismisses it"},
     };
     if (ImGui::BeginTable("mouse", 2)) {

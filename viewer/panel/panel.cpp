@@ -47,7 +47,8 @@ void Panel::draw_side(Workspace& workspace, Requests& requests) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
   ImGui::Begin("side", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoNav);
   draw_scenes(workspace, requests, path_);
   draw_files(workspace, requests, forms_, filming);
   ImGui::Dummy({0, 2});
@@ -81,7 +82,9 @@ void Panel::draw_side(Workspace& workspace, Requests& requests) {
 
 void Panel::draw(Workspace& workspace, Hands& hands, Requests& requests) {
   if (has_side()) draw_side(workspace, requests);
-  if (requests.newest) hands.choose_newest(workspace);
+  if (requests.mesh) mesh_form.ask("");
+  mesh_form.draw(workspace, requests);
+  if (requests.newest) hands.choose_newest(workspace, *requests.newest);
   const Area area = picture_area();
   if (visible) {
     draw_tools(hands, area, keys_);

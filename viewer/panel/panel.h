@@ -1,9 +1,11 @@
 // All controls around and over the picture. Each part is a file of its own.
 #pragma once
 
+#include "film/film_request.h"
 #include "hands/hands.h"
 #include "panel/gallery.h"
 #include "panel/history.h"
+#include "panel/mesh_form.h"
 #include "panel/parameters.h"
 #include "window/keys.h"
 #include "window/workspace.h"
@@ -19,19 +21,21 @@ struct PictureRequest {
 // What a person asks for that the window itself must do.
 struct Requests {
   std::optional<PictureRequest> picture;
-  bool film = false;
-  bool newest = false;   // the newest body is to be moved
-  bool gallery = false;  // to be opened
+  std::optional<FilmRequest> film;  // begun, or ended
+  std::optional<Kind> newest;       // the newest of the kind is to be moved
+  bool gallery = false;             // to be opened
+  bool mesh = false;                // a file of a mesh is to be added
 };
 
 // What a person has put into the forms of pictures and exports.
 struct FileForms {
   PictureRequest picture{1920, 1080, 8};
-  int format = 0;          // of animation_extensions()
-  std::string path;        // of the export
-  bool named = false;      // the path was typed
-  bool endless = true;     // from now on, until it is ended
-  int frames[2] = {0, 0};  // else the first and the last
+  int format = 0;      // of animation_extensions()
+  std::string path;    // of the export
+  bool named = false;  // the path was typed
+  FrameRange frames;   // of the export
+  bool film_as_view = true;
+  FilmRequest film{1920, 1080, {}};
 };
 
 class Panel {
@@ -48,6 +52,7 @@ class Panel {
   bool help = false;
   bool filming = false;
   Gallery gallery;
+  MeshForm mesh_form;
   History history;
 
  private:

@@ -85,11 +85,14 @@ void set_theme(float scale) {
   set_colors(style.Colors);
 }
 
+void mark(const std::string& name, ImVec2 at) {
+  if (auto* landmarks = static_cast<Landmarks*>(ImGui::GetIO().UserData)) (*landmarks)[name] = at;
+}
+
 void mark(const std::string& name) {
-  auto* landmarks = static_cast<Landmarks*>(ImGui::GetIO().UserData);
-  if (landmarks == nullptr || !ImGui::IsItemVisible()) return;
+  if (!ImGui::IsItemVisible()) return;
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  (*landmarks)[name] = {(low.x + high.x) / 2, (low.y + high.y) / 2};
+  mark(name, {(low.x + high.x) / 2, (low.y + high.y) / 2});
 }
 
 void heading(const char* text) {

@@ -22,6 +22,8 @@ inline const ImVec4 kRunning{0.78f, 0.16f, 0.16f, 1};
 using Landmarks = std::map<std::string, ImVec2>;
 // Notes the middle of the control just drawn.
 void mark(const std::string& name);
+// The same of what is no control, by its place.
+void mark(const std::string& name, ImVec2 at);
 
 // A heading above a group of controls.
 void heading(const char* text);

@@ -1,13 +1,14 @@
-// The processor time of the calling thread, which other programs do not lengthen.
+// Processor time, which other programs do not lengthen.
 #pragma once
 
 #include <time.h>
 
 namespace weft::viewer {
 
-inline double cpu_ms() {
+// Of the calling thread, or, by CLOCK_PROCESS_CPUTIME_ID, of all threads together.
+inline double cpu_ms(clockid_t clock = CLOCK_THREAD_CPUTIME_ID) {
   timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 

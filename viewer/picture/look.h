@@ -32,6 +32,7 @@ inline constexpr std::array kLooks{
     Look{"mirror", "Reflects the sky", false, false, true},
     Look{"pbr", "Metallic-roughness material from four maps, lit by the sky's image", false, false,
          true},
+    Look{"fabric", "Cloth by its weave: threads, sheen, light that comes through"},
     Look{"strain", "Heat map of the strain", false, true},
     Look{"wireframe", "Constraints in the colours of their kinds", false, false, false, false,
          Look::Draw::lines},
@@ -45,6 +46,12 @@ inline const Look* find_look(std::string_view name) {
   return nullptr;
 }
 
+enum class Weave { plain, twill, satin, leather };
+
+// How much is done for a picture: `automatic`, what is quick on this machine; `quick`, coarse while things move,
+// and no more than needed at rest; `fine`, with ambient occlusion and softer shadows.
+enum class Quality { automatic, quick, standard, fine };
+
 // Colours are linear.
 struct LookSettings {
   Vec3f color{0.56f, 0.07f, 0.06f};
@@ -55,13 +62,20 @@ struct LookSettings {
   bool ambient = true, diffuse = true, specular = true;
   float shininess = 40;
   float normal_scale = 1;
+  Weave weave = Weave::plain;  // look fabric
+  float threads = 300;         // 1/m
+  float sheen = 0.3f;          // of fibres
+  float translucency = 0.22f;  // share of light that shines through
+  Quality quality = Quality::automatic;
+  bool occlusion = false;      // ambient, of the picture that is drawn
   float height_scale = 0.01f;  // m
   float texture_repeats = 3;   // over the cloth
   float height_repeats = 1;
   float force_scale = 1;  // colours per weight of a particle
   float strain_range = 0.1f;
   bool shadows = true;
-  int shadow_softness = 4;  // samples along each side of the shadow's soft edge, 1 … 4
+  int shadow_softness = 3;  // samples along each side of the shadow's soft edge, 1 … 4
+  int shadow_size = 2048;   // of the map of depths that shadows come from, each side
   bool ground = true;
   int tessellation = 64;  // of spheres around, 16 … 128
   int refinement = 0;     // vertices per grid cell side; 0: as many as the detail asks for

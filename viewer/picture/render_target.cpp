@@ -19,6 +19,7 @@ void storage(const Renderbuffer& buffer, int samples, GLenum format, int width, 
 RenderTarget::RenderTarget(int width, int height, int samples)
     : width_(width),
       height_(height),
+      several_(samples > 1),
       samples_color_(make_renderbuffer()),
       samples_depth_(make_renderbuffer()),
       color_(make_renderbuffer()),
@@ -26,25 +27,30 @@ RenderTarget::RenderTarget(int width, int height, int samples)
       result_(make_framebuffer()) {
   GLint most = 1;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
-  samples = std::min(samples, static_cast<int>(most));
-  storage(samples_color_, samples, GL_SRGB8_ALPHA8, width, height);
+  samples = several_ ? std::min(samples, static_cast<int>(most)) : 0;
   storage(samples_depth_, samples, GL_DEPTH_COMPONENT24, width, height);
   storage(color_, 0, GL_SRGB8_ALPHA8, width, height);
-  glBindFramebuffer(GL_FRAMEBUFFER, samples_.id());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER,
-                            samples_color_.id());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
-                            samples_depth_.id());
-  const bool good = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  glBindFramebuffer(GL_FRAMEBUFFER, result_.id());
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.id());
+  const auto attach = [](const Framebuffer& to, GLenum what, const Renderbuffer& buffer) {
+    glBindFramebuffer(GL_FRAMEBUFFER, to.id());
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, what, GL_RENDERBUFFER, buffer.id());
+  };
+  bool good = true;
+  if (several_) {
+    storage(samples_color_, samples, GL_SRGB8_ALPHA8, width, height);
+    attach(samples_, GL_COLOR_ATTACHMENT0, samples_color_);
+    attach(samples_, GL_DEPTH_ATTACHMENT, samples_depth_);
+    good = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  } else {
+    attach(result_, GL_DEPTH_ATTACHMENT, samples_depth_);
+  }
+  attach(result_, GL_COLOR_ATTACHMENT0, color_);
   if (!good || glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     throw Failure(kNoGraphics, "OpenGL cannot draw a picture of " + std::to_string(width) + "x" +
                                    std::to_string(height) + " pixels");
 }
 
 void RenderTarget::begin() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, samples_.id());
+  glBindFramebuffer(GL_FRAMEBUFFER, several_ ? samples_.id() : result_.id());
   glViewport(0, 0, width_, height_);
   glEnable(GL_FRAMEBUFFER_SRGB);
   glEnable(GL_MULTISAMPLE);
@@ -52,11 +58,26 @@ void RenderTarget::begin() const {
 }
 
 void RenderTarget::resolve() const {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_.id());
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, result_.id());
-  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  if (several_) {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, samples_.id());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, result_.id());
+    glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
+  }
   glBindFramebuffer(GL_FRAMEBUFFER, result_.id());
   glDisable(GL_FRAMEBUFFER_SRGB);  // the panel's colours are sRGB already
+}
+
+void RenderTarget::begin_over() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, result_.id());
+  glViewport(0, 0, width_, height_);
+  glEnable(GL_FRAMEBUFFER_SRGB);
+}
+
+void RenderTarget::copy_depth(GLuint framebuffer) const {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, several_ ? samples_.id() : result_.id());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
 }
 
 void RenderTarget::show(GLuint framebuffer, int x, int y, int width, int height) const {

@@ -1,5 +1,5 @@
-// Where a picture is drawn: an off-screen image with several samples per pixel, made one by
-// resolve(). Colours are stored as sRGB.
+// Where a picture is drawn: an off-screen image, with several samples per pixel that resolve() makes one.
+// Colours are stored as sRGB.
 #pragma once
 
 #include "picture/gl.h"
@@ -17,12 +17,17 @@ class RenderTarget {
 
   void begin() const;    // draws go here from now on
   void resolve() const;  // joins the samples; further draws (the panel) go onto the result
+  // Draws go onto the result from now on, without depths.
+  void begin_over() const;
+  // Copies the depths into a framebuffer of the same size, of 24 bits and one sample.
+  void copy_depth(GLuint framebuffer) const;
   // Copies the result there, stretched to a rectangle with its lower left corner at (x, y).
   void show(GLuint framebuffer, int x, int y, int width, int height) const;
   Picture read() const;
 
  private:
   int width_, height_;
+  bool several_;  // samples
   Renderbuffer samples_color_, samples_depth_, color_;
   Framebuffer samples_, result_;
 };
@@ -32,6 +37,7 @@ class ShadowMap {
  public:
   explicit ShadowMap(int size);
   void begin() const;
+  int size() const { return size_; }
   GLuint texture() const { return depth_.id(); }
 
  private:

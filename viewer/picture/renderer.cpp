@@ -1,9 +1,11 @@
 // The passes of a picture, in order: draw() reads like the list.
 #include "picture/renderer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "picture/cpu_time.h"
+#include "weft/mesh.h"
 
 namespace weft::viewer {
 
@@ -30,6 +32,19 @@ void shrink(Collider& body, double s) {
   if (Capsule* capsule = std::get_if<Capsule>(&body.shape)) capsule->radius = less(capsule->radius);
 }
 
+// Of a sheet along u and v; of a mesh, whose texture coordinates are its file's or span its two longest sides,
+// about what they are for.
+std::pair<float, float> sides_of(const Cloth& cloth) {
+  if (!cloth.mesh.given()) return {length(to_float(cloth.grid.u)), length(to_float(cloth.grid.v))};
+  Bounds bounds;
+  for (const Vec3& p : cloth.mesh.shape->vertices) bounds.add(to_float(p));
+  const auto scale = static_cast<float>(cloth.mesh.scale);
+  const Vec3f size = (bounds.high - bounds.low) * scale;
+  float sides[3] = {size.x, size.y, size.z};
+  std::sort(std::begin(sides), std::end(sides));
+  return {sides[2], sides[1]};
+}
+
 void set(float (&to)[4], Vec3f v, float w) {
   to[0] = v.x, to[1] = v.y, to[2] = v.z, to[3] = w;
 }
@@ -37,10 +52,7 @@ void set(float (&to)[4], Vec3f v, float w) {
 }  // namespace
 
 Renderer::Renderer(const PictureFiles& files)
-    : folder_(find_shaders()),
-      shadow_map_(2048),
-      frame_(make_buffer()),
-      nothing_(make_vertex_array()) {
+    : folder_(find_shaders()), frame_(make_buffer()), nothing_(make_vertex_array()) {
   set_pictures(files);
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_PROGRAM_POINT_SIZE);
@@ -93,10 +105,10 @@ void Renderer::draw(const FrameData& frame_data, const Setting& setting, const L
   const float aspect = static_cast<float>(target.width()) / static_cast<float>(target.height());
   update_meshes(frame_data, setting, look, settings);
   update_bodies(frame_data, setting, settings);
-  draw_shadow_map(frame_data, setting, settings);
+  draw_shadow_map(frame_data, setting, look, settings);
   upload_frame(setting, settings, camera, aspect);
   const std::pair<GLenum, GLuint> textures[] = {
-      {GL_TEXTURE_CUBE_MAP, sky_.id()},   {GL_TEXTURE_2D, shadow_map_.texture()},
+      {GL_TEXTURE_CUBE_MAP, sky_.id()},   {GL_TEXTURE_2D, shadow_map_->texture()},
       {GL_TEXTURE_2D, texture_.id()},     {GL_TEXTURE_2D, height_map_.id()},
       {GL_TEXTURE_2D, material_[0].id()}, {GL_TEXTURE_2D, material_[1].id()},
       {GL_TEXTURE_2D, material_[2].id()}, {GL_TEXTURE_2D, material_[3].id()}};
@@ -113,9 +125,12 @@ void Renderer::draw(const FrameData& frame_data, const Setting& setting, const L
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_DEPTH_TEST);
   draw_bodies(look, settings, camera);
-  draw_cloths(look, settings, target, setting);
+  draw_cloths(frame_data, look, settings, target, setting);
   if (settings.ground && setting.has_ground) draw_ground(setting);  // it may be seen through
   target.resolve();
+  constexpr float kReach = 0.1f;  // sizes of the scene
+  if (settings.occlusion)
+    occlusion_.apply(target, shader("occlusion"), shader("occlude"), camera, kReach * setting.size);
 }
 
 void Renderer::update_meshes(const FrameData& frame_data, const Setting& setting, const Look& look,
@@ -190,9 +205,16 @@ void Renderer::Body::draw(const Shader& shader) const {
   mesh.draw();
 }
 
+// Where the camera alone has moved, the map of before serves.
 void Renderer::draw_shadow_map(const FrameData& frame_data, const Setting& setting,
-                               const LookSettings& settings) {
+                               const Look& look, const LookSettings& settings) {
+  shadow_map_ = &shadow_maps_.try_emplace(settings.shadow_size, settings.shadow_size).first->second;
   if (!settings.shadows) return;
+  const Shadowed now{
+      frame_data.scene_serial, frame_data.change,   frame_data.frame,      settings.shadow_size,
+      settings.detail,         settings.refinement, settings.tessellation, &look};
+  if (now == shadowed_) return;
+  shadowed_ = now;
   const Bounds bounds = visible_bounds(frame_data);
   const float r = 1.02f * bounds.radius();
   const Vec3f eye = bounds.center() + kLight * (1.5f * r);
@@ -200,7 +222,7 @@ void Renderer::draw_shadow_map(const FrameData& frame_data, const Setting& setti
                      look_at(eye, bounds.center(), any_normal(kLight));
   const Mat4 to_texture{{0.5f, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0, 0.5f, 0.5f, 0.5f, 1}};
   shadow_matrix_ = to_texture * light;
-  shadow_map_.begin();
+  shadow_map_->begin();
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(1.5f, 4);
   const Shader& depth = shader("shadow");
@@ -220,7 +242,9 @@ void Renderer::upload_frame(const Setting& setting, const LookSettings& settings
   block.shadow_matrix = shadow_matrix_;
   const float t = std::tan(camera.fov() / 2);
   set(block.eye, camera.eye(), setting.size);
-  set(block.light, kLight, 0.0025f * setting.size);
+  // Small maps are coarse.
+  const float coarse = std::max(1.0f, 1024.0f / static_cast<float>(settings.shadow_size));
+  set(block.light, kLight, 0.0025f * setting.size * coarse);
   set(block.light_color, kLightColor,
       settings.shadows ? static_cast<float>(settings.shadow_softness) : 0.0f);
   set(block.right, camera.right() * (t * aspect), 0);
@@ -238,7 +262,9 @@ void Renderer::set_material(const Shader& shader, const LookSettings& settings, 
   shader.set("u_roughness", settings.roughness);
   shader.set("u_metallic", settings.metallic);
   shader.set("u_maps", settings.maps ? 1.0f : 0.0f);
-  shader.set("u_translucency", cloth ? 0.22f : 0.0f);
+  shader.set("u_translucency", cloth ? settings.translucency : 0.0f);
+  shader.set("u_weave", static_cast<float>(settings.weave));
+  shader.set("u_sheen", settings.sheen);
   shader.set("u_two_sided", cloth ? 1.0f : 0.0f);
   shader.set("u_parts", Vec3f{settings.ambient ? 1.0f : 0.0f, settings.diffuse ? 1.0f : 0.0f,
                               settings.specular ? 1.0f : 0.0f});
@@ -255,10 +281,9 @@ void Renderer::set_material(const Shader& shader, const LookSettings& settings, 
 
 void Renderer::draw_ground(const Setting& setting) {
   if (floor_.empty()) return;
-  const Shader& ground = shader("ground");
+  const Shader& ground = shader(setting.solid ? "ground" : "grid");
   ground.use();
   ground.set("u_ground", floor_center_, 4 * setting.size);
-  ground.set("u_solid", setting.solid ? 1.0f : 0.0f);
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   floor_.front().draw();
@@ -271,7 +296,11 @@ void Renderer::draw_bodies(const Look& look, const LookSettings& settings, const
   for (const Body& body : bodies_) {
     // A wall between the eye and the cloth would hide what it pushes.
     const Plane* plane = std::get_if<Plane>(&body.collider.shape);
-    if (!plane || in_front_of(*plane, camera.eye())) body.draw(material);
+    if (plane && !in_front_of(*plane, camera.eye())) continue;
+    const bool closed = !plane && !std::holds_alternative<MeshBody>(body.shape);
+    if (closed) glEnable(GL_CULL_FACE);
+    body.draw(material);
+    glDisable(GL_CULL_FACE);
   }
 }
 
@@ -286,8 +315,9 @@ void Renderer::draw_faces(const ClothMesh& cloth, const Shader& material, float 
   glDisable(GL_CULL_FACE);
 }
 
-void Renderer::draw_cloths(const Look& look, const LookSettings& settings,
-                           const RenderTarget& target, const Setting& setting) {
+void Renderer::draw_cloths(const FrameData& frame_data, const Look& look,
+                           const LookSettings& settings, const RenderTarget& target,
+                           const Setting& setting) {
   const Shader& material = shader(look.name);
   set_material(material, settings, true);
   const float spacing = setting.size / 150;
@@ -296,7 +326,10 @@ void Renderer::draw_cloths(const Look& look, const LookSettings& settings,
   const std::pair<bool, Vec3f> kinds[] = {{settings.structural, kStructuralColor},
                                           {settings.shear, kShearColor},
                                           {settings.bend, kBendColor}};
-  for (const ClothMesh& cloth : cloths_) {
+  for (std::size_t c = 0; c < cloths_.size(); ++c) {
+    const ClothMesh& cloth = cloths_[c];
+    const auto [along_u, along_v] = sides_of(frame_data.scene->cloths[c]);
+    material.set("u_threads", settings.threads * along_u, settings.threads * along_v);
     if (look.draw == Look::Draw::surface && !look.raised) cloth.draw_surface();
     if (look.draw == Look::Draw::surface && look.raised)
       draw_faces(cloth, material, settings.height_scale);

@@ -9,6 +9,7 @@
 #include "picture/camera.h"
 #include "picture/look.h"
 #include "picture/meshes.h"
+#include "picture/occlusion.h"
 #include "picture/render_target.h"
 #include "picture/setting.h"
 #include "picture/shader.h"
@@ -44,7 +45,7 @@ class Renderer {
                      const LookSettings& settings);
   void update_bodies(const FrameData& frame_data, const Setting& setting,
                      const LookSettings& settings);
-  void draw_shadow_map(const FrameData& frame_data, const Setting& setting,
+  void draw_shadow_map(const FrameData& frame_data, const Setting& setting, const Look& look,
                        const LookSettings& settings);
   void upload_frame(const Setting& setting, const LookSettings& settings, const Camera& camera,
                     float aspect);
@@ -53,17 +54,27 @@ class Renderer {
   void draw_bodies(const Look& look, const LookSettings& settings, const Camera& camera);
   // The two faces of a cloth, each raised to its side.
   static void draw_faces(const ClothMesh& cloth, const Shader& material, float height);
-  void draw_cloths(const Look& look, const LookSettings& settings, const RenderTarget& target,
-                   const Setting& setting);
+  void draw_cloths(const FrameData& frame_data, const Look& look, const LookSettings& settings,
+                   const RenderTarget& target, const Setting& setting);
 
   std::filesystem::path folder_;
   std::map<std::string, Shader, std::less<>> shaders_;
-  ShadowMap shadow_map_;
+  std::map<int, ShadowMap> shadow_maps_;   // by size
+  const ShadowMap* shadow_map_ = nullptr;  // as drawn last
+  // Of what the shadow map was drawn.
+  struct Shadowed {
+    std::uint64_t scene = ~std::uint64_t{0}, change = 0;
+    std::int64_t frame = -1;
+    int size = 0, detail = 0, refinement = 0, tessellation = 0;
+    const Look* look = nullptr;
+    friend bool operator==(const Shadowed&, const Shadowed&) = default;
+  } shadowed_;
   PictureFiles files_;
   Texture texture_, height_map_, sky_;
   std::array<Texture, 4> material_;  // in the order of MaterialMap
   std::vector<std::string> picture_problems_;
   Buffer frame_;
+  Occlusion occlusion_;
   VertexArray nothing_;  // for the background's triangle
 
   std::vector<ClothMesh> cloths_;

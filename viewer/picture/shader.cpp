@@ -24,7 +24,8 @@ fs::file_time_type time_of(const fs::path& path) {
 constexpr std::pair<const char*, int> kUnits[] = {
     {"u_sky", 0},           {"u_shadow", 1},         {"u_texture", 2},
     {"u_height", 3},        {"u_base_color_map", 4}, {"u_metallic_map", 5},
-    {"u_roughness_map", 6}, {"u_normal_map", 7}};
+    {"u_roughness_map", 6}, {"u_normal_map", 7},     {"u_depth", 8},
+    {"u_occlusion", 9}};
 
 }  // namespace
 

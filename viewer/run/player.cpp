@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "edit/cloth_place.h"
 #include "picture/cpu_time.h"
 #include "weft/printable.h"
 
@@ -94,6 +95,10 @@ void Player::change(Scene scene) {
     leave_past();
     if (simulation_->frame() == 0 && !outputs_.recording()) {
       start(std::move(scene));
+      return;
+    }
+    if (starts_elsewhere(scene, scene_)) {
+      open(std::move(scene));
       return;
     }
     const bool heals = !contains_cuts(scene, scene_);

@@ -82,7 +82,7 @@ void App::run() {
     turn_ = {};
     turn();
     const double took = seconds_now() - start;
-    view_.took(1e3 * took);
+    if (turn_.drawn) view_.took(1e3 * took);
     window_.poll(std::max(0.0, kTurn - took));
     turn_.all_ms = 1e3 * (seconds_now() - start);
     panel_.history.add(workspace_.telemetry(), workspace_.frame_data().scene_serial, turn_);
@@ -97,32 +97,50 @@ void App::run() {
 
 // All files that are not finished are; nobody looks at the window any more: what went wrong, or "".
 std::string App::end() {
-  std::string problem;
-  try {
-    if (film_) film_->finish();
-  } catch (const Failure& failure) {
-    problem = failure.what();
-  }
-  film_.reset();
+  const std::string problem = filming_.finish();
   const std::string other = workspace_.end();
   return problem + (problem.empty() || other.empty() ? "" : "\n") + other;
 }
 
-// The first second, in which shaders are compiled, does not count.
+// The first second, in which shaders are compiled, does not count. At the end the scene is paused, and it is
+// measured how long the picture of every pixel takes to come.
 bool App::measured(double begun) {
-  const double since = seconds_now() - begun;
+  constexpr double kPatience = 10;  // s
+  const double now = seconds_now(), since = now - begun;
+  if (paused_at_ > 0) {
+    const bool full = turn_.picture && view_.whole() && workspace_.telemetry().paused;
+    if (full)
+      std::printf("pause to picture of every pixel %.0f ms (%.0f ms of processor time)\n",
+                  1e3 * (now - paused_at_), cpu_ms(CLOCK_PROCESS_CPUTIME_ID) - worked_ms_);
+    return full || now - paused_at_ > kPatience;
+  }
   if (since > 1) turns_.push_back(turn_);
   if (since < 1 + measure_) return false;
   std::fputs(words(turns_).c_str(), stdout);
-  return true;
+  if (workspace_.telemetry().paused) return true;
+  paused_at_ = now;
+  worked_ms_ = cpu_ms(CLOCK_PROCESS_CPUTIME_ID);
+  workspace_.play(false);
+  return false;
+}
+
+// Nothing is drawn while there is nothing new: where the processor draws, that is time for the simulation.
+// What fades, and the figures, are looked at now and then.
+bool App::due(double now, bool fresh) {
+  constexpr double kSettles = 0.3, kNowAndThen = 0.1;  // s
+  if (window_.take_stir()) stirred_ = now;
+  return fresh || hands_.busy() || ImGui::IsAnyMouseDown() || filming_.on() ||
+         now - stirred_ < kSettles || now - last_turn_ >= kNowAndThen;
 }
 
 void App::turn() {
   const double now = seconds_now();
-  workspace_.refresh(now);
+  const bool fresh = workspace_.refresh(now);
+  const bool draws = due(now, fresh);
   take_dropped();
   view_.reload(workspace_);
-  if (!window_.visible()) return;
+  if (!window_.visible() || !draws) return;
+  turn_.drawn = true;
   const double panel_start = cpu_ms();
   landmarks_.clear();
   window_.begin_panel();
@@ -141,18 +159,18 @@ void App::turn() {
   hands_.update(workspace_, area, pointer_now());
   hands_.draw(workspace_, area, *ImGui::GetBackgroundDrawList());
   Requests requests;
-  panel_.filming = film_.has_value();
+  panel_.filming = filming_.on();
   panel_.draw(workspace_, hands_, requests);
   const double picture_start = cpu_ms();
   draw_picture();
   const double picture_end = cpu_ms();
-  window_.end_panel();
+  window_.end_panel(window_.width() - picture_size().first);
   turn_.panel_ms = cpu_ms() - picture_end + picture_start - panel_start;
   turn_.picture = view_.drawn();
   if (view_.drawn()) turn_.surface_ms = view_.own_ms();
   window_.swap();
   apply(requests);
-  film();
+  filming_.turn(workspace_, view_);
   log_.write(workspace_, view_, hands_, panel_.help, landmarks_);
 }
 
@@ -175,7 +193,7 @@ void App::dispatch(Action action) {
   if (action == Action::help) panel_.help = !panel_.help;
   if (action == Action::panel) panel_.visible = !panel_.visible;
   if (action == Action::screenshot) take_picture({});
-  if (action == Action::film) start_or_end_film();
+  if (action == Action::film) start_or_end_film({});
   if (action >= Action::hand && action <= Action::ball)
     hands_.tool = static_cast<Tool>(static_cast<int>(action) - static_cast<int>(Action::hand));
   dispatch_scene(action);
@@ -183,19 +201,17 @@ void App::dispatch(Action action) {
   dispatch_part(action);
 }
 
-// The body that the arrows move.
+// What the handles are about.
 void App::dispatch_part(Action action) {
-  const int chosen = hands_.pusher.chosen();
   if (action != Action::remove && action != Action::duplicate) return;
-  if (hands_.tool != Tool::move || chosen < 0) {
-    workspace_.messages.tell("Choose a body with the tool Move first; cloths are in the panel",
-                             workspace_.now());
+  const std::optional<Part> chosen = hands_.pusher.chosen();
+  if (hands_.tool != Tool::move || !chosen) {
+    workspace_.messages.tell("Choose a cloth or a body with the tool Move first", workspace_.now());
     return;
   }
-  const Part part{Kind::body, static_cast<std::size_t>(chosen)};
-  if (part.number >= workspace_.document().scene().colliders.size()) return;
-  if (action == Action::remove && workspace_.remove(part)) hands_.pusher.choose(Pusher::kNothing);
-  if (action == Action::duplicate && workspace_.duplicate(part)) hands_.choose_newest(workspace_);
+  if (action == Action::remove && workspace_.remove(*chosen)) hands_.pusher.choose({});
+  if (action == Action::duplicate && workspace_.duplicate(*chosen))
+    hands_.choose_newest(workspace_, chosen->kind);
 }
 
 // The list or the help that is open; where nothing is, says how to leave.
@@ -250,7 +266,7 @@ void App::push_bodies(double seconds) {
       seconds);
 }
 
-// A picture becomes the texture, anything else is a scene.
+// A picture becomes the texture, of a mesh the person is asked what it is to be, anything else is a scene.
 void App::take_dropped() {
   for (const std::string& path : window_.take_dropped()) {
     std::string extension = std::filesystem::path(path).extension().string();
@@ -259,6 +275,8 @@ void App::take_dropped() {
     if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
       workspace_.pictures.texture = path;
       workspace_.look = find_look("texture");
+    } else if (extension == ".obj") {
+      panel_.mesh_form.ask(path);
     } else {
       workspace_.open(path);
     }
@@ -267,7 +285,7 @@ void App::take_dropped() {
 
 void App::apply(const Requests& requests) {
   if (requests.picture) take_picture(*requests.picture);
-  if (requests.film) start_or_end_film();
+  if (requests.film) start_or_end_film(*requests.film);
 }
 
 void App::take_picture(const PictureRequest& asked) {
@@ -282,49 +300,12 @@ void App::take_picture(const PictureRequest& asked) {
   }
 }
 
-void App::start_or_end_film() {
-  if (film_) {
-    end_film();
-    return;
-  }
+void App::start_or_end_film(const FilmRequest& asked) {
   const auto [width, height] = picture_size();
-  try {
-    film_.emplace(workspace_.document().name(), workspace_.record(), width & ~1, height & ~1,
-                  workspace_.frame_data().time);
-    waits_at_ = film_->next();
-    workspace_.wait_at(waits_at_);
-    workspace_.messages.tell("The film goes to " + full_path(film_->path()) + " until you end it",
-                             workspace_.now());
-  } catch (const Failure& failure) {
-    workspace_.messages.warn("No film: " + std::string(failure.what()), workspace_.now());
-  }
-}
-
-void App::end_film() {
-  try {
-    film_->finish();
-    workspace_.messages.tell("Film saved to " + full_path(film_->path()), workspace_.now());
-  } catch (const Failure& failure) {
-    workspace_.messages.warn("No film: " + std::string(failure.what()), workspace_.now());
-  }
-  film_.reset();
-}
-
-void App::film() {
-  if (film_) {
-    const int due = film_->due(workspace_.frame_data().time);
-    try {
-      if (due > 0) film_->add(view_.picture(workspace_, film_->width(), film_->height()), due);
-    } catch (const Failure& failure) {
-      workspace_.messages.warn("The film ends: " + std::string(failure.what()), workspace_.now());
-      film_.reset();
-    }
-  }
-  // Each picture is of a moment of its own, however slowly they are drawn.
-  const double next = film_ ? film_->next() : std::numeric_limits<double>::infinity();
-  if (next == waits_at_) return;
-  waits_at_ = next;
-  workspace_.wait_at(next);
+  if (filming_.on())
+    filming_.end(workspace_);
+  else
+    filming_.start(asked, width, height, workspace_);
 }
 
 }  // namespace weft::viewer

@@ -1,15 +1,12 @@
 // The program with its window: one turn of the loop after another.
 #pragma once
 
-#include <limits>
-#include <optional>
-
 #include "command_line.h"
-#include "film/film.h"
 #include "hands/hands.h"
 #include "panel/panel.h"
 #include "window/end_at_exit.h"
 #include "window/figures.h"
+#include "window/filming.h"
 #include "window/keys.h"
 #include "window/log.h"
 #include "window/view.h"
@@ -36,13 +33,12 @@ class App {
   void push_bodies(double seconds);
   void take_dropped();
   bool measured(double begun);
+  bool due(double now, bool fresh);
   void turn();
   void draw_picture();
   void apply(const Requests& requests);
   void take_picture(const PictureRequest& asked);
-  void start_or_end_film();
-  void end_film();
-  void film();
+  void start_or_end_film(const FilmRequest& asked);
   std::string end();
   std::pair<int, int> picture_size() const;  // pixels
 
@@ -54,12 +50,14 @@ class App {
   Panel panel_;
   Log log_;
   Landmarks landmarks_;
-  std::optional<Film> film_;
-  double waits_at_ = std::numeric_limits<double>::infinity();  // s, the simulation, for the film
-  double measure_;                                             // s, 0: not at all
+  Filming filming_;
+  double measure_;  // s, 0: not at all
   std::vector<Turn> turns_;
   Turn turn_;             // the present one
-  double last_turn_ = 0;  // s
+  double last_turn_ = 0;  // s, of those that drew
+  double stirred_ = 0;    // s, when somebody did something
+  double paused_at_ = 0;  // s, at the end of a measurement
+  double worked_ms_ = 0;  // of all threads, until then
   EndAtExit end_at_exit_{[this] { return end(); }};
 };
 

@@ -21,22 +21,23 @@ double quantile(const std::vector<Turn>& turns, double share, Value value) {
 }  // namespace
 
 std::string words(const std::vector<Turn>& turns) {
-  double seconds = 1e-9, pictures = 0;
+  double seconds = 1e-9, pictures = 0, drawn = 0;
   for (const Turn& turn : turns) {
     seconds += 1e-3 * turn.all_ms;
     pictures += turn.picture ? 1 : 0;
+    drawn += turn.drawn ? 1 : 0;
   }
   const auto all = [](const Turn& t) { return t.all_ms; };
   const auto surface = [](const Turn& t) { return t.surface_ms; };
   const auto panel = [](const Turn& t) { return t.panel_ms; };
   char text[400];
   std::snprintf(text, sizeof text,
-                "panel %.1f/s (turn: median %.1f ms, 95 %% within %.1f ms)\n"
+                "turns %.1f/s (median %.1f ms, 95 %% within %.1f ms), panel %.1f/s\n"
                 "pictures %.1f/s\n"
                 "processor time a turn: normals and upload %.2f ms, panel %.2f ms (medians)\n",
                 static_cast<double>(turns.size()) / seconds, quantile(turns, 0.5, all),
-                quantile(turns, 0.95, all), pictures / seconds, quantile(turns, 0.5, surface),
-                quantile(turns, 0.5, panel));
+                quantile(turns, 0.95, all), drawn / seconds, pictures / seconds,
+                quantile(turns, 0.5, surface), quantile(turns, 0.5, panel));
   return text;
 }
 

@@ -42,7 +42,7 @@ const std::array<ActionText, kActions> kActionTexts{{
     {"hand", "1", "Tool: drag the cloth"},
     {"pin", "2", "Tool: pin and unpin"},
     {"cut", "3", "Tool: cut"},
-    {"move", "4", "Tool: move bodies"},
+    {"move", "4", "Tool: move cloths and bodies"},
     {"ball", "5", "Tool: shoot a ball"},
     {"move_left", "Left", "Move body or cloth left"},
     {"move_right", "Right", "Move it right"},
@@ -50,8 +50,8 @@ const std::array<ActionText, kActions> kActionTexts{{
     {"move_far", "Up", "Move it away"},
     {"move_up", "E", "Move it up"},
     {"move_down", "D", "Move it down"},
-    {"duplicate", "Ctrl+D", "The chosen body once more"},
-    {"delete", "Delete", "Take the chosen body away"},
+    {"duplicate", "Ctrl+D", "The chosen cloth or body once more"},
+    {"delete", "Delete", "Take the chosen cloth or body away"},
 }};
 
 namespace {
@@ -198,7 +198,7 @@ Action Keys::action_of(const KeyPress& press) const {
 bool Keys::held(Action action, const Window& window) const {
   const auto& bindings = bindings_[static_cast<std::size_t>(action)];
   return std::any_of(bindings.begin(), bindings.end(),
-                     [&](const Binding& b) { return window.key_down(b.key); });
+                     [&](const Binding& b) { return window.key_down(b.key, b.mods); });
 }
 
 std::string Keys::names_of(Action action) const {

@@ -71,7 +71,7 @@ class Keys {
 
   // The action of a key press; Action::count when it has none.
   Action action_of(const KeyPress& press) const;
-  // Whether one of the action's keys is down now, whatever the modifiers.
+  // Whether one of the action's keys is down now; Shift does not matter.
   bool held(Action action, const Window& window) const;
   // "P, Space"
   std::string names_of(Action action) const;

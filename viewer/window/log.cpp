@@ -48,6 +48,7 @@ void Log::write(const Workspace& workspace, const View& view, const Hands& hands
                         {"coarse", view.coarse()},
                         {"tool", kTools[static_cast<int>(hands.tool)]},
                         {"busy", hands.busy()},
+                        {"waiting", hands.waits()},
                         {"typing", ImGui::GetIO().WantTextInput},
                         {"held", held},
                         {"torn", !s.cloths.empty() && s.cloths[0].torn},

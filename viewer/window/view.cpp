@@ -10,11 +10,16 @@ namespace {
 constexpr struct {
   int samples;
   float scale;
-  int shadow_softness, detail;
-} kQuality[] = {{4, 1.0f, 4, 200}, {2, 0.8f, 2, 120}, {1, 0.6f, 1, 70}, {1, 0.45f, 1, 40}};
+  int shadow_softness, shadow_size, detail, tessellation;
+} kQuality[] = {{4, 1.0f, 3, 2048, 200, 128},
+                {2, 1.0f, 2, 1024, 200, 64},
+                {2, 0.8f, 2, 1024, 120, 64},
+                {1, 0.6f, 1, 1024, 70, 48},
+                {1, 0.45f, 1, 512, 40, 32}};
 constexpr int kCoarsest = std::size(kQuality) - 1;
+constexpr int kSoftest = 4;               // samples along a side of a fine shadow's edge
 constexpr double kSlow = 28, kQuick = 9;  // ms a frame: coarser beyond, finer below
-constexpr double kRest = 0.25;            // s without a change while paused, then the full picture
+constexpr double kRest = 0.25;  // s without a change in a paused scene, then the full picture
 
 // Drawn by the processor.
 bool is_software() {
@@ -27,7 +32,15 @@ bool is_software() {
 }  // namespace
 
 View::View(const PictureFiles& pictures)
-    : renderer_(pictures), pictures_(pictures), coarseness_(is_software() ? 2 : 0) {}
+    : renderer_(pictures),
+      pictures_(pictures),
+      software_(is_software()),
+      coarseness_(software_ ? 3 : 0) {}
+
+bool View::fine(const LookSettings& settings) const {
+  return settings.quality == Quality::fine ||
+         (settings.quality == Quality::automatic && !software_);
+}
 
 void View::reload(Workspace& workspace) {
   if (workspace.now() < next_reload_) return;
@@ -61,9 +74,15 @@ void View::draw(Workspace& workspace, int x, int y, int width, int height) {
                  height};
   const bool changed = stale_ || !(now == seen_);
   if (changed) last_change_ = workspace.now();
-  const bool rests = workspace.telemetry().paused && workspace.now() - last_change_ > kRest;
-  const int coarseness = rests ? 0 : coarseness_;
-  drawn_ = changed || (rests && drawn_coarseness_ > 0);
+  // Who pauses wants to see it at once; who turns a paused scene, when it stands still. The first picture has what
+  // a pause has, so that drivers have compiled what it needs.
+  const bool paused = workspace.telemetry().paused;
+  const bool at_once = !target_ || (paused && !was_paused_);
+  const bool rests = at_once || (paused && workspace.now() - last_change_ > kRest);
+  was_paused_ = paused;
+  const bool quick = workspace.settings.quality == Quality::quick || (at_once && software_);
+  const int coarseness = rests ? (quick ? 1 : 0) : coarseness_;
+  drawn_ = changed || (rests && drawn_coarseness_ > coarseness);
   if (drawn_) {
     const auto& quality = kQuality[coarseness];
     const int w = std::max(16, static_cast<int>(static_cast<float>(width) * quality.scale));
@@ -73,7 +92,11 @@ void View::draw(Workspace& workspace, int x, int y, int width, int height) {
       target_.emplace(w, h, quality.samples);
     LookSettings settings = workspace.settings;
     settings.shadow_softness = quality.shadow_softness;
+    settings.occlusion = coarseness == 0 && fine(settings);
+    if (settings.occlusion) settings.shadow_softness = kSoftest;
+    settings.shadow_size = quality.shadow_size;
     settings.detail = quality.detail;
+    settings.tessellation = std::min(settings.tessellation, quality.tessellation);
     if (coarseness > 0) settings.refinement = 0;
     renderer_.draw(frame_data, workspace.setting(), *workspace.look, settings, camera, *target_);
     seen_ = now;
@@ -97,7 +120,10 @@ void View::took(double ms) {
 
 Picture View::picture(const Workspace& workspace, int width, int height, int samples) {
   const RenderTarget target(width, height, samples);
-  renderer_.draw(workspace.frame_data(), workspace.setting(), *workspace.look, workspace.settings,
+  LookSettings settings = workspace.settings;
+  settings.occlusion = fine(settings);
+  if (settings.occlusion) settings.shadow_softness = kSoftest;
+  renderer_.draw(workspace.frame_data(), workspace.setting(), *workspace.look, settings,
                  workspace.camera, target);
   return target.read();
 }

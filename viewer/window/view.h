@@ -25,6 +25,8 @@ class View {
 
   bool drawn() const { return drawn_; }  // whether the last draw() drew anew
   bool coarse() const { return drawn_coarseness_ > 0; }
+  // Whether it has every pixel and vertex, if not every sample.
+  bool whole() const { return drawn_coarseness_ <= 1; }
   double own_ms() const { return renderer_.upload_ms(); }  // normals and upload of the last state
   // How long the window took for a frame with a new picture.
   void took(double ms);
@@ -44,7 +46,10 @@ class View {
   PictureFiles pictures_;
   std::optional<RenderTarget> target_;
   Seen seen_;
-  bool drawn_ = false, stale_ = true;
+  bool fine(const LookSettings& settings) const;
+
+  bool software_;
+  bool drawn_ = false, stale_ = true, was_paused_ = false;
   int coarseness_ = 0, drawn_coarseness_ = 0;  // 0: in full
   double smoothed_ms_ = 0, last_change_ = 0, next_reload_ = 0;
 };

@@ -56,6 +56,7 @@ Window::Window(int width, int height, const std::string& title) {
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* w, int key, int scan, int action, int mods) {
     window_of(w)->strokes_.push_back({Stroke::kKey, key, scan, action, mods});
+    if (action == GLFW_PRESS) window_of(w)->pressed_with_[key] = mods;
   });
   glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned character) {
     window_of(w)->strokes_.push_back({Stroke::kCharacter, static_cast<int>(character)});
@@ -67,7 +68,14 @@ Window::Window(int width, int height, const std::string& title) {
   });
   glfwSetWindowFocusCallback(window_, ImGui_ImplGlfw_WindowFocusCallback);
   glfwSetCursorEnterCallback(window_, ImGui_ImplGlfw_CursorEnterCallback);
-  glfwSetScrollCallback(window_, ImGui_ImplGlfw_ScrollCallback);
+  glfwSetScrollCallback(window_, [](GLFWwindow* w, double x, double y) {
+    window_of(w)->stirred_ = true;
+    ImGui_ImplGlfw_ScrollCallback(w, x, y);
+  });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* w, double, double) {  // asked for by the panel
+    window_of(w)->stirred_ = true;
+  });
+  glfwSetWindowRefreshCallback(window_, [](GLFWwindow* w) { window_of(w)->stirred_ = true; });
   glfwSetMonitorCallback(ImGui_ImplGlfw_MonitorCallback);
   glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
     for (int k = 0; k < count; ++k) window_of(w)->dropped_.emplace_back(paths[k]);
@@ -113,8 +121,15 @@ void Window::hide() {
 void Window::set_title(const std::string& title) {
   glfwSetWindowTitle(window_, title.c_str());
 }
-bool Window::key_down(int key) const {
-  return glfwGetKey(window_, key) == GLFW_PRESS;
+bool Window::key_down(int key, int mods) const {
+  constexpr int kMatter = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+  const auto pressed = pressed_with_.find(key);
+  return glfwGetKey(window_, key) == GLFW_PRESS && pressed != pressed_with_.end() &&
+         (pressed->second & kMatter) == (mods & kMatter);
+}
+
+bool Window::take_stir() {
+  return std::exchange(stirred_, false) || !strokes_.empty() || !dropped_.empty();
 }
 
 std::vector<KeyPress> Window::take_keys() {
@@ -160,10 +175,19 @@ void Window::begin_panel() {
   ImGui::NewFrame();
 }
 
-void Window::end_panel() {
+// Clearing costs less than a rectangle of the panel's.
+void Window::end_panel(int side) {
   ImGui::Render();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, width_, height_);
+  if (side > 0) {
+    const ImVec4 color = ImGui::GetStyle().Colors[ImGuiCol_WindowBg];
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(0, 0, side, height_);
+    glClearColor(color.x, color.y, color.z, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    glDisable(GL_SCISSOR_TEST);
+  }
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 

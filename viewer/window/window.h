@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -36,14 +37,20 @@ class Window {
   bool visible() const { return width_ > 0 && height_ > 0; }
   // The pixels of the screen for one of the panel's: 2 on a fine display.
   float scale() const { return scale_; }
-  bool key_down(int key) const;
+  // Whether a key is down that was pressed with these of Ctrl, Alt and Super: D that comes up after the Ctrl of
+  // Ctrl+D does not count as D.
+  bool key_down(int key, int mods) const;
+
+  // Whether keys, buttons or the pointer did anything since the last call, or the window must be drawn anew.
+  bool take_stir();
 
   // Of the strokes told to the panel since the last call.
   std::vector<KeyPress> take_keys();
   std::vector<std::string> take_dropped();
 
   void begin_panel();
-  void end_panel();  // draws the panel over what is there
+  // Draws the panel over what is there, and over its colour in the columns [pixels] left of `side`.
+  void end_panel(int side);
   void swap();
 
  private:
@@ -62,6 +69,8 @@ class Window {
   float scale_ = 1;
   std::vector<Stroke> strokes_;  // not told yet
   std::array<bool, kButtons> buttons_{};
+  std::map<int, int> pressed_with_;  // GLFW's modifiers, by key
+  bool stirred_ = true;
   std::vector<KeyPress> keys_;
   std::vector<std::string> dropped_;
 };

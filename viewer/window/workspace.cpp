@@ -20,6 +20,10 @@ int threads_of(const Arguments& arguments) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
 }
 
+bool is_there(const Scene& scene, const Part& part) {
+  return part.number < (part.kind == Kind::body ? scene.colliders.size() : scene.cloths.size());
+}
+
 }  // namespace
 
 Workspace::Workspace(const Arguments& arguments)
@@ -153,11 +157,26 @@ bool Workspace::add_body(std::size_t shape) {
               std::string("add ") + kShapeNames[shape]);
 }
 
+bool Workspace::add_mesh(Kind kind, const MeshSource& mesh) {
+  const Solver& before = document_.scene().solver;
+  const Scene scene = with_mesh(document_.scene(), kind, mesh);
+  const bool same = scene.solver.method == before.method && scene.solver.sweep == before.sweep;
+  const bool done = edit(scene, kind == Kind::body ? "add body file" : "add cloth file");
+  if (done && !same)
+    messages.tell("Meshes need another solver: method compliant, sweep gauss_seidel", now_);
+  return done;
+}
+
 bool Workspace::duplicate(const Part& part) {
-  return edit(with_copy(document_.scene(), part), "duplicate");
+  return is_there(document_.scene(), part) && edit(with_copy(document_.scene(), part), "duplicate");
 }
 
 bool Workspace::remove(const Part& part) {
+  if (!is_there(document_.scene(), part)) return false;
+  if (part.kind == Kind::cloth && document_.scene().cloths.size() == 1) {
+    messages.warn("Not taken away: a scene has one cloth at least", now_);
+    return false;
+  }
   return edit(without(document_.scene(), part), "delete");
 }
 
@@ -262,7 +281,7 @@ void Workspace::tell_kept() {
   if (!path.empty()) messages.tell("Changes that were not saved are kept in " + path, now_);
 }
 
-void Workspace::refresh(double now) {
+bool Workspace::refresh(double now) {
   now_ = now;
   messages.forget(now);
   const bool fresh = session_->refresh();
@@ -291,6 +310,7 @@ void Workspace::refresh(double now) {
   post_change();
   watch_file();
   keep_edits();
+  return fresh;
 }
 
 }  // namespace weft::viewer

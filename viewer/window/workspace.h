@@ -38,6 +38,8 @@ class Workspace {
   // Puts a cloth, or a body of the shape (kShapeNames), where the camera looks.
   bool add_cloth();
   bool add_body(std::size_t shape);
+  // Puts in what a file of a mesh has, which is read (weft/mesh.h).
+  bool add_mesh(Kind kind, const MeshSource& mesh);
   // Puts the part beside itself once more, or takes it away.
   bool duplicate(const Part& part);
   bool remove(const Part& part);
@@ -62,8 +64,9 @@ class Workspace {
   void show_home();
   void show_along(float azimuth, float elevation);
 
-  // Once a frame: takes the newest state, posts what waits, looks after the scene's file.
-  void refresh(double now);
+  // Once a turn: takes the newest state, posts what waits, looks after the scene's file. True: there is a new
+  // state.
+  bool refresh(double now);
 
   const Document& document() const { return document_; }
   // Frames from this time of the simulation on [s] wait.
