@@ -185,7 +185,7 @@ TEST(Course, ScenesHoldTheStrainLimit) {
   row("pinned2", "500", 2, 1);
   row("pinned2", "5000", 3, 2);
   row("pinned4", "5000", 2, 3);
-  row("sphere", "5000", 1.5, 1);
+  row("sphere", "5000", 3, 1);
 }
 
 // The truth is the course's solver with so many passes that its limit holds.

@@ -20,8 +20,7 @@
 // before, and goes on along the chord between the two places (SHAKE: Ryckaert et al. 1977). That is of
 // second order in the substep, and neither takes energy nor gives any; pushed along the normal at the
 // later place it would gain speed.
-// Course: the correction from the position before is scaled by 1 - μ (seeds 001 and 004), where that lay
-// outside.
+// Course: the correction from the position before is scaled by 1 - μ (seeds 001 and 004).
 //
 // A particle that went right through is found by following its path, seen from the collider, in
 // steps as long as the distance that is left (sphere tracing: Hart 1996); it is put back before the
@@ -114,13 +113,10 @@ WEFT_INLINE void rub(const CollideRow& r, int i, WideInt touching, const Push& p
   store3(r.v, i, select(touching, u + rubbed + n * max(into, Wide{}), v));
 }
 
-// The position becomes before + (target - before) (1 - friction), the velocity follows. What lay below the
-// surface before, by other cloth that pushed it there or from the start, is `lifted` first, without a velocity
-// of its own: else all pushes into the surface would come back as speed.
-WEFT_INLINE void course_correct(const CollideRow& r, int i, WideInt touching, Wide3 target,
-                                Wide3 lifted) {
+// The position becomes before + (target - before) (1 - friction), the velocity follows.
+WEFT_INLINE void course_correct(const CollideRow& r, int i, WideInt touching, Wide3 target) {
   const Wide3 x = load3(r.x, i), v = load3(r.v, i);
-  const Wide3 before = x - v * wide(r.dt) + lifted;
+  const Wide3 before = x - v * wide(r.dt);
   const Wide3 correction = (target - before) * wide(1.0f - r.friction_dynamic);
   store3(r.x, i, select(touching, before + correction, x));
   store3(r.v, i, select(touching, correction * wide(r.inverse_dt), v));
@@ -194,12 +190,10 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
       }
     }
     if (!any(touching)) continue;
-    const Wide3 path = relative * wide(r.dt);
     if constexpr (kCourse) {
-      const Surface before = surface_before(shape, p - path, i);
-      course_correct(r, i, touching, load3(r.x, i) + push.normal * push.depth,
-                     before.normal * max(r.offset - before.distance, Wide{}));
+      course_correct(r, i, touching, load3(r.x, i) + push.normal * push.depth);
     } else {
+      const Wide3 path = relative * wide(r.dt);
       if (!Shape::kFlat && r.resolved)
         push = along_chords(r, surface_before(shape, p - path, i), path, push);
       rub(r, i, touching, push);

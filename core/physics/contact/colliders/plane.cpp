@@ -27,7 +27,7 @@ RowReach damp_sliding(const CollideRow& r) {
   return damp_sliding_row<PlaneSurface>(r);
 }
 
-// What something else pushed below goes back up, and loses its velocity into the plane.
+// What something else pushed below is corrected as by other shapes.
 RowReach course(const CollideRow& r) {
   const Wide3 point = wide3(r.cx, r.cy, r.cz);
   const Wide3 n = wide3(r.shape.axis[0], r.shape.axis[1], r.shape.axis[2]);
@@ -44,10 +44,9 @@ RowReach course(const CollideRow& r) {
       const Wide length = max(sqrt(dot(path, path)), wide(kTinySquare));
       const Wide fall = select(crossed, height_before - height, wide(1));
       const Wide reach = height_before / fall - r.offset / length;
-      course_correct(r, i, crossed, before + path * reach, Wide3{});
+      course_correct(r, i, crossed, before + path * reach);
     }
-    if (any(sunk))
-      course_correct(r, i, sunk, x + n * (r.offset - height), n * (r.offset - height_before));
+    if (any(sunk)) course_correct(r, i, sunk, x + n * (r.offset - height));
   }
   return {least(clearance), __builtin_sqrtf(greatest(fastest))};
 }
