@@ -291,6 +291,7 @@ struct Run {
 struct WindRow;  // kernels/wind.h
 struct PushRow;
 struct MembraneRows;  // kernels/membrane.h
+struct MembraneSquares;
 struct LineBatch;     // kernels/line.h
 struct BlockRows;     // kernels/contact.h
 struct NearBoxes;
@@ -351,6 +352,8 @@ struct KernelTable {
   // x += w f, v += w f/dt if inverse_dt > 0, f <- 0 (w null: 1)
   void (*apply_corrections)(const AdvanceRow&);
   void (*line_batch)(const LineBatch&);  // a batch of lines, each solved as a whole
+  void (*membrane_line_batch)(const LineBatch&);       // of squared lengths
+  void (*membrane_squares)(const MembraneSquares&);  // which these are to have
   void (*rows_to_lanes)(const TransposeRows&);
   void (*lanes_to_rows)(const TransposeRows&);
   void (*predict_second_order)(const SecondOrderRow&);

@@ -72,12 +72,13 @@ MembraneCells LatticeModel::membrane() const {
 
 void LatticeModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) const {
   const auto add_stretch = [&](std::vector<Vec3>& force) {
-    if (!is_membrane())
+    if (!is_membrane() && !solves_membrane())
       return add_spring_forces(parts_.cloth, stencils_, lattice_,
                                method_ == Method::spring_friction, force);
     const MembraneCells cells = membrane();
     const std::vector<Vec3> v = lattice_.gather(lattice_.v);
-    cells.add_forces(lattice_.gather(lattice_.x), cells.damping() > 0 ? &v : nullptr, 1,
+    const bool damped = is_membrane() && cells.damping() > 0;
+    cells.add_forces(lattice_.gather(lattice_.x), damped ? &v : nullptr, 1,
                      cells.damping(), force);
   };
   physics::accelerations(gravity, parts_.cloth, lattice_, bend_links(), add_stretch, a);
@@ -86,7 +87,7 @@ void LatticeModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) cons
 double LatticeModel::elastic_energy() const {
   const std::vector<Vec3> x = lattice_.gather(lattice_.x);
   const double stretch =
-      is_membrane() ? membrane().energy(x) : physics::elastic_energy(parts_.cloth, stencils_, x);
+      is_membrane() || solves_membrane() ? membrane().energy(x) : physics::elastic_energy(parts_.cloth, stencils_, x);
   return stretch + bending_energy(parts_.cloth, x, bend_links());
 }
 

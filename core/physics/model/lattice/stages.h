@@ -64,6 +64,7 @@ float compliance_of(const LatticeParts& parts, const Stencil& stencil, int j, do
 
 struct LineOptions {
   bool compliant = false;
+  bool membrane = false;  // not springs but the membrane, compliant
   int iterations = 1;
   float share = 1;  // of the correction
 };
