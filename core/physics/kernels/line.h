@@ -31,6 +31,8 @@ struct LineBatch {
   const float* rests;
   // membrane_line_batch: squares of the rest lengths, laid out as x; null: those of `rest` [m²].
   const float* squares;
+  // membrane_line_batch: steps of Newton's. A square is steeper than a length: large moves take two.
+  int steps;
   float share;                     // factor on the correction
   Row3 v;                          // velocities, laid out as x; gain corrections times inverse_dt
   float inverse_dt;                // 1/s; 0 = velocities are not touched

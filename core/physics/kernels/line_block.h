@@ -75,12 +75,6 @@ WEFT_INLINE void store3_at(Row3 r, Place s, Wide3 v) {
 
 // What a constraint holds: a length |e|, or half of a squared length e·e/2, which needs no root.
 enum class LineLaw { length, square };
-// Newton steps that a line takes. The square is steeper than the length: large moves of coarse substeps
-// take two.
-constexpr int newton_steps(LineLaw law) {
-  return law == LineLaw::length ? 1 : 2;
-}
-
 // A block of kLanes lines on its way along the sheet.
 template <LineLaw kLaw, bool kLambda, bool kVelocity>
 class Block {
@@ -246,7 +240,7 @@ class Block {
   WEFT_INLINE void remember(int m, Place here) const {
     float* kept = scratch(m) + 2 * kBatchLines;
     const Wide now = kLambda || step_ > 0 ? load(kept) - mu_ : -mu_;
-    if (step_ + 1 < newton_steps(kLaw)) return store(kept, now);
+    if (step_ + 1 < p.steps) return store(kept, now);
     if constexpr (kLambda) store_at(p.lambda, here, now);
   }
 
@@ -322,7 +316,7 @@ void solve(const LineBatch& p) {
   const int lines = least(kBatchLines, p.columns - p.first);
   for (int first = 0; first < lines;) {
     const bool two = kLanes >= 8 && lines - first > kLanes;
-    for (int step = 0; step < newton_steps(kLaw); ++step)
+    for (int step = 0; step < (kLaw == LineLaw::length ? 1 : p.steps); ++step)
       two ? solve_blocks<kLaw, kLambda, kVelocity, 2>(p, first, step)
           : solve_blocks<kLaw, kLambda, kVelocity, 1>(p, first, step);
     first += two ? 2 * kLanes : kLanes;

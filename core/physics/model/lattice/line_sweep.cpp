@@ -163,6 +163,7 @@ class Line final : public WholeStage {
     if (f.links) p.alive = f.links->row(start) - f.near();
     if (!membrane_) return p;
     p.squares = membrane_->squares(f, start);
+    p.steps = MembraneLines::steps(f);
     const std::int32_t* sheared = membrane_->sheared(start);
     if (sheared && f.kind == Kind::shear) p.alive = sheared - f.near();
     return p;
@@ -198,6 +199,7 @@ class Line final : public WholeStage {
         p.columns = rows;
         p.rest = float(l.stencil->rest);
         p.squares = squares;
+        p.steps = MembraneLines::steps(*l.stencil);
         p.share = options_.share;
         p.compliance = l.compliance.data() + group * kBatchLines;
         if (l.lambda.size() > 0)

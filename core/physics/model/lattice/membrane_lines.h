@@ -16,6 +16,9 @@ class MembraneLines {
   // that gives forces the time h [s]: 1/(K h²) [m²/kg] where the energy is ½ K ((e·e - s)/2)².
   double compliance(const Stencil& stencil, int j, double share, double h) const;
 
+  // Newton steps of a line. Of the diagonals, which come first and are softer, what one step leaves is little.
+  static int steps(const Stencil& stencil) { return stencil.kind == Kind::shear ? 1 : 2; }
+
   // Before every sweep: what its lines are to have, by where the particles lie.
   void look(LineBatches& batches);
   // Of a stencil between rows, laid out as the lattice, constraint 0 of a row in lane 0; null: its rest length.
