@@ -124,7 +124,9 @@ double LatticeModel::stretch_energy(const Rows& x, double dt) const {
   const double projected = std::min(1.0, 2 * cloth.positional_k * parts_.scene.solver.iterations);
   StretchRow r{};
   r.slack = float(kRounding * greatest_coordinate(x));
-  r.share = is_explicit(method_) ? kInfinite : method_ == Method::positional ? float(projected) : 1;
+  r.share = is_explicit(method_) || solves_membrane() ? kInfinite
+            : method_ == Method::positional           ? float(projected)
+                                                      : 1;
   r.inverse_dt2 = float(1 / (dt * dt));
   double sum = 0;
   for (const Stencil& f : stencils_) {
