@@ -88,13 +88,16 @@ TEST(MembraneLines, MoveAsForcesWithWhatAClothMayHaveBesides) {
     double most;  // m
   };
   const Feature features[] = {
-      {"cells of 3 to 1", [](Scene& s) { s.cloths[0].grid.v = {0, 0, 1.0 / 3}; }, 1e-3},
+      {"cells of 3 to 1",
+       [](Scene& s) {
+         s.cloths[0].grid.v = {0, 0, 1.0 / 3};
+       },
+       1e-3},
       {"stiffness gradient", [](Scene& s) { s.cloths[0].stiffness_gradient = 0.6; }, 1e-3},
       {"unequal masses",
        [](Scene& s) {
          s.cloths[0].lumping = Lumping::equal;
-         for (int n = 0; n < 17 * 17; ++n)
-           s.cloths[0].masses.push_back(n % 3 == 0 ? 2e-3 : 4e-4);
+         for (int n = 0; n < 17 * 17; ++n) s.cloths[0].masses.push_back(n % 3 == 0 ? 2e-3 : 4e-4);
        },
        2.5e-3},
       {"strong coupling", [](Scene& s) { s.cloths[0].membrane.coupling = 1600; }, 1e-3},
@@ -197,7 +200,9 @@ TEST(MembraneLines, HasOneResult) {
       [](Scene& s) { s.solver.order = 2, s.solver.tethers = true; },
       [](Scene& s) { s.solver.iterations = 3, s.cloths[0].stiffness_gradient = 0.5; },
       [](Scene& s) { s.cloths[0].tear_strain = 0.01, s.cloths[0].strain_limit = 0; },
-      [](Scene& s) { s.cloths[0].cuts = {{{20.5, -1}, {20.5, 15.5}}}; },
+      [](Scene& s) {
+        s.cloths[0].cuts = {{{20.5, -1}, {20.5, 15.5}}};
+      },
       [](Scene& s) { s.cloths[0].strain_limit = 0.005; },
   };
   for (const auto& change : variants) {

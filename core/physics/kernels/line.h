@@ -33,10 +33,11 @@ struct LineBatch {
   const float* squares;
   // membrane_line_batch: steps of Newton's. A square is steeper than a length: large moves take two.
   int steps;
-  float share;                     // factor on the correction
-  Row3 v;                          // velocities, laid out as x; gain corrections times inverse_dt
-  float inverse_dt;                // 1/s; 0 = velocities are not touched
-  const float* compliance;  // [m][kBatchLines] of constraint m of each line [1/kg; of squares m²/kg]
+  float share;       // factor on the correction
+  Row3 v;            // velocities, laid out as x; gain corrections times inverse_dt
+  float inverse_dt;  // 1/s; 0 = velocities are not touched
+  const float*
+      compliance;  // [m][kBatchLines] of constraint m of each line [1/kg; of squares m²/kg]
   std::ptrdiff_t compliance_step;  // kBatchLines, or 0 when all rows are alike
   // -1 where constraint m of line n holds, 0 where it is cut, laid out as x; or null.
   const std::int32_t* alive;

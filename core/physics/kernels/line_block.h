@@ -256,8 +256,8 @@ class Block {
   const LineBatch& p;
   int offset_;  // of the block in the batch
   int step_;
-  int lines_;   // that exist
-  int line_;    // of lane 0 if it went on straight to where it is now
+  int lines_;  // that exist
+  int line_;   // of lane 0 if it went on straight to where it is now
   int first_whole_ = 0, last_whole_ = -1;
   Wide3 x_{};  // of the particle that the last constraint has led to
   Wide w_{};

@@ -24,7 +24,7 @@ struct MembraneSquares {
   int begin, end, rows;
   int columns, stride;
   Row3 x;            // row 0
-  float *diagonals;  // of the cells between each row and the next, row 0 [m²]
+  float* diagonals;  // of the cells between each row and the next, row 0 [m²]
   // Of edges along rows and between them; null: there is no coupling.
   float *along, *across;
   float square_u, square_v;  // of the rest lengths [m²]
@@ -34,10 +34,10 @@ struct MembraneSquares {
   struct Coupling {
     float before, after, across;
   };
-  const Coupling* coupling;  // of each row
-  const float* share;        // of each column: half, 1 at both sides
+  const Coupling* coupling;      // of each row
+  const float* share;            // of each column: half, 1 at both sides
   const std::int32_t* alive[4];  // of row 0, as the membrane's; or null
-  std::int32_t* sheared;  // then: -1 for cells with both diagonals, 0 for others
+  std::int32_t* sheared;         // then: -1 for cells with both diagonals, 0 for others
 };
 
 }  // namespace weft::physics

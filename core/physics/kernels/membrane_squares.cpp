@@ -75,8 +75,7 @@ void one_row(const MembraneSquares& r, int j) {
       const MembraneSquares::Coupling c = r.coupling[j];
       const Wide own_u = fma(cells.a - r.square_u, wide(r.keep_u), wide(r.square_u));
       const Wide own_v = fma(cells.b - r.square_v, wide(r.keep_v), wide(r.square_v));
-      store(r.along + start + i,
-            fnma(above, wide(c.before), fnma(under, wide(c.after), own_u)));
+      store(r.along + start + i, fnma(above, wide(c.before), fnma(under, wide(c.after), own_u)));
       const Wide both = (sides + coupled.next(sides)) * load(r.share + i);
       store(r.across + start + i, fnma(both, wide(c.across), own_v));
     }

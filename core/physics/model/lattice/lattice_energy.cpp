@@ -78,16 +78,16 @@ void LatticeModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) cons
     const MembraneCells cells = membrane();
     const std::vector<Vec3> v = lattice_.gather(lattice_.v);
     const bool damped = is_membrane() && cells.damping() > 0;
-    cells.add_forces(lattice_.gather(lattice_.x), damped ? &v : nullptr, 1,
-                     cells.damping(), force);
+    cells.add_forces(lattice_.gather(lattice_.x), damped ? &v : nullptr, 1, cells.damping(), force);
   };
   physics::accelerations(gravity, parts_.cloth, lattice_, bend_links(), add_stretch, a);
 }
 
 double LatticeModel::elastic_energy() const {
   const std::vector<Vec3> x = lattice_.gather(lattice_.x);
-  const double stretch =
-      is_membrane() || solves_membrane() ? membrane().energy(x) : physics::elastic_energy(parts_.cloth, stencils_, x);
+  const double stretch = is_membrane() || solves_membrane()
+                             ? membrane().energy(x)
+                             : physics::elastic_energy(parts_.cloth, stencils_, x);
   return stretch + bending_energy(parts_.cloth, x, bend_links());
 }
 

@@ -108,7 +108,8 @@ void LatticeModel::append_projections(StageList& list) {
               solver.tethers ? "nothing is pinned" : "off in the scene");
   if (lines) {
     const float share = sweep.compliant ? 1.0f : float(2 * parts_.cloth.positional_k);
-    list.choose("line", make_line(parts_, {sweep.compliant, solver.iterations, share, solves_membrane()}),
+    list.choose("line",
+                make_line(parts_, {sweep.compliant, solver.iterations, share, solves_membrane()}),
                 "the cloth has no constraints");
   } else {
     list.skip("line", "sweep is not line");

@@ -44,8 +44,8 @@ void LineBatches::turn(const float* from, int group, float* lanes) const {
   for (int half = 0; half < rows; half += 16) {
     TransposeRows t = turning(half, rows);
     // Rows are only read on the way there.
-    t.rows = const_cast<float*>(from) +
-             std::ptrdiff_t(group * kBatchLines + half) * lattice_.stride;
+    t.rows =
+        const_cast<float*>(from) + std::ptrdiff_t(group * kBatchLines + half) * lattice_.stride;
     t.lanes = lanes + half;
     kernels_.rows_to_lanes(t);
   }

@@ -106,7 +106,9 @@ class LineBatches {
 
   BatchMemory make_memory() const;
   TransposeRows turning(int half, int rows) const;
-  int rows_of(int group) const { return std::min(kBatchLines, lattice_.rows - group * kBatchLines); }
+  int rows_of(int group) const {
+    return std::min(kBatchLines, lattice_.rows - group * kBatchLines);
+  }
   void turn_there(int group, BatchMemory& memory);
   std::size_t masses_at(int group) const {
     return std::size_t(group) * turned_columns(lattice_.columns) * kBatchLines;

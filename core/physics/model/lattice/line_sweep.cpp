@@ -231,8 +231,9 @@ class Line final : public WholeStage {
   float compliance(const Stencil& f, int j, float width) const {
     if (membrane_) {
       const double h = dt_ * implicit_share(parts_.scene.solver);
-      return float(std::max(membrane_->compliance(f, std::min(j, parts_.lattice.rows - 1), width, h),
-                            least_ * f.rest * f.rest));
+      return float(
+          std::max(membrane_->compliance(f, std::min(j, parts_.lattice.rows - 1), width, h),
+                   least_ * f.rest * f.rest));
     }
     const double real = options_.compliant ? compliance_of(parts_, f, j, dt_) / width : 0;
     return float(std::max(real, least_));

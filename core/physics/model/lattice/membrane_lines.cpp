@@ -103,12 +103,12 @@ MembraneSquares MembraneLines::rows(int begin, int end) {
 
 void MembraneLines::look(LineBatches& batches) {
   const int all = parts_.lattice.rows, columns = parts_.lattice.columns;
-  batches.share_out((all + kRowsTogether - 1) / kRowsTogether,
-                    kParticleNs * kRowsTogether * columns, [&](int n, BatchMemory&) {
-                      const int begin = n * kRowsTogether;
-                      parts_.kernels.membrane_squares(
-                          rows(begin, std::min(begin + kRowsTogether, all)));
-                    });
+  batches.share_out(
+      (all + kRowsTogether - 1) / kRowsTogether, kParticleNs * kRowsTogether * columns,
+      [&](int n, BatchMemory&) {
+        const int begin = n * kRowsTogether;
+        parts_.kernels.membrane_squares(rows(begin, std::min(begin + kRowsTogether, all)));
+      });
 }
 
 const float* MembraneLines::squares(const Stencil& f, int row) const {
@@ -118,8 +118,8 @@ const float* MembraneLines::squares(const Stencil& f, int row) const {
 
 const float* MembraneLines::turned(int group, LineBatches& batches) {
   if (!coupled()) return nullptr;
-  float* lanes = turned_.data() +
-                 std::size_t(group) * turned_columns(parts_.lattice.columns) * kBatchLines;
+  float* lanes =
+      turned_.data() + std::size_t(group) * turned_columns(parts_.lattice.columns) * kBatchLines;
   batches.turn(along_.data() + kGuard, group, lanes);
   return lanes;
 }
