@@ -12,6 +12,8 @@ struct Way {
   const char* name;
   weft::Method method;
   weft::Sweep sweep;
+  bool membrane = false;  // woven, in place of springs
+  bool tethered = false;  // with substeps of the second order
 };
 
 constexpr Way kWays[] = {
@@ -22,6 +24,9 @@ constexpr Way kWays[] = {
     {"compliant_gauss_seidel", weft::Method::compliant, weft::Sweep::gauss_seidel},
     {"compliant_jacobi", weft::Method::compliant, weft::Sweep::jacobi},
     {"compliant_line", weft::Method::compliant, weft::Sweep::line},
+    {"compliant_line_tethered", weft::Method::compliant, weft::Sweep::line, false, true},
+    {"compliant_membrane_line", weft::Method::compliant, weft::Sweep::line, true, false},
+    {"compliant_membrane_line_tethered", weft::Method::compliant, weft::Sweep::line, true, true},
 };
 
 // About as many as a frame of 1/60 s is given: explicit springs need hundreds.
@@ -42,6 +47,15 @@ weft::Scene scene_of(const Way& way, int n) {
   scene.solver.method = way.method;
   scene.solver.sweep = way.sweep;
   if (way.sweep == weft::Sweep::line) scene.time.frame = substeps / 480.0;
+  if (way.membrane) {
+    scene.cloths[0].stiffness = weft::Cloth().stiffness;
+    scene.cloths[0].membrane = {3000, 2000, 200, 80, 0};
+  }
+  if (way.tethered) {
+    scene.solver.tethers = true;
+    scene.solver.order = 2;
+    scene.time.frame = substeps / 960.0;
+  }
   if (way.method == weft::Method::spring_friction)
     scene.cloths[0].spring_damping = {0.001, 0.001, 0.001};
   return scene;

@@ -291,8 +291,9 @@ struct Run {
 struct WindRow;  // kernels/wind.h
 struct PushRow;
 struct MembraneRows;  // kernels/membrane.h
-struct LineBatch;     // kernels/line.h
-struct BlockRows;     // kernels/contact.h
+struct MembraneSquares;
+struct LineBatch;  // kernels/line.h
+struct BlockRows;  // kernels/contact.h
 struct NearBoxes;
 struct CellKeys;
 struct NearSearch;
@@ -350,7 +351,9 @@ struct KernelTable {
   void (*jacobi_stencil)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
   // x += w f, v += w f/dt if inverse_dt > 0, f <- 0 (w null: 1)
   void (*apply_corrections)(const AdvanceRow&);
-  void (*line_batch)(const LineBatch&);  // a batch of lines, each solved as a whole
+  void (*line_batch)(const LineBatch&);              // a batch of lines, each solved as a whole
+  void (*membrane_line_batch)(const LineBatch&);     // of squared lengths
+  void (*membrane_squares)(const MembraneSquares&);  // which these are to have
   void (*rows_to_lanes)(const TransposeRows&);
   void (*lanes_to_rows)(const TransposeRows&);
   void (*predict_second_order)(const SecondOrderRow&);

@@ -1,4 +1,4 @@
-// What the kernel of line sweeps works on (kernels/line.cpp).
+// What the kernels of line sweeps work on (kernels/line.cpp, membrane_line.cpp).
 #pragma once
 
 #include <cstddef>
@@ -29,14 +29,19 @@ struct LineBatch {
   float rest;  // m
   // Of constraint m of each line, [m][kBatchLines]; null: `rest` for all.
   const float* rests;
-  float share;                     // factor on the correction
-  Row3 v;                          // velocities, laid out as x; gain corrections times inverse_dt
-  float inverse_dt;                // 1/s; 0 = velocities are not touched
-  const float* compliance;         // [m][kBatchLines] of constraint m of each line [1/kg]
+  // membrane_line_batch: squares of the rest lengths, laid out as x; null: those of `rest` [m²].
+  const float* squares;
+  // membrane_line_batch: steps of Newton's. A square is steeper than a length: large moves take two.
+  int steps;
+  float share;       // factor on the correction
+  Row3 v;            // velocities, laid out as x; gain corrections times inverse_dt
+  float inverse_dt;  // 1/s; 0 = velocities are not touched
+  const float*
+      compliance;  // [m][kBatchLines] of constraint m of each line [1/kg; of squares m²/kg]
   std::ptrdiff_t compliance_step;  // kBatchLines, or 0 when all rows are alike
   // -1 where constraint m of line n holds, 0 where it is cut, laid out as x; or null.
   const std::int32_t* alive;
-  float* lambda;   // multipliers, laid out as x; null for a single sweep [kg·m]
+  float* lambda;   // multipliers, laid out as x; null for a single sweep [kg·m; of squares kg]
   bool fresh;      // the multipliers are still zero, whatever the memory says
   float* scratch;  // particles * kBatchScratch floats
 };

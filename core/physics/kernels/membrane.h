@@ -1,4 +1,4 @@
-// What the kernel of the membrane works on (kernels/membrane.cpp).
+// What the kernels of the membrane work on (kernels/membrane.cpp, membrane_squares.cpp).
 #pragma once
 
 #include "physics/kernels/kernels.h"
@@ -17,6 +17,27 @@ struct MembraneRows : LeapfrogRows {
   const float* share;                  // of `weft`, of each column: half at both sides
   float half_u, half_v;                // 1/(2 h²) of the spacings along and across rows [1/m²]
   float damping;                       // s
+};
+
+// What line sweeps are to make of squared lengths (kernels/membrane_squares.cpp), of rows begin … end-1.
+struct MembraneSquares {
+  int begin, end, rows;
+  int columns, stride;
+  Row3 x;            // row 0
+  float* diagonals;  // of the cells between each row and the next, row 0 [m²]
+  // Of edges along rows and between them; null: there is no coupling.
+  float *along, *across;
+  float square_u, square_v;  // of the rest lengths [m²]
+  float keep_u, keep_v;      // share of its own present square that an edge keeps
+  // What squares of edges across add to one along, from the cells before each row and after it; and, times
+  // the column's share, those along to one across.
+  struct Coupling {
+    float before, after, across;
+  };
+  const Coupling* coupling;      // of each row
+  const float* share;            // of each column: half, 1 at both sides
+  const std::int32_t* alive[4];  // of row 0, as the membrane's; or null
+  std::int32_t* sheared;         // then: -1 for cells with both diagonals, 0 for others
 };
 
 }  // namespace weft::physics

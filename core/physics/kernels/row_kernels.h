@@ -118,6 +118,8 @@ void jacobi_rows(const physics::JacobiRows&);
 void jacobi_stencil(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
 void apply_corrections(const AdvanceRow&);
 void line_batch(const physics::LineBatch&);
+void membrane_line_batch(const physics::LineBatch&);
+void membrane_squares(const physics::MembraneSquares&);
 void rows_to_lanes(const physics::TransposeRows&);
 void lanes_to_rows(const physics::TransposeRows&);
 void predict_second_order(const physics::SecondOrderRow&);

@@ -22,6 +22,8 @@ const physics::KernelTable& table() {
       .jacobi_stencil = jacobi_stencil,
       .apply_corrections = apply_corrections,
       .line_batch = line_batch,
+      .membrane_line_batch = membrane_line_batch,
+      .membrane_squares = membrane_squares,
       .rows_to_lanes = rows_to_lanes,
       .lanes_to_rows = lanes_to_rows,
       .predict_second_order = predict_second_order,

@@ -72,21 +72,22 @@ MembraneCells LatticeModel::membrane() const {
 
 void LatticeModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) const {
   const auto add_stretch = [&](std::vector<Vec3>& force) {
-    if (!is_membrane())
+    if (!is_membrane() && !solves_membrane())
       return add_spring_forces(parts_.cloth, stencils_, lattice_,
                                method_ == Method::spring_friction, force);
     const MembraneCells cells = membrane();
     const std::vector<Vec3> v = lattice_.gather(lattice_.v);
-    cells.add_forces(lattice_.gather(lattice_.x), cells.damping() > 0 ? &v : nullptr, 1,
-                     cells.damping(), force);
+    const bool damped = is_membrane() && cells.damping() > 0;
+    cells.add_forces(lattice_.gather(lattice_.x), damped ? &v : nullptr, 1, cells.damping(), force);
   };
   physics::accelerations(gravity, parts_.cloth, lattice_, bend_links(), add_stretch, a);
 }
 
 double LatticeModel::elastic_energy() const {
   const std::vector<Vec3> x = lattice_.gather(lattice_.x);
-  const double stretch =
-      is_membrane() ? membrane().energy(x) : physics::elastic_energy(parts_.cloth, stencils_, x);
+  const double stretch = is_membrane() || solves_membrane()
+                             ? membrane().energy(x)
+                             : physics::elastic_energy(parts_.cloth, stencils_, x);
   return stretch + bending_energy(parts_.cloth, x, bend_links());
 }
 
@@ -123,7 +124,9 @@ double LatticeModel::stretch_energy(const Rows& x, double dt) const {
   const double projected = std::min(1.0, 2 * cloth.positional_k * parts_.scene.solver.iterations);
   StretchRow r{};
   r.slack = float(kRounding * greatest_coordinate(x));
-  r.share = is_explicit(method_) ? kInfinite : method_ == Method::positional ? float(projected) : 1;
+  r.share = is_explicit(method_) || solves_membrane() ? kInfinite
+            : method_ == Method::positional           ? float(projected)
+                                                      : 1;
   r.inverse_dt2 = float(1 / (dt * dt));
   double sum = 0;
   for (const Stencil& f : stencils_) {

@@ -108,7 +108,8 @@ void LatticeModel::append_projections(StageList& list) {
               solver.tethers ? "nothing is pinned" : "off in the scene");
   if (lines) {
     const float share = sweep.compliant ? 1.0f : float(2 * parts_.cloth.positional_k);
-    list.choose("line", make_line(parts_, {sweep.compliant, solver.iterations, share}),
+    list.choose("line",
+                make_line(parts_, {sweep.compliant, solver.iterations, share, solves_membrane()}),
                 "the cloth has no constraints");
   } else {
     list.skip("line", "sweep is not line");
@@ -152,6 +153,10 @@ std::vector<std::string> LatticeModel::notes() const {
     notes.push_back("with order 2 the strain limit is one pass a substep, as with colours");
   const Membrane& m = parts_.cloth.membrane;
   if (!m.given() || is_membrane()) return notes;
+  if (solves_membrane()) {
+    if (m.damping > 0) notes.push_back("line sweeps leave out the membrane's damping");
+    return notes;
+  }
   std::string note =
       "springs of the membrane's warp, weft and shear run in its place, without its damping";
   if (m.coupling != m.shear)

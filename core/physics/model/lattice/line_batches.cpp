@@ -11,8 +11,7 @@ LineBatches::LineBatches(Lattice& lattice, const KernelTable& kernels, int scrat
 }
 
 void LineBatches::turn_masses() {
-  for (int group = 0; group < row_groups(); ++group)
-    turn_masses(group, std::min(kBatchLines, lattice_.rows - group * kBatchLines));
+  for (int group = 0; group < row_groups(); ++group) turn_masses(group);
 }
 
 std::size_t LineBatches::bytes() const {
@@ -28,25 +27,26 @@ BatchMemory LineBatches::make_memory() const {
           Rows(columns, kBatchLines), Rows(columns, kBatchLines)};
 }
 
-void LineBatches::turn_there(int group, int rows, BatchMemory& memory) {
-  if (masses_change_) turn_masses(group, rows);
-  for (int half = 0; half < rows; half += 16) {
-    const Row3 x = lattice_.x.row(group * kBatchLines + half), tile = memory.tile.row(0);
-    TransposeRows t = turning(half, rows);
-    for (const auto& [from, to] :
-         {std::pair(x.x, tile.x), std::pair(x.y, tile.y), std::pair(x.z, tile.z)}) {
-      t.rows = from;
-      t.lanes = to + half;
-      kernels_.rows_to_lanes(t);
-    }
-  }
+void LineBatches::turn_there(int group, BatchMemory& memory) {
+  if (masses_change_) turn_masses(group);
+  const Row3 x = lattice_.x.row(0), tile = memory.tile.row(0);
+  turn(x.x, group, tile.x);
+  turn(x.y, group, tile.y);
+  turn(x.z, group, tile.z);
 }
 
-void LineBatches::turn_masses(int group, int rows) {
+void LineBatches::turn_masses(int group) {
+  turn(lattice_.w(0), group, masses_.data() + masses_at(group));
+}
+
+void LineBatches::turn(const float* from, int group, float* lanes) const {
+  const int rows = rows_of(group);
   for (int half = 0; half < rows; half += 16) {
     TransposeRows t = turning(half, rows);
-    t.rows = lattice_.w(group * kBatchLines + half);
-    t.lanes = masses_.data() + masses_at(group) + half;
+    // Rows are only read on the way there.
+    t.rows =
+        const_cast<float*>(from) + std::ptrdiff_t(group * kBatchLines + half) * lattice_.stride;
+    t.lanes = lanes + half;
     kernels_.rows_to_lanes(t);
   }
 }

@@ -79,6 +79,9 @@ class LineBatches {
                     [&](std::size_t n) { solve(int(n), memory_[std::size_t(Threads::index())]); });
   }
 
+  // Turns a group's rows of an array that is laid out as the lattice, from row 0 on, into lanes.
+  void turn(const float* rows, int group, float* lanes) const;
+
   // Inverse masses of a group's rows as lanes, laid out as the tile.
   const float* masses(int group) const { return masses_.data() + masses_at(group); }
   // They are turned once, again when told so, or every time where they may change.
@@ -90,11 +93,11 @@ class LineBatches {
   // is added up, or 1, and velocities then gain inverse_dt times the moves.
   template <class Solve>
   void turned(int group, BatchMemory& memory, float inverse_dt, const Solve& solve) {
-    const int begin = group * kBatchLines, rows = std::min(kBatchLines, lattice_.rows - begin);
-    turn_there(group, rows, memory);
+    const int rows = rows_of(group);
+    turn_there(group, memory);
     if (inverse_dt > 0) memory.moved.clear();
     solve(rows, inverse_dt > 0 ? 1.0f : 0.0f);
-    turn_back(begin, rows, memory, inverse_dt);
+    turn_back(group * kBatchLines, rows, memory, inverse_dt);
   }
 
  private:
@@ -103,11 +106,14 @@ class LineBatches {
 
   BatchMemory make_memory() const;
   TransposeRows turning(int half, int rows) const;
-  void turn_there(int group, int rows, BatchMemory& memory);
+  int rows_of(int group) const {
+    return std::min(kBatchLines, lattice_.rows - group * kBatchLines);
+  }
+  void turn_there(int group, BatchMemory& memory);
   std::size_t masses_at(int group) const {
     return std::size_t(group) * turned_columns(lattice_.columns) * kBatchLines;
   }
-  void turn_masses(int group, int rows);
+  void turn_masses(int group);
   void turn_back(int begin, int rows, BatchMemory& memory, float inverse_dt);
 
   Lattice& lattice_;

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <span>
 
-#include "physics/model/lattice/line_batches.h"
+#include "physics/model/lattice/membrane_lines.h"
 #include "physics/model/lattice/stages.h"
 
 namespace weft::physics {
@@ -46,12 +46,15 @@ class Line final : public WholeStage {
   Line(const LatticeParts& parts, const LineOptions& options)
       : WholeStage(
             "line",
-            std::to_string(parts.stencils.size()) + " stencils, each line solved as a whole" +
+            (options.membrane ? "rows, columns and diagonals of the membrane"
+                              : std::to_string(parts.stencils.size()) + " stencils") +
+                ", each line solved as a whole" +
                 (options.iterations > 1 ? ", " + std::to_string(options.iterations) + " sweeps"
                                         : ""),
             parts.constraints() * options.iterations, "constraints"),
         parts_(parts),
         options_(options),
+        solve_(options.membrane ? parts.kernels.membrane_line_batch : parts.kernels.line_batch),
         batches_(parts.lattice, parts.kernels, kBatchScratch) {
     for (const Stencil& f : parts.stencils) {
       LineStencil& l = (f.dj == 0   ? along_rows_
@@ -62,7 +65,7 @@ class Line final : public WholeStage {
       l.alike = f.dj > 0 && parts.cloth.stiffness_gradient == 0;
       const int groups = batches_.row_groups();
       const int rows = l.alike ? 1 : f.dj == 0 ? groups : parts.lattice.rows;
-      l.by_column = f.di == 0 && parts.lattice.column_width[0] < 1;
+      l.by_column = f.di == 0 && (options.membrane || parts.lattice.column_width[0] < 1);
       if (l.by_column)
         l.width = (parts.lattice.columns + kBatchLines - 1) / kBatchLines * kBatchLines;
       l.compliance = AlignedArray<float>(std::size_t(rows) * l.width);
@@ -72,6 +75,7 @@ class Line final : public WholeStage {
             f.dj == 0 ? std::size_t(groups) * kBatchLines * parts.lattice.columns
                       : std::size_t(parts.lattice.rows) * parts.lattice.stride);
     }
+    if (options.membrane) membrane_ = std::make_unique<MembraneLines>(parts);
     if (parts.scene.solver.order == 2) batches_.follow_masses();
     // Longest constraints first.
     for (auto* stencils : all())
@@ -87,7 +91,7 @@ class Line final : public WholeStage {
     for (const auto* stencils : {&diagonal_, &along_columns_, &along_rows_})
       for (const LineStencil& l : *stencils)
         floats += l.compliance.size() + l.lambda.size() + l.links.bytes() / sizeof(float);
-    return floats * sizeof(float) + batches_.bytes();
+    return floats * sizeof(float) + batches_.bytes() + (membrane_ ? membrane_->bytes() : 0);
   }
   void restart() override {
     batches_.turn_masses();
@@ -110,6 +114,7 @@ class Line final : public WholeStage {
   }
 
   void sweep(bool fresh) {
+    if (membrane_) membrane_->look(batches_);
     for (LineStencil& l : diagonal_) solve_batches({&l, 1}, fresh);
     if (!along_columns_.empty()) solve_batches(along_columns_, fresh);
     if (!along_rows_.empty()) solve_rows(fresh);
@@ -135,7 +140,7 @@ class Line final : public WholeStage {
     if (l.by_column) p.compliance += first;
     p.fresh = fresh;
     p.scratch = memory.scratch.data();
-    parts_.kernels.line_batch(p);
+    solve_(p);
   }
 
   LineBatch between_rows(LineStencil& l, int start) {
@@ -156,6 +161,11 @@ class Line final : public WholeStage {
     p.compliance_step = l.alike ? 0 : std::ptrdiff_t(f.dj) * l.width;
     if (l.lambda.size() > 0) p.lambda = l.lambda.data() + std::ptrdiff_t(start) * lattice.stride;
     if (f.links) p.alive = f.links->row(start) - f.near();
+    if (!membrane_) return p;
+    p.squares = membrane_->squares(f, start);
+    p.steps = MembraneLines::steps(f);
+    const std::int32_t* sheared = membrane_->sheared(start);
+    if (sheared && f.kind == Kind::shear) p.alive = sheared - f.near();
     return p;
   }
 
@@ -172,6 +182,7 @@ class Line final : public WholeStage {
 
   void solve_group(int group, int rows, float gain, bool fresh, BatchMemory& memory) {
     const int columns = parts_.lattice.columns;
+    const float* squares = membrane_ ? membrane_->turned(group, batches_) : nullptr;
     for (LineStencil& l : along_rows_) {
       const int n = l.stencil->di;
       const std::int32_t* alive =
@@ -187,6 +198,8 @@ class Line final : public WholeStage {
         p.particles = (columns - start + n - 1) / n;
         p.columns = rows;
         p.rest = float(l.stencil->rest);
+        p.squares = squares;
+        p.steps = MembraneLines::steps(*l.stencil);
         p.share = options_.share;
         p.compliance = l.compliance.data() + group * kBatchLines;
         if (l.lambda.size() > 0)
@@ -194,7 +207,7 @@ class Line final : public WholeStage {
         p.fresh = fresh;
         if (alive) p.alive = alive + start * kBatchLines;
         p.scratch = memory.scratch.data();
-        parts_.kernels.line_batch(p);
+        solve_(p);
       }
     }
   }
@@ -210,17 +223,27 @@ class Line final : public WholeStage {
                                 : compliance(*l.stencil, n / l.width, column_width(l, n % l.width));
   }
   float column_width(const LineStencil& l, int column) const {
-    const bool there = l.by_column && column < parts_.lattice.columns;
-    return there ? parts_.lattice.column_width[std::size_t(column)] : 1;
+    if (!l.by_column || column >= parts_.lattice.columns) return 1;
+    const bool side = column == 0 || column == parts_.lattice.columns - 1;
+    if (membrane_) return side ? 0.5f : 1.0f;
+    return parts_.lattice.column_width[std::size_t(column)];
   }
   float compliance(const Stencil& f, int j, float width) const {
+    if (membrane_) {
+      const double h = dt_ * implicit_share(parts_.scene.solver);
+      return float(
+          std::max(membrane_->compliance(f, std::min(j, parts_.lattice.rows - 1), width, h),
+                   least_ * f.rest * f.rest));
+    }
     const double real = options_.compliant ? compliance_of(parts_, f, j, dt_) / width : 0;
     return float(std::max(real, least_));
   }
 
   LatticeParts parts_;
   LineOptions options_;
+  void (*solve_)(const LineBatch&);
   LineBatches batches_;
+  std::unique_ptr<MembraneLines> membrane_;
   double dt_ = 0;
   double least_ = 0;                                                // 1/kg
   std::vector<LineStencil> diagonal_, along_columns_, along_rows_;  // in the order of a sweep

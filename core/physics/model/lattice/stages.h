@@ -65,7 +65,8 @@ float compliance_of(const LatticeParts& parts, const Stencil& stencil, int j, do
 struct LineOptions {
   bool compliant = false;
   int iterations = 1;
-  float share = 1;  // of the correction
+  float share = 1;        // of the correction
+  bool membrane = false;  // not springs but the membrane, compliant
 };
 // The line sweep: one stage for all stencils and iterations; null when the cloth has no constraint.
 std::unique_ptr<Stage> make_line(const LatticeParts& parts, const LineOptions& options);

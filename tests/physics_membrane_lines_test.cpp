@@ -1,0 +1,274 @@
+// Line sweeps of the membrane: the same motion as by forces in fine substeps; what is kept; what tears; the
+// same bits everywhere.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "double_vector.h"
+#include "machines.h"
+#include "weft/simulation.h"
+
+namespace weft {
+namespace {
+
+using oracle::operator+;
+using oracle::operator-;
+using oracle::operator*;
+
+constexpr Membrane kWoven{3000, 2000, 200, 80, 0}, kIsotropic{1500, 1500, 500, 500, 0};
+
+// Held along its first column, which swings it round and down, with a load across.
+Scene curtain(int n, const Membrane& membrane) {
+  Scene scene;
+  scene.time.frame = 1.0 / 60;
+  scene.gravity = {2, -9, 3};
+  Cloth& cloth = scene.cloths.emplace_back();
+  cloth.grid = {n, n, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 0};
+  cloth.membrane = membrane;
+  cloth.bending = 2e-4;
+  cloth.drag = 1;
+  for (int j = 0; j < n; ++j) cloth.pins.push_back({0, j, {}});
+  return scene;
+}
+
+Scene by_lines(Scene scene, int order, int substeps) {
+  scene.solver.method = Method::compliant;
+  scene.solver.sweep = Sweep::line;
+  scene.solver.order = order;
+  scene.time.substeps = substeps;
+  return scene;
+}
+Scene by_forces(Scene scene) {
+  scene.solver.method = Method::spring;
+  scene.time.substeps = 900;
+  return scene;
+}
+
+std::vector<double> after(const Scene& scene, int frames) {
+  Simulation simulation(scene);
+  for (int frame = 0; frame < frames; ++frame) simulation.advance_frame();
+  EXPECT_TRUE(simulation.status().ok) << simulation.status().text;
+  EXPECT_FALSE(simulation.plan().fallback);
+  return simulation.positions();
+}
+
+// Root mean square [m].
+double apart(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) sum += (a[n] - b[n]) * (a[n] - b[n]);
+  return std::sqrt(sum / (double(a.size()) / 3));
+}
+
+TEST(MembraneLines, MoveAsForcesInFineSubsteps) {
+  for (const Membrane& membrane : {kWoven, kIsotropic}) {
+    const Scene scene = curtain(25, membrane);
+    const std::vector<double> truth = after(by_forces(scene), 30);
+    double before = 0;
+    for (const int substeps : {8, 16, 32, 64}) {
+      const double error = apart(after(by_lines(scene, 1, substeps), 30), truth);
+      EXPECT_LT(error, 0.06 / substeps) << substeps;
+      if (before > 0) {
+        EXPECT_LT(error, before / 1.7) << substeps;
+      }
+      before = error;
+    }
+    EXPECT_LT(apart(after(by_lines(scene, 2, 4), 30), truth), 2e-3);
+    EXPECT_LT(apart(after(by_lines(scene, 2, 16), 30), truth), 8e-4);
+  }
+}
+
+// What a cloth can have besides, each alone.
+TEST(MembraneLines, MoveAsForcesWithWhatAClothMayHaveBesides) {
+  struct Feature {
+    const char* name;
+    std::function<void(Scene&)> add;
+    double most;  // m
+  };
+  const Feature features[] = {
+      {"cells of 3 to 1",
+       [](Scene& s) {
+         s.cloths[0].grid.v = {0, 0, 1.0 / 3};
+       },
+       1e-3},
+      {"stiffness gradient", [](Scene& s) { s.cloths[0].stiffness_gradient = 0.6; }, 1e-3},
+      {"unequal masses",
+       [](Scene& s) {
+         s.cloths[0].lumping = Lumping::equal;
+         for (int n = 0; n < 17 * 17; ++n) s.cloths[0].masses.push_back(n % 3 == 0 ? 2e-3 : 4e-4);
+       },
+       2.5e-3},
+      {"strong coupling", [](Scene& s) { s.cloths[0].membrane.coupling = 1600; }, 1e-3},
+      {"negative coupling", [](Scene& s) { s.cloths[0].membrane.coupling = -900; }, 1e-3},
+      {"two sweeps", [](Scene& s) { s.solver.iterations = 2; }, 1e-3},
+      {"moving pins",
+       [](Scene& s) {
+         for (Pin& pin : s.cloths[0].pins)
+           for (int k = 0; k <= 30; ++k) {
+             const double by = 0.02 * (1 - std::cos(k * 0.2));
+             pin.keys.push_back({k / 60.0, {-by, 0, pin.j / 16.0}});
+           }
+       },
+       1e-3},
+  };
+  for (const Feature& f : features) {
+    Scene scene = curtain(17, kWoven);
+    f.add(scene);
+    Scene truth = by_forces(scene);
+    truth.solver.iterations = 1;
+    EXPECT_LT(apart(after(by_lines(scene, 2, 32), 30), after(truth, 30)), f.most) << f.name;
+  }
+}
+
+// Starts stretched, turning and rough, in free flight.
+Simulation flying(int nx, int ny, const Membrane& membrane, int order, int substeps) {
+  Scene scene = curtain(nx, membrane);
+  scene.gravity = {};
+  Cloth& cloth = scene.cloths[0];
+  cloth.grid.ny = ny;
+  cloth.grid.v = {0, 0, 0.8 * (ny - 1.0) / (nx - 1)};
+  cloth.pins.clear();
+  cloth.drag = 0;
+  Simulation simulation(by_lines(scene, order, substeps));
+  std::mt19937 random(7);
+  const auto noise = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  std::vector<double> x = simulation.positions(), v(x.size());
+  for (std::size_t n = 0; n < x.size(); n += 3) {
+    x[n] = 1.02 * x[n] + 1e-4 * noise();
+    x[n + 1] += 1e-3 * noise();
+    v[n] = 2 * x[n + 2] + 0.5;
+    v[n + 2] = -2 * x[n];
+    v[n + 1] = 0.5 * noise();
+  }
+  simulation.set_state(x, v);
+  return simulation;
+}
+
+double length(const Vec3& a) {
+  return oracle::length(a);
+}
+
+TEST(MembraneLines, KeepMomentumAndGainNoEnergy) {
+  for (const Membrane& membrane : {kWoven, kIsotropic, Membrane{500, 2500, -150, 300, 0}})
+    for (const int order : {1, 2})
+      for (const int substeps : {4, 16, 64}) {
+        Simulation simulation = flying(31, 22, membrane, order, substeps);
+        const Report start = simulation.report(false);
+        double angular = 0, drift = 0;
+        for (int frame = 0; frame < 60; ++frame) {
+          simulation.advance_frame();
+          const Report now = simulation.report(false);
+          drift = length(now.momentum - start.momentum);
+          EXPECT_LT(now.energy.kinetic + now.energy.elastic,
+                    1.01 * (start.energy.kinetic + start.energy.elastic))
+              << order << " " << substeps << " " << frame;
+          angular = length(now.angular_momentum - start.angular_momentum);
+        }
+        EXPECT_LT(angular, 5e-3 * length(start.angular_momentum)) << order << " " << substeps;
+        // Rounding of positions, where velocities are made of them.
+        const double rounding = substeps == 64 ? 1e-5 : 2e-3;
+        EXPECT_LT(drift, rounding * length(start.momentum)) << order << " " << substeps;
+        EXPECT_FALSE(simulation.plan().fallback);
+      }
+}
+
+// The sheet and its mirror image: diagonals of one way come before those of the other, which is a matter of
+// the substep.
+TEST(MembraneLines, AreMirrorSymmetricInTheLimit) {
+  const int n = 25;
+  for (const int substeps : {16, 32, 64}) {
+    Scene scene = curtain(n, kWoven);
+    scene.gravity = {2, -9, 0};
+    const std::vector<double> x = after(by_lines(scene, 1, substeps), 30);
+    double most = 0;
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const auto a = std::size_t(3 * (j * n + i)), b = std::size_t(3 * ((n - 1 - j) * n + i));
+        most = std::max({most, std::abs(x[a] - x[b]), std::abs(x[a + 1] - x[b + 1]),
+                         std::abs(x[a + 2] + x[b + 2] - 1)});
+      }
+    EXPECT_LT(most, substeps == 64 ? 1e-5 : 4e-4) << substeps;
+  }
+}
+
+TEST(MembraneLines, HasOneResult) {
+  const std::function<void(Scene&)> variants[] = {
+      [](Scene&) {},
+      [](Scene& s) { s.cloths[0].membrane.coupling = 0; },
+      [](Scene& s) { s.solver.order = 2, s.solver.tethers = true; },
+      [](Scene& s) { s.solver.iterations = 3, s.cloths[0].stiffness_gradient = 0.5; },
+      [](Scene& s) { s.cloths[0].tear_strain = 0.01, s.cloths[0].strain_limit = 0; },
+      [](Scene& s) {
+        s.cloths[0].cuts = {{{20.5, -1}, {20.5, 15.5}}};
+      },
+      [](Scene& s) { s.cloths[0].strain_limit = 0.005; },
+  };
+  for (const auto& change : variants) {
+    Scene scene = by_lines(curtain(52, kWoven), 1, 8);
+    scene.cloths[0].grid.ny = 37;
+    scene.cloths[0].pins = {{0, 0, {}}, {51, 0, {}}};
+    change(scene);
+    std::uint64_t hash = 0;
+    for (const Options& machine : machines()) {
+      Simulation simulation(scene, machine);
+      for (int frame = 0; frame < 12; ++frame) simulation.advance_frame();
+      if (hash == 0) hash = simulation.hash();
+      EXPECT_EQ(hash, simulation.hash()) << int(machine.simd) << " " << machine.threads;
+    }
+  }
+}
+
+TEST(MembraneLines, TearWhereTheyAreStretched) {
+  Scene scene = by_lines(curtain(24, Membrane{60, 60, 10, 10, 0}), 1, 16);
+  scene.cloths[0].tear_strain = 0.05;
+  Simulation simulation(scene);
+  for (int frame = 0; frame < 60; ++frame) simulation.advance_frame();
+  EXPECT_GT(simulation.report(false).torn, 0);
+  EXPECT_TRUE(simulation.status().ok);
+}
+
+TEST(MembraneLines, FallFreelyOnceCutOff) {
+  Scene scene = by_lines(curtain(17, kWoven), 2, 16);
+  scene.gravity = {0, -9.81, 0};
+  scene.cloths[0].drag = 0;
+  scene.cloths[0].bending = 0;
+  Simulation simulation(scene);
+  ASSERT_GT(simulation.cut({0.22, 0, -0.1}, {0.22, 0, 1.1}, 1e-3), 0);
+  for (int frame = 0; frame < 15; ++frame) simulation.advance_frame();
+  const double t = 15.0 / 60;
+  EXPECT_NEAR(simulation.positions()[3 * (8 * 17 + 12) + 1], -9.81 * t * t / 2, 1e-3);
+}
+
+TEST(MembraneLines, HoldAStrainLimit) {
+  Scene scene = by_lines(curtain(24, Membrane{100, 100, 10, 20, 0}), 1, 16);
+  scene.cloths[0].strain_limit = 0.02;
+  Simulation simulation(scene);
+  for (int frame = 0; frame < 60; ++frame) simulation.advance_frame();
+  const double limited = simulation.report(false).strain.max;
+  scene.cloths[0].strain_limit = 0;
+  Simulation loose(scene);
+  for (int frame = 0; frame < 60; ++frame) loose.advance_frame();
+  EXPECT_LT(limited, 0.0215);
+  EXPECT_GT(loose.report(false).strain.max, 0.03);
+}
+
+TEST(MembraneLines, SayWhatTheyLeaveOut) {
+  Scene scene = by_lines(curtain(9, kWoven), 1, 8);
+  const auto told = [&](const std::string& words) {
+    const Simulation simulation(scene);
+    for (const std::string& note : simulation.plan().notes)
+      if (note.find(words) != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_FALSE(told("springs of the membrane"));
+  EXPECT_FALSE(told("damping"));
+  scene.cloths[0].membrane.damping = 1e-4;
+  EXPECT_TRUE(told("line sweeps leave out the membrane's damping"));
+  scene.solver.sweep = Sweep::gauss_seidel;
+  EXPECT_TRUE(told("springs of the membrane"));
+}
+
+}  // namespace
+}  // namespace weft
