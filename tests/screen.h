@@ -101,12 +101,14 @@ class Screen {
   void click(int x, int y) const {
     type("mousemove " + std::to_string(x) + " " + std::to_string(y) + " sleep 0.4 click 1");
   }
-  // A control of the panel by its name in the log.
+  // A control of the panel by its name in the log. What appears above it moves it: the pointer follows.
   void click(const std::string& control) const {
-    const nlohmann::json state = wait("control " + control, [&](const nlohmann::json& at) {
-      return at.at("controls").contains(control);
-    });
-    click(state["controls"][control][0], state["controls"][control][1]);
+    nlohmann::json at = place(control);
+    for (nlohmann::json before; at != before; at = place(control)) {
+      type("mousemove " + at[0].dump() + " " + at[1].dump() + " sleep 0.4");
+      before = at;
+    }
+    type("click 1");
   }
   // Presses at the first point, goes on to the others, and lets go once the window is as expected.
   void drag(const std::vector<std::pair<int, int>>& points, const std::string& what,
@@ -197,6 +199,13 @@ class Screen {
   }
 
  private:
+  // Where a control is, once it is there.
+  nlohmann::json place(const std::string& control) const {
+    return wait("control " + control, [&](const nlohmann::json& now) {
+      return now.at("controls").contains(control);
+    })["controls"][control];
+  }
+
   static pid_t spawn(const std::string& command) {
     const pid_t child = ::fork();
     if (child == 0) {
