@@ -21,7 +21,7 @@ struct Truth {
 // Prints the row and returns the size of its error.
 inline double show(const Truth& t, double result) {
   const double error = t.truth == 0 ? result : result / t.truth - 1;
-  std::printf("@ %s | %s | %.6g | %.6g | %s | %+.2e | %.2g\n", t.law.c_str(), t.what.c_str(),
+  std::printf("@ %s | %s | %.6g | %.6g | %s | %+.2e | %.4g\n", t.law.c_str(), t.what.c_str(),
               t.truth, result, t.unit.c_str(), error, t.goal);
   return std::abs(error);
 }
@@ -37,7 +37,7 @@ inline double expect(const Truth& t, double result) {
 // to or a bound that is not 0, by the goal's share of it at least.
 inline void expect_above(const Truth& t, double result) {
   const double margin = result / t.truth - 1;
-  std::printf("@ %s | %s | > %.6g | %.6g | %s | %+.2e | %.2g\n", t.law.c_str(), t.what.c_str(),
+  std::printf("@ %s | %s | > %.6g | %.6g | %s | %+.2e | %.4g\n", t.law.c_str(), t.what.c_str(),
               t.truth, result, t.unit.c_str(), margin, t.goal);
   EXPECT_GE(margin, t.goal) << t.law << ", " << t.what;
 }
