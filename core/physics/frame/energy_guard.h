@@ -53,6 +53,7 @@ class Upkeep {
 class EnergyGuard {
  public:
   static constexpr double kBound = 4;
+  static constexpr double kMade = 2;  // times what was put in: no rounding
 
   // Gravity whose potential counts [m/s²]. One that changes over time has none; what it does counts as
   // driving instead, by the speed that it can give in every frame.
@@ -71,6 +72,8 @@ class EnergyGuard {
   bool holds() const { return kinetic_ <= bound(); }
   // Takes the frame last looked at, of so many substeps, for good.
   void accept(int substeps);
+  // Whether so much elastic energy [J], of sheets that gravity alone moved so far, is more than was ever put in.
+  bool is_made(double held) const { return !driven_ && held > kMade * (put_in_ + released_); }
   // What velocities must be multiplied with to be within the bound.
   double reduction() const;
 

@@ -53,6 +53,7 @@ void Simulation::State::advance_frame() {
   check_strain_limits();
   note_clamps();
   note_stretch();
+  note_left_strain();
 
   if (sleeping) sleeping->end_frame([&](std::size_t c) -> const Rows& { return records_[c].x(); });
   if (is_explicit(method) && !(sleeping && sleeping->all_asleep())) follow_stretch(limit_);
@@ -75,19 +76,19 @@ void Simulation::State::run_frame() {
 
 // What the frame has come to.
 FrameRun Simulation::State::frame_run() {
-  FrameRun run{scene,
-               method,
-               cloths,
-               records_,
-               asleep_,
-               frame,
-               dt,
-               true,
-               {},
-               limit_,
-               driven(),
-               nothing_else_acts(),
-               !only_explicit()};
+  FrameRun run{.scene = scene,
+               .method = method,
+               .cloths = cloths,
+               .starts = records_,
+               .asleep = asleep_,
+               .frame = frame,
+               .dt = dt,
+               .finite = true,
+               .energy = {},
+               .limit = limit_,
+               .driven = driven(),
+               .alone = nothing_else_acts(),
+               .replaceable = !only_explicit()};
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     asleep_[c] = asleep(c);
     if (asleep_[c]) continue;
@@ -170,6 +171,21 @@ void Simulation::State::note_stretch() {
                          " times its length (other ways of its pins, a strain limit or tear_strain "
                          "avoid that)");
   }
+}
+
+// Sweeps that leave strain keep energy that nothing put in. A look takes about as long as a sweep.
+void Simulation::State::note_left_strain() {
+  constexpr int kFramesBetweenLooks = 8;
+  constexpr double kInstant = 1e-9;  // s; in substeps so short all stiffness is felt
+  if (left_strain_noted_ || method != Method::compliant || frame % kFramesBetweenLooks != 0) return;
+  double held = 0;
+  for (std::size_t c = 0; c < cloths.size(); ++c)
+    if (!asleep(c)) held += cloths[c]->model().held_energy(cloths[c]->particles().x, kInstant);
+  if (!guard_.energy().is_made(held)) return;
+  left_strain_noted_ = true;
+  plan.notes.push_back("frame " + std::to_string(frame) + ": the sweeps leave strain of " +
+                       number(held) +
+                       " J that nothing put in; more substeps or iterations leave less");
 }
 
 // Surfaces begin with what does not cross; what does comes apart first.

@@ -111,7 +111,7 @@ struct Simulation::State {
   int grabbed_ = 0;
   std::vector<physics::Carry*> carried_;  // in the plan of each cloth; null while it rests
   int until_collision_ = 1;               // substeps from one run of contact to the next
-  bool clamps_noted_ = false;
+  bool clamps_noted_ = false, left_strain_noted_ = false;
   std::vector<std::uint8_t> stretch_noted_;  // of every cloth
   physics::StepGuard guard_;
   bool was_driven_ = false;  // in the frame before
@@ -162,6 +162,7 @@ struct Simulation::State {
   void begin_contact();
   void note_clamps();
   void note_stretch();
+  void note_left_strain();
   physics::ClothStep& step_with(int cloth, int particle);
   void plan_changed();
   Plan describe_stages() const;

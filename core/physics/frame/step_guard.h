@@ -43,9 +43,9 @@ enum class Verdict {
   refine_to_limit,  // run again within the stability limit
   refine,           // run again with twice the substeps
   change_method,    // run again by a method that loses energy
-  unstable,         // stands, though its substeps are longer than is stable, and none can be short enough
-  clamp,            // velocities are reduced to what is left without the excess
-  stop,             // not finite, and no substep helps
+  unstable,  // stands, though its substeps are longer than is stable, and none can be short enough
+  clamp,     // velocities are reduced to what is left without the excess
+  stop,      // not finite, and no substep helps
 };
 
 class StepGuard {

@@ -11,6 +11,7 @@
 // Damping puts e + damping de/dt in the place of e.
 #include "physics/kernels/membrane.h"
 
+#include "physics/kernels/membrane_cells.h"
 #include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
 
@@ -20,21 +21,6 @@ using physics::MembraneConstants;
 using physics::MembraneRows;
 
 namespace {
-
-// The edges and diagonals of a block of cells: of positions, or of velocities.
-struct Cells {
-  Wide3 a, a_below, b, b_right, p, q;
-  WEFT_INLINE Cells(const float* row, const float* below, std::ptrdiff_t plane) {
-    const Wide3 x0 = load_planes(row, plane), right = load_planes(row + 1, plane);
-    const Wide3 x1 = load_planes(below, plane), opposite = load_planes(below + 1, plane);
-    a = right - x0;
-    a_below = opposite - x1;
-    b = x1 - x0;
-    b_right = opposite - right;
-    p = opposite - x0;
-    q = right - x1;
-  }
-};
 
 // Strains of a block of cells; the shear without its factor.
 struct Strains {

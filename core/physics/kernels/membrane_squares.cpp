@@ -12,6 +12,7 @@
 //
 // stiffens both edges by |C12| towards where they lie, and pulls them by what the other strain was.
 #include "physics/kernels/membrane.h"
+#include "physics/kernels/membrane_cells.h"
 #include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
 
@@ -20,21 +21,6 @@ namespace weft::WEFT_KERNELS {
 using physics::MembraneSquares;
 
 namespace {
-
-// Squares of a block of cells.
-struct Cells {
-  Wide a, a_below, b, b_right, p, q;
-  WEFT_INLINE Cells(const float* row, const float* below, std::ptrdiff_t plane) {
-    const Wide3 x0 = load_planes(row, plane), right = load_planes(row + 1, plane);
-    const Wide3 x1 = load_planes(below, plane), opposite = load_planes(below + 1, plane);
-    a = squared_length(right - x0);
-    a_below = squared_length(opposite - x1);
-    b = squared_length(x1 - x0);
-    b_right = squared_length(opposite - right);
-    p = squared_length(opposite - x0);
-    q = squared_length(right - x1);
-  }
-};
 
 // The cells between a row and the next, from lane i on, that have both diagonals, and those that have all.
 struct There {
@@ -62,19 +48,23 @@ void one_row(const MembraneSquares& r, int j) {
   for (int i = 0; i < r.columns; i += kLanes) {
     const Cells cells(r.x.x + start + i, r.x.x + next + i, plane);
     const There there(r, j, i);
-    store(r.diagonals + start + i, (cells.p + cells.q) * 0.5f);
+    store(r.diagonals + start + i, (squared_length(cells.p) + squared_length(cells.q)) * 0.5f);
     if (r.sheared) put_lanes(r.sheared + start + i, there.sheared);
     if constexpr (kCoupled) {
-      const auto beyond = [](Wide one, Wide other, float rest, WideInt whole) {
-        return select(whole, fma(one + other, wide(0.5f), wide(-rest)), Wide{});
+      const auto beyond = [](Wide3 one, Wide3 other, float rest, WideInt whole) {
+        const Wide both = squared_length(one) + squared_length(other);
+        return select(whole, fma(both, wide(0.5f), wide(-rest)), Wide{});
+      };
+      const auto kept = [](Wide3 edge, float rest, float keep) {
+        return fma(squared_length(edge) - rest, wide(keep), wide(rest));
       };
       const Cells before(r.x.x + last + i, r.x.x + start + i, plane);
       const Wide above = beyond(before.b, before.b_right, r.square_v, There(r, j - 1, i).whole);
       const Wide under = beyond(cells.b, cells.b_right, r.square_v, there.whole);
       const Wide sides = beyond(cells.a, cells.a_below, r.square_u, there.whole);
       const MembraneSquares::Coupling c = r.coupling[j];
-      const Wide own_u = fma(cells.a - r.square_u, wide(r.keep_u), wide(r.square_u));
-      const Wide own_v = fma(cells.b - r.square_v, wide(r.keep_v), wide(r.square_v));
+      const Wide own_u = kept(cells.a, r.square_u, r.keep_u),
+                 own_v = kept(cells.b, r.square_v, r.keep_v);
       store(r.along + start + i, fnma(above, wide(c.before), fnma(under, wide(c.after), own_u)));
       const Wide both = (sides + coupled.next(sides)) * load(r.share + i);
       store(r.across + start + i, fnma(both, wide(c.across), own_v));
