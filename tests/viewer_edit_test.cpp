@@ -127,10 +127,12 @@ TEST_F(Window, ALassoPinsAndLetsGo) {
 // Against gravity: without aim it would pass some 0.3 m below where it was shot at.
 TEST_F(Window, ABallMeetsWhatIsClicked) {
   folder.write("sheet.json", R"({"weft": 1, "camera": {"azimuth": 0, "elevation": 0},
-      "cloths": [{"grid": {"points": [30, 30], "u": [1, 0, 0], "v": [0, -1, 0]},
+      "cloths": [{"grid": {"points": [30, 30], "u": [1, 0, 0], "v": [0, -1, 0]}, "drag": 6,
                   "pins": [[0, 0], [29, 0], [0, 29], [29, 29]]}]})");
   Screen screen(folder);
   screen.open("sheet.json");
+  // At rest: a ball meets cloth that moves where that will be.
+  screen.wait("the sheet at rest", [](const Json& now) { return now["frame"] > 120; });
   screen.key("5");
   screen.wait_for("tool", "ball");
   const Json before = screen.now();

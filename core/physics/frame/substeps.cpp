@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "physics/frame/measure.h"
 #include "physics/frame/state.h"
@@ -21,6 +22,24 @@ constexpr double kGrabbed = 1.6;       // on ω², at least: room for what a han
 // What folds onto a line that stretches nothing has up to twice the flat sheet's ω², and no stretch adds
 // to that (a sheet without shear springs, or with nothing else).
 constexpr double kFolded = 2;
+
+struct StableSubsteps {
+  double largest = std::numeric_limits<double>::infinity();  // s, of all cloths as they lie
+  double safe = largest;     // s; also where cloth that resists no pressing folds
+  std::size_t stiffest = 0;  // the cloth that asks for the latter
+};
+StableSubsteps stable_substeps(const Cloths& cloths, std::span<const Spectrum> spectra) {
+  StableSubsteps stable;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    stable.largest = std::min(stable.largest, spectra[c].largest_substep());
+    Spectrum folded = spectra[c];
+    if (cloths[c]->model().folds_freely()) folded.omega_squared *= kFolded;
+    if (folded.largest_substep() >= stable.safe) continue;
+    stable.safe = folded.largest_substep();
+    stable.stiffest = c;
+  }
+  return stable;
+}
 
 }  // namespace
 
@@ -41,27 +60,18 @@ void Simulation::State::choose_method_and_substeps() {
                     ", which does nothing here: springs have no iterations (iterate_springs adds "
                     "their forces so many times)");
   if (is_explicit(method)) {
-    limit = std::numeric_limits<double>::infinity();
-    double safe = limit;  // for automatic substeps
-    std::size_t stiffest = 0;
-    for (std::size_t c = 0; c < cloths.size(); ++c) {
+    for (std::size_t c = 0; c < cloths.size(); ++c)
       spectra.push_back(cloths[c]->model().spectrum(masses(c).span()));
-      limit = std::min(limit, spectra.back().largest_substep());
-      Spectrum folded = spectra.back();
-      if (cloths[c]->model().folds_freely()) folded.omega_squared *= kFolded;
-      if (folded.largest_substep() < safe) {
-        safe = folded.largest_substep();
-        stiffest = c;
-      }
-    }
-    const double needed = std::ceil(scene.time.frame / (kLimitShare * safe));
-    const bool resolved = needed <= kMostSubsteps && kLimitShare * safe >= kLeastSubstep;
+    const StableSubsteps stable = stable_substeps(cloths, spectra);
+    limit = stable.largest;
+    const double needed = std::ceil(scene.time.frame / (kLimitShare * stable.safe));
+    const bool resolved = needed <= kMostSubsteps && kLimitShare * stable.safe >= kLeastSubstep;
     if (count == kAutoSubsteps && resolved) {
       count = clamp_to_int(needed, 1, kMostSubsteps);
       notes.push_back("substeps from the stability limit of " + number(limit) + " s");
     } else if (only_explicit() && (!resolved || scene.time.frame / count > limit)) {
       if (!resolved)
-        throw SceneError({{"/cloths/" + std::to_string(stiffest),
+        throw SceneError({{"/cloths/" + std::to_string(stable.stiffest),
                            "the cloth needs " + number(needed) +
                                " substeps a frame, and the membrane of a mesh has no other method",
                            "softer or heavier cloth, larger triangles or shorter frames"}});
