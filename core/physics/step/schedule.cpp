@@ -72,12 +72,13 @@ void Schedule::run(const Substeps& given, Threads& threads, std::span<const RowS
   });
 }
 
+// All before any runs: what stages work out of masses must not find those of the middle of a substep.
+//
 // What velocities gain from the sweeps at the end of a substep, where nobody looks at them but what
 // predicts the next, need not be added: it can do that itself.
 void Schedule::prepare(double dt) {
   prepared_dt_ = dt;
-  for (Pass& p : passes_)
-    if (p.whole) p.whole->prepare(dt);
+  for (Pass& p : passes_) p.whole ? p.whole->prepare(dt) : p.wavefront->prepare(dt);
   velocities_between_ =
       stages_.empty() || stages_.back()->velocities(dt) != Velocities::from_sweeps ||
       !std::all_of(stages_.begin(), stages_.end() - 1, [&](const std::unique_ptr<Stage>& s) {

@@ -134,6 +134,12 @@ void Wavefront::choose_chunks(int count, int threads) {
   while (--rising > 0) add(length(rising));
 }
 
+void Wavefront::prepare(double dt) {
+  if (dt == prepared_dt_) return;
+  for (RowStage* s : stages_) s->prepare(dt);
+  prepared_dt_ = dt;
+}
+
 void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake,
                     RowObserver* observer) {
   // Spans are in order, apart, and within the rows.
@@ -145,9 +151,7 @@ void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const 
   const bool apart = reach_ == 0 && substeps.count == 1;
   const int at_once = substeps.count > 1 || apart ? threads.count() : 1;
   choose_tiles(substeps.count, at_once);
-  if (substeps.dt != prepared_dt_)
-    for (RowStage* s : stages_) s->prepare(substeps.dt);
-  prepared_dt_ = substeps.dt;
+  prepare(substeps.dt);
   const Run r{substeps, awake, observer};
   for (RowStage* s : stages_) s->reserve(chunk_substeps_ * ring_);
   if (apart) {

@@ -28,6 +28,9 @@ class Wavefront {
   // Stages of one substep, in order. `row_bytes` sizes the tiles to the cache.
   Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes, double row_nanoseconds);
 
+  // What stages work out of the length of substeps [s]; run() does so, too, where that has not been done.
+  void prepare(double dt);
+
   // Only the rows of `awake` are worked on, spans in order and apart; empty: all rows. The `record`
   // keeps all rows as they are before, and looks at them after.
   void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {},
