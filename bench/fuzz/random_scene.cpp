@@ -16,16 +16,17 @@ namespace {
 
 constexpr double kFrameWork = 1e6, kSubstepWork = 3e5;  // of one, at most
 
-bool has_meshes(const Scene& scene) {
+// Whether there is cloth of anything but springs on a grid.
+bool has_more_than_springs(const Scene& scene) {
   return std::any_of(scene.cloths.begin(), scene.cloths.end(),
-                     [](const Cloth& c) { return c.mesh.given(); });
+                     [](const Cloth& c) { return c.mesh.given() || c.membrane.given(); });
 }
 
 // Whether a simulation takes it: membranes of meshes may need substeps that are too short.
 bool can_run(const Scene& scene) {
   if (!validate(scene).empty()) return false;
   try {
-    return !has_meshes(scene) || estimate(scene).substeps > 0;
+    return !has_more_than_springs(scene) || estimate(scene).substeps > 0;
   } catch (const SceneError&) {
     return false;
   }
@@ -35,7 +36,7 @@ bool can_run(const Scene& scene) {
 // of a particle over its mass.
 double estimated_substeps(const Scene& scene) {
   if (scene.time.substeps > 0) return scene.time.substeps;
-  if (has_meshes(scene) && can_run(scene)) return estimate(scene).substeps;
+  if (has_more_than_springs(scene) && can_run(scene)) return estimate(scene).substeps;
   double most = scene.time.frame * 960;
   for (const Cloth& c : scene.cloths) {
     double lightest = particle_mass(c, 0, 0);
