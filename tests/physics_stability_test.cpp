@@ -133,11 +133,14 @@ TEST(StabilityLimit, EstimateIsCloseAndNeverAbove) {
 
 // Energy of the flat sheet after 4000 substeps of a share of the true limit over that of the start,
 // straight through the plan, which does not mind unstable substeps. Small noise starts every mode.
-double growth(const Case& c, double share) {
-  const Scene scene = scene_of(c);
+double growth(const Case& c, double share, double drag = 0) {
+  Scene scene = scene_of(c);
+  scene.cloths[0].drag = drag;
   ClothStep step(scene, 0, Method::spring, 1, kernel_table(Simd::best));
   Lattice& l = step.model().lattice()->lattice;
-  const double dt = share * dense_spectrum(step.cloth(), l).largest_substep();
+  Spectrum truth = dense_spectrum(step.cloth(), l);
+  truth.drag = drag;
+  const double dt = share * truth.largest_substep();
   Random random(6, 6);
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i)
@@ -163,6 +166,16 @@ TEST(StabilityLimit, SeparatesBoundedFromExploding) {
     // as the true one at most; noise of all modes stays far below.
     EXPECT_LT(growth(c, 0.98), 50) << c.name;
     EXPECT_GT(growth(c, 1.05), 1e3) << c.name;
+  }
+}
+
+// Drag is taken from velocities half a substep behind: the more there is of it, the shorter substeps have to be,
+// until nothing is left of a velocity.
+TEST(StabilityLimit, CountsDrag) {
+  const Case c{"plain", 8, 8, 0, {100, 80, 20}, 1, 0};
+  for (const double drag : {10.0, 50.0, 150.0, 400.0, 1e4}) {
+    EXPECT_LT(growth(c, 0.98, drag), 50) << drag;
+    EXPECT_GT(growth(c, 1.05, drag), 1e3) << drag;
   }
 }
 

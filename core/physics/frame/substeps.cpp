@@ -60,8 +60,10 @@ void Simulation::State::choose_method_and_substeps() {
                     ", which does nothing here: springs have no iterations (iterate_springs adds "
                     "their forces so many times)");
   if (is_explicit(method)) {
-    for (std::size_t c = 0; c < cloths.size(); ++c)
+    for (std::size_t c = 0; c < cloths.size(); ++c) {
       spectra.push_back(cloths[c]->model().spectrum(masses(c).span()));
+      spectra.back().drag = scene.cloths[c].drag;
+    }
     const StableSubsteps stable = stable_substeps(cloths, spectra);
     limit = stable.largest;
     const double needed = std::ceil(scene.time.frame / (kLimitShare * stable.safe));

@@ -11,7 +11,7 @@
 // its share of every correction. Before the first substep of all, and the first after a change of h, lies
 // free flight, x_{n-1} = x_n - h v_n + ½h² a, v_{n-1} = v_n - h a, a = g - c v_n. Both kinds go through the
 // same sweeps: the constraints are solved with ⅔h and inverse masses scaled by 1/(1 + ⅔h c), or by
-// 9/4/(1 + h c).
+// 9/4/(1 + h c). Zeros become positive, as in advance.cpp.
 #include "physics/kernels/second_order.h"
 
 #include "physics/kernels/row_kernels.h"
@@ -39,7 +39,8 @@ struct Slowed {
 // substep.
 WEFT_INLINE Wide3 gained(const SecondOrderRow& r, Wide3 x, WideInt free, WideInt euler, int i) {
   const Wide inverse_step = select(euler, wide(1 / r.dt), wide(1.5f / r.dt));
-  return fma(x - load3(r.predicted, i), select(free, inverse_step, Wide{}), load3(r.v, i));
+  return fma(x - load3(r.predicted, i), select(free, inverse_step, Wide{}),
+             positive_zeros(load3(r.v, i)));
 }
 
 // Which kind the substep was its inverse masses tell.
@@ -55,14 +56,14 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
   const Slowed slowed(r);
   const Wide3 g{wide(r.gx), wide(r.gy), wide(r.gz)};
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide3 x = load3(r.x, i);
+    const Wide3 x = positive_zeros(load3(r.x, i));
     const Wide mass = load(r.mass + i);
     const WideInt free = mass > 0.0f;
     Wide3 v;
     // Of the others that are free, too; those that are not are held in the end.
     WideInt smooth = ~WideInt{};
     if constexpr (kKnown) {
-      v = load3(r.v, i);
+      v = positive_zeros(load3(r.v, i));
       smooth = free;
       if (!r.fresh) smooth = smooth & equal(v, load3(r.v_end, i));
     } else {
@@ -111,8 +112,11 @@ void velocity_second_order(const SecondOrderRow& given) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide mass = load(r.mass + i);
     const WideInt euler = was_euler(r, slowed, mass, i);
-    const Wide3 v = r.from_positions ? gained(r, load3(r.x, i), mass > 0.0f, euler, i)
-                                     : load3(r.v, i) * select(euler, wide(kTwoThirds), wide(1));
+    const Wide3 x = positive_zeros(load3(r.x, i));
+    const Wide3 v = r.from_positions
+                        ? gained(r, x, mass > 0.0f, euler, i)
+                        : positive_zeros(load3(r.v, i)) * select(euler, wide(kTwoThirds), wide(1));
+    store3(r.x, i, x);
     store3(r.v, i, v);
     store3(r.v_end, i, v);
     store(r.w + i, mass);

@@ -354,6 +354,10 @@ WEFT_INLINE Wide3 wide3(float x, float y, float z) {
 WEFT_INLINE Wide3 operator+(Wide3 a, Wide3 b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
+// +0 in the place of -0.
+WEFT_INLINE Wide3 positive_zeros(Wide3 v) {
+  return v + wide3(0, 0, 0);
+}
 WEFT_INLINE Wide3 operator-(Wide3 a, Wide3 b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }

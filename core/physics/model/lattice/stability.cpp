@@ -160,9 +160,14 @@ double largest(const Cloth& cloth, const std::vector<Stencil>& stencils, const L
 }  // namespace
 
 double Spectrum::largest_substep() const {
-  // Root of dt² ω²/4 + dt c/2 = 1.
-  const double root = damping / 2 + std::sqrt(damping * damping / 4 + omega_squared);
-  return root > 0 ? 2 / root : std::numeric_limits<double>::infinity();
+  // Root of dt² ω² + 2 dt c = most.
+  const auto root = [&](double c, double most) {
+    const double inverse = (c + std::sqrt(c * c + most * omega_squared)) / most;
+    return inverse > 0 ? 1 / inverse : std::numeric_limits<double>::infinity();
+  };
+  // What drag leaves of a velocity is 1 - dt drag, or nothing: dt² ω² + 2 dt c < 2 (1 + what is left).
+  const double dt = root(damping + drag, 4);
+  return dt * drag <= 1 ? dt : root(damping, 2);
 }
 
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Stencil>& stencils,

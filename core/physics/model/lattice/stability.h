@@ -3,7 +3,7 @@
 // Explicit springs: leapfrog is stable while dt ω_max < 2, where ω_max² is the largest eigenvalue of M⁻¹K, K the
 // tangent stiffness: Σ k [n nᵀ + max(0, 1 - l/|e|)(I - n nᵀ)] over the springs. Damping along the
 // springs, evaluated at the velocity half a substep behind, asks for dt² ω²/4 + dt c/2 < 1 with c
-// the largest eigenvalue of M⁻¹D.
+// the largest eigenvalue of M⁻¹D; drag adds to c.
 #pragma once
 
 #include <vector>
