@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "physics/contact/moving_collider.h"
 #include "random_mesh.h"
 #include "random_parts.h"
 #include "weft/estimate.h"
@@ -99,8 +100,13 @@ double work_of_substep(const Scene& scene) {
   }
   const double sweep = projects ? solver.iterations * (solver.sweep == Sweep::line ? 8 : 2) : 1;
   double bodies = 0;
-  for (const Collider& c : scene.colliders)
-    bodies += c.cuts || std::holds_alternative<MeshBody>(c.shape) ? 20 : 1;
+  for (const Collider& c : scene.colliders) {
+    const bool whole = c.cuts || std::holds_alternative<MeshBody>(c.shape);
+    const bool small =
+        !whole && std::any_of(scene.cloths.begin(), scene.cloths.end(),
+                              [&](const Cloth& cloth) { return !physics::resolves(cloth, c); });
+    bodies += small ? 400 : whole ? 20 : 1;
+  }
   double particles = 100;  // what a substep costs besides
   for (const Cloth& c : scene.cloths) particles += particle_count(c);
   return particles * (families * sweep + contact + solver.collision_iterations * bodies);

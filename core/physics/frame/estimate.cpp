@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "physics/contact/moving_collider.h"
 #include "physics/model/lattice/stability.h"
 #include "physics/model/lattice/stencil.h"
 #include "weft/mesh.h"
@@ -46,6 +47,7 @@ constexpr double kEdge = 1.6, kStrandEdge = 5, kBentSweep = 25;     // and of it
 constexpr double kProjection = 1.2, kTethers = 1.5;
 constexpr double kStrainLimit = 1.2, kHeldLimit = 12, kTearing = 0.6, kWind = 0.8;
 constexpr double kCollider = 0.5, kBox = 20;       // and collider; a box meets whole triangles
+constexpr double kSmall = 500;                     // and collider that is small against the mesh
 constexpr double kParticles = 15, kSurface = 130;  // contact of a sheet that lies on itself
 }  // namespace cost
 
@@ -164,6 +166,12 @@ double constraint_cost(const Cloth& cloth, const Solver& solver) {
          particles * (cost::kProjection + tethers);
 }
 
+double collider_cost(const Cloth& cloth, const Collider& collider) {
+  if (std::holds_alternative<MeshBody>(collider.shape)) return cost::kBox;
+  if (!collider.cuts && !resolves(cloth, collider)) return cost::kSmall;
+  return std::holds_alternative<Box>(collider.shape) ? cost::kBox : cost::kCollider;
+}
+
 double substep_cost(const Scene& scene, const Cloth& cloth, const Solver& solver) {
   double each = 0;
   if (cloth.strain_limit > 0)
@@ -172,10 +180,7 @@ double substep_cost(const Scene& scene, const Cloth& cloth, const Solver& solver
   if (cloth.tear_strain > 0 || !cloth.cuts.empty()) each += cost::kTearing;
   if (scene.wind.drag > 0 || scene.wind.lift > 0) each += cost::kWind;
   for (const Collider& collider : scene.colliders)
-    each += solver.collision_iterations * (std::holds_alternative<Box>(collider.shape) ||
-                                                   std::holds_alternative<MeshBody>(collider.shape)
-                                               ? cost::kBox
-                                               : cost::kCollider);
+    each += solver.collision_iterations * collider_cost(cloth, collider);
   if (cloth.self_collision.mode == SelfCollisionMode::particles) each += cost::kParticles;
   if (cloth.self_collision.mode == SelfCollisionMode::surface) each += cost::kSurface;
   return cost::kSubstep + constraint_cost(cloth, solver) + each * particle_count(cloth);
