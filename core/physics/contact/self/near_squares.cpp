@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/contact/self/held.h"
+
 namespace weft::physics {
 namespace {
 
@@ -44,7 +46,7 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<Nam
   float spacing = 0;
   for (const Sheet& s : sheets_) {
     spacing = std::max({spacing, std::sqrt(s.uu), std::sqrt(s.vv)});
-    most_ = std::max(most_, s.thickness);
+    most_ = std::max(most_, kReach * held(s));
   }
   beyond_ = kBeyond * spacing;
   origins_.resize(bodies);
