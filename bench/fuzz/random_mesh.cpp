@@ -149,19 +149,21 @@ std::shared_ptr<const TriangleMesh> random_body(Draw& draw) {
 }
 
 void adopt_meshes(Scene& to, const Scene& from) {
-  std::map<std::string, std::shared_ptr<const TriangleMesh>> read;
-  for_each_mesh(from, [&](const auto& mesh, const std::string&) { read[mesh.file] = mesh.shape; });
-  for_each_mesh(to, [&](auto& mesh, const std::string&) {
-    mesh.shape = read[mesh.file];
-    if constexpr (std::is_same_v<decltype(mesh), MeshBody&>)
-      if (mesh.shape) mesh.surface = surface_of(mesh);
-  });
+  MeshStore read;
+  read.take(from);
+  read.give(to);
+  std::vector<Fault> faults;
+  std::vector<std::string> notes;
+  load_meshes(to, "", faults, notes);
 }
 
 void write_meshes(const Scene& scene, const std::string& folder) {
   for_each_mesh(scene, [&](const auto& mesh, const std::string&) {
     std::ofstream(folder + "/" + mesh.file) << write_obj(*mesh.shape);
   });
+  for (const Collider& c : scene.colliders)
+    if (const auto* body = std::get_if<MeshBody>(&c.shape); body && body->motion)
+      std::ofstream(folder + "/" + c.animation, std::ios::binary) << mdd_bytes(*body->motion);
 }
 
 }  // namespace fuzz
