@@ -26,11 +26,10 @@ Vec3 BodyMoment::vertex_normal(int vertex) const {
       *form_, vertex, [&](int n) { return corners(n); }, [&](int n) { return face_normal(n); });
 }
 
-BodyMoment::Feature BodyMoment::feature(int n) const {
-  const BodyForm::Feature& f = form_->features[std::size_t(n)];
-  if (f.a == f.b) return {f.a, f.b, vertex_normal(f.a), f.triangle};
-  const Vec3 own = face_normal(f.triangle);
-  return {f.a, f.b, f.other < 0 ? own : unit(plus(own, face_normal(f.other))), f.triangle};
+Vec3 BodyMoment::outward(const Feature& feature) const {
+  if (feature.a == feature.b) return vertex_normal(feature.a);
+  const Vec3 own = face_normal(feature.triangle);
+  return feature.other < 0 ? own : unit(plus(own, face_normal(feature.other)));
 }
 
 void BodyMoment::look_at(int triangle, const Vec3& p, Candidate& best) const {

@@ -29,12 +29,7 @@ class BodyMoment {
     int triangle = 0;
     Weights weights{};  // of its corners
   };
-  // An edge or a corner that sticks out.
-  struct Feature {
-    int a = 0, b = 0;  // vertices; a corner's are one
-    Vec3 normal{};     // unit, the mean of the triangles about it
-    int triangle = 0;  // one of them
-  };
+  using Feature = BodyForm::Feature;
   static constexpr int kListed = 12;
 
   using Pose = std::shared_ptr<const BodyPose>;
@@ -67,6 +62,8 @@ class BodyMoment {
   }
   Vec3 face_normal(int triangle) const;
   Vec3 vertex_normal(int vertex) const;
+  // Unit, the mean of the triangles about it.
+  Vec3 outward(const Feature& feature) const;
   AlignedBox bounds() const { return box(from_->bounds, moves() ? &to_->bounds : nullptr); }
 
   // `hint`: a triangle that may be near; makes it faster, not different.
@@ -85,7 +82,7 @@ class BodyMoment {
                  box(&BodyPose::feature_boxes, node).meets(where);
         },
         [&](int n) {
-          if (radius(&BodyPose::radii, n) < most) visit(feature(n));
+          if (radius(&BodyPose::radii, n) < most) visit(form_->features[std::size_t(n)]);
         });
   }
 
@@ -134,7 +131,6 @@ class BodyMoment {
     const double from = (*from_.*radii)[std::size_t(n)];
     return moves() ? std::min(from, (*to_.*radii)[std::size_t(n)]) : from;
   }
-  Feature feature(int n) const;
   void look_at(int triangle, const Vec3& p, Candidate& best) const;
   Point point_of(const Candidate& c, const Vec3& p) const;
   Point nearest_in(std::size_t part, const Vec3& p, int hint, double enough) const;

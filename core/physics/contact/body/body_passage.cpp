@@ -59,7 +59,8 @@ double strays(const BodyMoment& begin, const BodyMoment& end, const Vec3& way, i
 }
 
 int within_between(const BodyMoment& begin, const BodyMoment& end, const Vec3& from, const Vec3& to,
-                   double distance, std::array<int, BodyMoment::kListed>& found) {
+                   double distance, std::array<int, BodyMoment::kListed>& found, double& loose) {
+  loose = 0;
   const Vec3 way = minus(to, from), back = times(way, -1);
   int count = 0;
   const std::vector<BodyForm::Part>& parts = begin.form().parts;
@@ -76,7 +77,9 @@ int within_between(const BodyMoment& begin, const BodyMoment& end, const Vec3& f
           const Weights w = nearest_on(t, from);
           const Vec3 d =
               minus(from, plus(plus(times(t[0], w[0]), times(t[1], w[1])), times(t[2], w[2])));
-          if (std::sqrt(dot(d, d)) - strays(begin, end, way, triangle) > distance) return;
+          const double strayed = strays(begin, end, way, triangle);
+          if (std::sqrt(dot(d, d)) - strayed > distance) return;
+          loose = std::max(loose, strayed);
           if (count < BodyMoment::kListed) found[std::size_t(count)] = triangle;
           ++count;
         });

@@ -57,10 +57,10 @@ struct BodyPassage {
 };
 
 // All triangles, ascending, that come within a distance of a point on the way from one moment to a later one
-// between the same samples, while the point goes straight from one place to another; how many, or -1 where there are
-// more than kListed.
+// between the same samples, while the point goes straight from one place to another; how many, or -1 where there
+// are more than kListed. `loose` [m]: the most that one of them strays.
 int within_between(const BodyMoment& begin, const BodyMoment& end, const Vec3& from, const Vec3& to,
-                   double distance, std::array<int, BodyMoment::kListed>& found);
+                   double distance, std::array<int, BodyMoment::kListed>& found, double& loose);
 
 // How much farther a corner of a triangle comes than such a point [m].
 double strays(const BodyMoment& begin, const BodyMoment& end, const Vec3& way, int triangle);

@@ -64,12 +64,11 @@ void BodyProbe::look(const Look& look, int j, int i) {
   const Vec3 p = minus(at(row.x, i), {row.cx, row.cy, row.cz});
   const Vec3 path = times(minus(at(row.v, i), {row.ux, row.uy, row.uz}), row.dt);
   const double limit = std::max(double(row.offset) + row.bias, length(path) + look.body.travel);
-  const double moved = near.distance > 0 ? surface_.travel(near.time, look.s.time) : 0;
-  if (const double least = near.distance - distance_between(p, near.at) - moved;
-      least > limit && least > kWorn * near.distance) {
+  if (const double apart = near.apart(p, look.s.time); apart <= near.known) {
     constexpr double kRounding = 1 - 1e-6;
+    const double least = near.distance - apart - near.loose;
     distance_[lane] = float(least * kRounding);
-    return;
+    if (least > limit) return;
   }
   const Vec3 before = minus(p, path);
   BodyPassage::Meeting m = look.body.meet(before, p, [&](const BodyMoment& moment, const Vec3& q) {
@@ -85,32 +84,37 @@ void BodyProbe::look(const Look& look, int j, int i) {
     put(velocity_, j, i, times(look.body.way(m.now.triangle, m.now.weights), 1 / look.s.dt));
 }
 
+double BodyProbe::Near::apart(const Vec3& p, double when) const {
+  if (!(when >= begin && when <= end)) return 1e300;
+  return distance_between(p, plus(at, times(drift, when - time)));
+}
+
 // What is found now is what is kept.
 BodyMoment::Point BodyProbe::nearest(Near& near, const Look& look, bool now, const Vec3& p) {
   const BodyMoment& moment = now ? look.body.now : look.body.before;
   const double time = now ? look.s.time : look.s.time - look.s.dt;
-  if (near.listed > 0 && time >= near.begin && time <= near.end &&
-      2 * distance_between(p, plus(near.at, times(near.drift, time - near.time))) <= near.margin)
+  if (near.listed > 0 && 2 * near.apart(p, time) <= near.margin)
     return moment.nearest_among({near.list.data(), std::size_t(near.listed)}, p);
   const BodyMoment::Point point = moment.nearest(p, near.triangle);
   if (!now) return point;
   near.at = p;
-  near.drift = {};
   near.time = time;
   near.distance = point.distance;
   near.triangle = point.triangle;
-  near.listed = 0;
-  if (std::abs(point.distance) > surface_.mean_edge()) return point;
   if (look.body.moves())
-    list_moving(near, look, point);
+    know_moving(near, look, point);
   else
-    list_standing(near, look);
+    know_standing(near, look);
   return point;
 }
 
-void BodyProbe::list_standing(Near& near, const Look& look) const {
+// Far off no list is made: it would be long.
+void BodyProbe::know_standing(Near& near, const Look& look) const {
   near.begin = -1e300;
   near.end = 1e300;
+  near.listed = 0;
+  near.known = (1 - kWorn) * near.distance;
+  if (std::abs(near.distance) > surface_.mean_edge()) return;
   near.margin = kMargin * surface_.mean_edge();
   for (int n = 0; n <= kHalvings && near.listed <= 0; ++n) {
     if (n > 0) near.margin /= 2;
@@ -119,13 +123,12 @@ void BodyProbe::list_standing(Near& near, const Look& look) const {
 }
 
 // Parts that overlap may take turns at being nearest in ways that no list bounds.
-void BodyProbe::list_moving(Near& near, const Look& look, const BodyMoment::Point& point) const {
+void BodyProbe::know_moving(Near& near, const Look& look, const BodyMoment::Point& point) const {
   const BodyMoment& now = look.body.now;
-  if (now.form().parts.size() > 1) return;
   const bool one_way = look.body.before.on_one_way(now);
   const BodyMoment& begin = one_way ? look.body.before : now;
   const BodyMoment end = now.at_end();
-  near.begin = one_way ? look.s.time - look.s.dt : look.s.time;
+  near.begin = now.form().parts.size() > 1 ? 1e300 : look.s.time - (one_way ? look.s.dt : 0);
   near.end = now.end();
   const double left = near.end - near.begin;
   const Vec3 way =
@@ -133,12 +136,11 @@ void BodyProbe::list_moving(Near& near, const Look& look, const BodyMoment::Poin
   near.drift = left < 1e100 ? times(way, 1 / left) : Vec3{};
   const Vec3 from = plus(near.at, times(near.drift, near.begin - near.time));
   const double strayed = strays(begin, end, way, point.triangle);
-  near.margin = kMargin * surface_.mean_edge();
-  for (int n = 0; n <= kHalvings && near.listed <= 0; ++n) {
-    if (n > 0) near.margin /= 2;
-    near.listed = within_between(begin, end, from, plus(from, way),
-                                 std::abs(near.distance) + 2 * strayed + near.margin, near.list);
-  }
+  near.margin = std::max(kMargin * surface_.mean_edge(), (1 - kWorn) * near.distance);
+  near.known = near.margin / 2;
+  near.listed =
+      within_between(begin, end, from, plus(from, way),
+                     std::abs(near.distance) + 2 * strayed + near.margin, near.list, near.loose);
 }
 
 }  // namespace weft::physics

@@ -43,7 +43,7 @@ Pair nearest_to_edge(const Corners& c, std::size_t k, const Vec3& p, const Vec3&
 class Search {
  public:
   Search(const BodyPassage& body, const Corners& c, double offset, double edge)
-      : body_(body), c_(c), edge_(std::max(edge, longest_side(c.x))) {
+      : body_(body), c_(c), longest_(longest_side(c.x)), edge_(std::max(edge, longest_)) {
     found_.nearest.distance = offset;
   }
 
@@ -70,8 +70,10 @@ class Search {
   void look(const Feature& f, const Pair& pair) {
     if (!pair.inner) return;
     const Vec3 here = c_.at(pair.weights), out = minus(pair.on, here);
-    const double square = dot(out, out), through = dot(out, f.normal);
+    const double square = dot(out, out);
     if (square > reach_ * reach_) return;
+    const Vec3 normal = body_.now.outward(f);
+    const double through = dot(out, normal);
     const bool pierces = body_.now.closed() && through > 0;
     const double most = std::max(found_.nearest.distance, 0.0);
     if (body_.now.closed() && !pierces && square > most * most) return;
@@ -84,15 +86,15 @@ class Search {
     };
     const BodyMoment::Point point = body_.meet(before, here, nearest).now;
     Nearest deep{point.distance, point.normal};
-    if (pierces && point.distance < 0 && dot(minus(pair.on, before), f.normal) < kHardly * edge_)
-      deep = {std::min(-through, point.distance), f.normal};
+    if (pierces && point.distance < 0 && dot(minus(pair.on, before), normal) < kHardly * edge_)
+      deep = {std::min(-through, point.distance), normal};
     if (deep.distance < found_.nearest.distance)
       found_ = {{pair.weights, deep}, body_.way(point.triangle, point.weights)};
   }
 
   const BodyPassage& body_;
   const Corners& c_;
-  double edge_, reach_ = 0;  // m
+  double longest_, edge_, reach_ = 0;  // m
   DeepestOnBody found_;
 };
 
