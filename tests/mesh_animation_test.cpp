@@ -261,14 +261,14 @@ TEST(MeshAnimation, ASnapshotGoesOnInTheMidst) {
   advance(simulation, 0.2);
   const Snapshot midst = simulation.snapshot();
   advance(simulation, 0.5);
-  const std::uint64_t end = simulation.hash();
   simulation.restore(midst);
-  advance(simulation, 0.5);
-  EXPECT_EQ(simulation.hash(), end);
   Simulation other(swinging());
   other.restore(midst);
-  advance(other, 0.5);
-  EXPECT_EQ(other.hash(), end);
+  for (int n = 0; n < 15; ++n) {
+    simulation.advance_frame();
+    other.advance_frame();
+    ASSERT_EQ(simulation.hash(), other.hash()) << n;
+  }
 }
 
 TEST(MeshAnimation, ARecordingCarriesIt) {

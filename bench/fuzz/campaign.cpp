@@ -11,6 +11,7 @@
 #include "failure.h"
 #include "random_mesh.h"
 #include "random_scene.h"
+#include "weft/point_cache.h"
 #include "weft/read_scene.h"
 
 namespace fuzz {
