@@ -7,9 +7,10 @@
 namespace weft::physics {
 namespace {
 
-constexpr double kMargin = 0.25;  // of the body's mean edge, at most: lists are to be short
-constexpr int kHalvings = 2;      // of the margin, where a list would be long
-constexpr double kWorn = 0.5;     // of a distance: what is left of it where it is measured again
+constexpr double kMargin = 0.25;   // of the body's mean edge, at most: lists are to be short
+constexpr double kMostMargin = 1;  // the same, of a body that moves
+constexpr int kHalvings = 2;       // of the margin, where a list would be long
+constexpr double kWorn = 0.5;      // of a distance: what is left of it where it is measured again
 
 Vec3 at(ConstRow3 r, int i) {
   return {r.x[i], r.y[i], r.z[i]};
@@ -136,7 +137,8 @@ void BodyProbe::know_moving(Near& near, const Look& look, const BodyMoment::Poin
   near.drift = left < 1e100 ? times(way, 1 / left) : Vec3{};
   const Vec3 from = plus(near.at, times(near.drift, near.begin - near.time));
   const double strayed = strays(begin, end, way, point.triangle);
-  near.margin = std::max(kMargin * surface_.mean_edge(), (1 - kWorn) * near.distance);
+  const double far = (1 - kWorn) * near.distance;
+  near.margin = std::clamp(far, kMargin * surface_.mean_edge(), kMostMargin * surface_.mean_edge());
   near.known = near.margin / 2;
   near.listed =
       within_between(begin, end, from, plus(from, way),
