@@ -97,8 +97,7 @@ class SquareTriangles final : public ColliderTriangles {
     const float near = way > 0.5f * f.row.shape.thin ? way : -f.slack;
     for (int pass = 0; pass < passes(longest); ++pass)
       for (int i = 0; i + 1 < l.columns; ++i) {
-        if (f.bound[0][i] < near && edges_.whole(i, j, 0))
-          lift(row, {j, j, j + 1}, {i, i + 1, i});
+        if (f.bound[0][i] < near && edges_.whole(i, j, 0)) lift(row, {j, j, j + 1}, {i, i + 1, i});
         if (f.bound[1][i] < near && edges_.whole(i, j, 1))
           lift(row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
       }
