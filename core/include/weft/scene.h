@@ -288,9 +288,9 @@ struct Collider {
   double offset = 0;  // m; the cloth is kept this far off the surface
   // Path of the sphere's or box's center, the plane's point, the capsule's or cylinder's a, the mesh's translate.
   std::vector<Key> keys;
+  bool cuts = false;  // cuts the constraints that pass through it instead of pushing
   // Of a mesh: where its vertices are over time, placed as it is: .pc2 or .mdd, beside the scene file or absolute.
   std::string animation{};
-  bool cuts = false;  // cuts the constraints that pass through it instead of pushing
   friend bool operator==(const Collider&, const Collider&) = default;
 };
 
