@@ -63,7 +63,8 @@ TEST(MeshBody, DistanceAndSideAreThoseOfAllTriangles) {
 TEST(MeshBody, HintsAndListsChangeNothing) {
   const auto mesh =
       tests::together(*tests::ball(31, 20, bumpy), *tests::ball(32, 24, spiky), {0.2, 0, 0});
-  const BodySurface surface(*mesh, mesh->vertices);
+  const BodySurface body(*mesh, mesh->vertices);
+  const physics::BodyMoment surface = body.at();
   std::mt19937 random(5);
   std::uniform_real_distribution<double> within(-0.6, 0.6);
   int listed = 0;
@@ -90,7 +91,7 @@ TEST(MeshBody, HintsAndListsChangeNothing) {
 
 TEST(MeshBody, NormalIsTheGradientOfTheDistance) {
   const Collider body = body_of(tests::ball(40, 30, bumpy));
-  const auto& surface = *std::get<MeshBody>(body.shape).surface;
+  const physics::BodyMoment surface = std::get<MeshBody>(body.shape).surface->at();
   std::mt19937 random(7);
   std::uniform_real_distribution<double> within(-0.6, 0.6);
   int smooth = 0;

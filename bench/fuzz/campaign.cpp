@@ -11,6 +11,7 @@
 #include "failure.h"
 #include "random_mesh.h"
 #include "random_scene.h"
+#include "weft/point_cache.h"
 #include "weft/read_scene.h"
 
 namespace fuzz {
@@ -62,6 +63,9 @@ std::string examined(const Case& c, Variants variants, const std::string& folder
   std::string text = weft::write_scene_text(c.scene);
   weft::for_each_mesh(
       c.scene, [&](const auto& mesh, const std::string&) { text += weft::write_obj(*mesh.shape); });
+  for (const weft::Collider& collider : c.scene.colliders)
+    if (const auto* body = std::get_if<weft::MeshBody>(&collider.shape); body && body->motion)
+      text += weft::mdd_bytes(*body->motion);
   const std::string scene = sixteen(text_hash(text));
   try {
     return scene + " " + sixteen(examine(c, variants, folder)) + " ok";

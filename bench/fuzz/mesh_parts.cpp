@@ -109,6 +109,11 @@ void Parts::add_meshes(Scene& scene) {
       Collider& c = scene.colliders[n];
       const Vec3 at = c.keys.empty() ? place_of(c.shape) : c.keys[0].position;
       c.shape = body(at, extent(scene.cloths[0]).size, "body" + std::to_string(n) + ".obj");
+      if (MeshBody& body = std::get<MeshBody>(c.shape); draw_.chance(0.4)) {
+        c.animation = "motion" + std::to_string(n) + ".mdd";
+        body.motion = random_motion(draw_, *body.shape, scene.time.frame);
+        body.surface = surface_of(body, scene.time.frame);
+      }
       if (c.offset < 1e-4 && draw_.chance(0.9))
         c.offset = std::min(1.0, spacing_ * draw_.decades(0.01, 1));
     }

@@ -1,12 +1,15 @@
 #include "random_mesh.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <numbers>
 #include <set>
 #include <utility>
 #include <vector>
+
+#include "weft/point_cache.h"
 
 namespace fuzz {
 
@@ -148,20 +151,47 @@ std::shared_ptr<const TriangleMesh> random_body(Draw& draw) {
   return as_read(mesh);
 }
 
+std::shared_ptr<const PointCache> random_motion(Draw& draw, const TriangleMesh& mesh,
+                                                double frame) {
+  auto motion = std::make_shared<PointCache>();
+  motion->points = int(mesh.vertices.size());
+  const double step = draw.decades(0.2, 20) * frame;
+  const double shaken = draw.chance(0.3) ? draw.uniform(0, 0.05) : 0;
+  const double angle = draw.uniform(-0.5, 0.5), growth = draw.decades(0.8, 1.25);
+  double size = 1, turn = 0;
+  Vec3 at{};
+  for (int n = draw.between(1, 8), k = 0; k < n; ++k) {
+    motion->times.push_back(float(step * (k + 1)));
+    const double c = std::cos(turn), s = std::sin(turn);
+    for (const Vec3& p : mesh.vertices) {
+      const Vec3 q{c * p[0] + s * p[2], p[1], c * p[2] - s * p[0]};
+      PointCache::Place& place = motion->places.emplace_back();
+      for (std::size_t m = 0; m < 3; ++m)
+        place[m] = float(size * q[m] + at[m] + shaken * draw.uniform(-1, 1));
+    }
+    size *= growth;
+    turn += angle;
+    for (double& value : at) value += draw.uniform(-0.1, 0.1);
+  }
+  return motion;
+}
+
 void adopt_meshes(Scene& to, const Scene& from) {
-  std::map<std::string, std::shared_ptr<const TriangleMesh>> read;
-  for_each_mesh(from, [&](const auto& mesh, const std::string&) { read[mesh.file] = mesh.shape; });
-  for_each_mesh(to, [&](auto& mesh, const std::string&) {
-    mesh.shape = read[mesh.file];
-    if constexpr (std::is_same_v<decltype(mesh), MeshBody&>)
-      if (mesh.shape) mesh.surface = surface_of(mesh);
-  });
+  MeshStore read;
+  read.take(from);
+  read.give(to);
+  std::vector<Fault> faults;
+  std::vector<std::string> notes;
+  load_meshes(to, "", faults, notes);
 }
 
 void write_meshes(const Scene& scene, const std::string& folder) {
   for_each_mesh(scene, [&](const auto& mesh, const std::string&) {
     std::ofstream(folder + "/" + mesh.file) << write_obj(*mesh.shape);
   });
+  for (const Collider& c : scene.colliders)
+    if (const auto* body = std::get_if<MeshBody>(&c.shape); body && body->motion)
+      std::ofstream(folder + "/" + c.animation, std::ios::binary) << mdd_bytes(*body->motion);
 }
 
 }  // namespace fuzz

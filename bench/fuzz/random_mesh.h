@@ -17,6 +17,10 @@ std::shared_ptr<const weft::TriangleMesh> random_sheet(Draw& draw, int nx, int n
 // About as large as the unit ball: closed and round, or a sheet.
 std::shared_ptr<const weft::TriangleMesh> random_body(Draw& draw);
 
+// A way that the vertices of a mesh go: it turns, grows, shrinks, is moved and shaken. `frame` [s]: of the scene.
+std::shared_ptr<const weft::PointCache> random_motion(Draw& draw, const weft::TriangleMesh& mesh,
+                                                      double frame);
+
 // Meshes of a scene are known by the names of their files. Gives those of `to` what `from` has read.
 void adopt_meshes(weft::Scene& to, const weft::Scene& from);
 

@@ -119,6 +119,8 @@ Scene random_scene(std::uint64_t seed) {
     for_each_mesh(scene, [&](auto& mesh, const std::string&) {
       mesh.file = std::to_string(seed) + "-" + mesh.file;
     });
+    for (Collider& c : scene.colliders)
+      if (!c.animation.empty()) c.animation = std::to_string(seed) + "-" + c.animation;
     return scene;
   }
 }

@@ -6,10 +6,12 @@
 #include <map>
 #include <optional>
 
+#include "output/base64.h"
 #include "output/hex.h"
 #include "output/input_names.h"
 #include "scene/json_text.h"
 #include "weft/mesh.h"
+#include "weft/point_cache.h"
 #include "weft/read_scene.h"
 #include "weft/recording.h"
 
@@ -68,50 +70,73 @@ struct Value {
   }
 };
 
-// Meshes by the names of their files.
-using Meshes = std::map<std::string, std::shared_ptr<const TriangleMesh>>;
-
 // What a line is read with: the file's version, and the scene that runs when it comes.
 struct Context {
   int version;
   const Scene* scene;
-  Meshes meshes;  // of the lines so far
+  MeshStore meshes;  // of the lines so far
 };
 
 [[noreturn]] void fail(const std::string& place, const Fault& fault) {
   fail(place + fault.place, fault.what, fault.allowed);
 }
 
-// The meshes that a line carries.
-void read_meshes(const Value& line, Meshes& meshes) {
-  if (text::member(*line.json, "meshes") == nullptr) return;
-  const Value carried = line.at("meshes");
+// Calls visit(place, file, text) for what a line carries under a key.
+template <class Visit>
+void for_each_text(const Value& line, const char* key, Visit&& visit) {
+  if (text::member(*line.json, key) == nullptr) return;
+  const Value carried = line.at(key);
   if (!carried.json->is_object())
     fail(carried.place, text::brief(*carried.json) + " is out of place", "an object");
   for (const auto& [file, text] : carried.json->items()) {
     const std::string place = text::join(carried.place, file);
-    if (!text.is_string()) fail(place, text::brief(text) + " is out of place", "text of a mesh");
-    MeshFile read = read_obj(text.get_ref<const std::string&>(), file);
-    if (!read.faults.empty()) fail(place, read.faults[0].what, read.faults[0].allowed);
-    meshes[file] = std::make_shared<const TriangleMesh>(std::move(read.mesh));
+    if (!text.is_string()) fail(place, text::brief(text) + " is out of place", "text of a file");
+    visit(place, file, text.template get_ref<const std::string&>());
   }
 }
 
+// The meshes that a line carries, and the animations.
+void read_meshes(const Value& line, MeshStore& meshes) {
+  for_each_text(line, "meshes",
+                [&](const std::string& place, const std::string& file, const std::string& text) {
+                  MeshFile read = read_obj(text, file);
+                  if (!read.faults.empty())
+                    fail(place, read.faults[0].what, read.faults[0].allowed);
+                  meshes.shapes[file] = std::make_shared<const TriangleMesh>(std::move(read.mesh));
+                });
+  for_each_text(line, "animations",
+                [&](const std::string& place, const std::string& file, const std::string& text) {
+                  const std::optional<std::string> bytes = from_base64(text);
+                  if (!bytes) fail(place, "the text is no base64", "the bytes of an .mdd file");
+                  PointCacheFile read = parse_point_cache(*bytes, "carried.mdd", kAnyPoints);
+                  if (!read.cache) fail(place, read.faults[0].what, read.faults[0].allowed);
+                  PointCache cache = *read.cache;
+                  cache.in_frames = file.ends_with(".pc2");
+                  meshes.motions[file] = std::make_shared<const PointCache>(std::move(cache));
+                });
+}
+
 // A scene with its meshes, which its line or one before carries.
-Scene scene_of(const Value& value, const Meshes& meshes) {
+Scene scene_of(const Value& value, const MeshStore& meshes) {
   if (!value.json->is_object())
     fail(value.place, text::brief(*value.json) + " is out of place", "a scene");
   SceneFile file = read_scene_text(value.json->dump());
   if (!file.faults.empty()) fail(value.place, file.faults[0]);
+  meshes.give(file.scene);
   bool any = false;
-  for_each_mesh(file.scene, [&](MeshSource& mesh, const std::string& place) {
-    const auto found = meshes.find(mesh.file);
-    if (found == meshes.end())
+  for_each_mesh(file.scene, [&](const MeshSource& mesh, const std::string& place) {
+    if (!mesh.shape)
       fail(value.place + place + "/file", "the mesh is missing",
            "a file in meshes, of this line or one before");
-    mesh.shape = found->second;
     any = true;
   });
+  for (std::size_t n = 0; n < file.scene.colliders.size(); ++n) {
+    const Collider& collider = file.scene.colliders[n];
+    const MeshBody* body = std::get_if<MeshBody>(&collider.shape);
+    if (body && !body->motion && !collider.animation.empty())
+      fail(value.place + "/colliders/" + std::to_string(n) + "/animation",
+           "the animation is missing", "a file in animations, of this line or one before");
+  }
   load_meshes(file.scene, "", file.faults, file.notes);
   if (any)
     if (const auto faults = validate(file.scene); !faults.empty()) fail(value.place, faults[0]);

@@ -6,10 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "output/base64.h"
 #include "output/hex.h"
 #include "output/input_names.h"
 #include "scene/json_text.h"
 #include "weft/mesh.h"
+#include "weft/point_cache.h"
 #include "weft/read_scene.h"
 
 namespace weft {
@@ -48,15 +50,20 @@ Json input_json(const Input& input) {
 
 // Meshes by the names of their files alone.
 Scene without_folders(Scene scene) {
-  for_each_mesh(scene, [](MeshSource& mesh, const std::string&) {
-    mesh.file = std::filesystem::path(mesh.file).filename().string();
-  });
+  for_each_mesh_file(
+      scene, [](std::string& file) { file = std::filesystem::path(file).filename().string(); });
   return scene;
 }
 
 bool same_shape(const MeshSource& a, const MeshSource& b) {
   if (!a.shape || !b.shape) return true;  // not read
   return a.shape->vertices == b.shape->vertices && a.shape->triangles == b.shape->triangles;
+}
+
+bool same_motion(const Collider& a, const Collider& b) {
+  const auto *one = std::get_if<MeshBody>(&a.shape), *two = std::get_if<MeshBody>(&b.shape);
+  if (!one || !two || !one->motion || !two->motion) return true;
+  return one->motion->times == two->motion->times && one->motion->places == two->motion->places;
 }
 
 }  // namespace
@@ -93,21 +100,24 @@ void apply(const Input& input, Simulation& simulation) {
 Recorder::Recorder(const std::string& path, const Simulation& simulation) : file_(path) {
   Json header{{"weft_recording", 2}, {"seed", simulation.options().seed}};
   if (Json meshes = new_meshes(simulation.scene()); !meshes.empty()) header["meshes"] = meshes;
+  if (Json all = new_animations(simulation.scene()); !all.empty()) header["animations"] = all;
   header["scene"] = scene_json(simulation.scene());
   file_.write(header.dump() + "\n");
 }
 
 void Recorder::input(std::int64_t frame, const Input& input) {
   Json line{{"frame", frame}};
-  if (input.scene)
+  if (input.scene) {
     if (Json meshes = new_meshes(*input.scene); !meshes.empty()) line["meshes"] = meshes;
+    if (Json all = new_animations(*input.scene); !all.empty()) line["animations"] = all;
+  }
   line[kInputNames[static_cast<std::size_t>(input.kind)]] = input_json(input);
   file_.write(line.dump() + "\n");
 }
 
 // Texts by file, of the scene's meshes that no line has yet.
-std::map<std::string, std::string> Recorder::new_meshes(const Scene& scene) {
-  std::map<std::string, std::string> texts;
+Recorder::Texts Recorder::new_meshes(const Scene& scene) {
+  Texts texts;
   for_each_mesh(scene, [&](const MeshSource& mesh, const std::string&) {
     const auto& [file, shape] = std::tie(mesh.file, mesh.shape);
     if (meshes_[file] == shape) return;
@@ -117,6 +127,22 @@ std::map<std::string, std::string> Recorder::new_meshes(const Scene& scene) {
     if (texts[file].size() > text::kMaxTextBytes / 2)
       throw WriteError(path(), file + ": the mesh is too large for a recording (32 MiB of text)");
   });
+  return texts;
+}
+
+// The same of animations.
+Recorder::Texts Recorder::new_animations(const Scene& scene) {
+  Texts texts;
+  for (const Collider& collider : scene.colliders) {
+    const MeshBody* body = std::get_if<MeshBody>(&collider.shape);
+    const std::string& file = collider.animation;
+    if (!body || !body->motion || animations_[file] == body->motion) continue;
+    if (file.empty()) throw WriteError(path(), "an animation that is of no file is not recorded");
+    animations_[file] = body->motion;
+    texts[file] = base64(mdd_bytes(*body->motion));
+    if (texts[file].size() > text::kMaxTextBytes / 2)
+      throw WriteError(path(), file + ": the animation is too large for a recording (24 MiB)");
+  }
   return texts;
 }
 
@@ -147,6 +173,9 @@ std::string difference(const Scene& a, const Scene& b) {
   for_each_mesh(b, [&](const MeshSource& mesh, const std::string& here) {
     if (!same_shape(*of_a[n++], mesh) && place.empty()) place = here + "/file";
   });
+  for (n = 0; n < a.colliders.size() && place.empty(); ++n)
+    if (!same_motion(a.colliders[n], b.colliders[n]))
+      place = "/colliders/" + std::to_string(n) + "/animation";
   return place;
 }
 

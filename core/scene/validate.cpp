@@ -12,6 +12,7 @@
 #include "scene/document.h"
 #include "scene/fields.h"
 #include "scene/material.h"
+#include "scene/mesh/animation.h"
 #include "scene/mesh/faces.h"
 #include "scene/mesh/refused.h"
 #include "scene/vectors.h"
@@ -231,6 +232,9 @@ class Together {
     if (pin.follow >= colliders)
       fault(here + "/follow", "there is no collider " + std::to_string(pin.follow),
             colliders == 0 ? "the scene has none" : "0 to " + std::to_string(colliders - 1));
+    else if (pin.follow >= 0 && !scene_.colliders[std::size_t(pin.follow)].animation.empty())
+      fault(here + "/follow", "collider " + std::to_string(pin.follow) + " has an animation",
+            "a collider that moves as it is, or keys of the pin's own");
   }
 
   template <class AnyKey>
@@ -258,6 +262,7 @@ class Together {
             "both above 0, or neither");
     if (sound({place + "/keys"})) keys(collider.keys, place + "/keys");
     std::visit([&](const auto& shape) { this->shape(shape, place); }, collider.shape);
+    if (sound({place + "/animation"})) check_animation(collider, place + "/animation", result_);
     if (sound({place + "/offset"})) offset(collider, place);
     if (collider.cuts && sound({place})) cutter(collider, place);
   }

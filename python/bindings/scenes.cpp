@@ -39,9 +39,7 @@ void read_meshes(SceneFile& file) {
 // A scene that has left its file: meshes are no longer beside it.
 Scene with_full_paths(SceneFile file) {
   const std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
-  for_each_mesh(file.scene, [&](MeshSource& mesh, const std::string&) {
-    if (!file.path.empty()) mesh.file = std::filesystem::absolute(folder / mesh.file).string();
-  });
+  if (!file.path.empty()) use_full_paths(file.scene, folder.string());
   return std::move(file.scene);
 }
 

@@ -109,12 +109,9 @@ void set_value(Shared& shared, const std::string& pointer, const py::object& val
   const Override change{pointer, json_text(value)};
   shared.call([&](Simulation& s) {
     SceneFile file = read_scene_text(write_scene_text(s.scene()), {change});
-    std::map<std::string, std::shared_ptr<const TriangleMesh>> shapes;
-    for_each_mesh(s.scene(), [&](const MeshSource& mesh, const std::string&) {
-      shapes[mesh.file] = mesh.shape;
-    });
-    for_each_mesh(file.scene,
-                  [&](MeshSource& mesh, const std::string&) { mesh.shape = shapes[mesh.file]; });
+    MeshStore known;
+    known.take(s.scene());
+    known.give(file.scene);
     load_meshes(file.scene, "", file.faults, file.notes);
     if (!file.faults.empty()) throw SceneError(std::move(file.faults));
     s.set_scene(std::move(file.scene));

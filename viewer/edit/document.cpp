@@ -63,11 +63,9 @@ std::vector<Fault> Document::open(const std::string& path_or_name,
   shipped_ = false;
   for (const ShippedScene& shipped : shipped_scenes()) shipped_ = shipped_ || shipped.path == path_;
   scene_ = std::move(file.scene);
-  meshes_.clear();
-  for_each_mesh(scene_, [&](MeshSource& mesh, const std::string&) {
-    mesh.file = fs::absolute(fs::path(path_).parent_path() / mesh.file).string();
-    meshes_[mesh.file] = mesh.shape;
-  });
+  use_full_paths(scene_, fs::path(path_).parent_path().string());
+  meshes_ = {};
+  meshes_.take(scene_);
   notes_ = std::move(file.notes);
   name_ = scene_.name.empty() ? fs::path(path_).stem().string() : scene_.name;
   json_ = text::document_of(scene_);
@@ -149,16 +147,11 @@ void Document::take(std::size_t position) {
 }
 
 std::vector<Fault> Document::read_meshes(Scene& scene) {
-  for_each_mesh(scene, [&](MeshSource& mesh, const std::string&) {
-    if (const auto known = meshes_.find(mesh.file); known != meshes_.end())
-      mesh.shape = known->second;
-  });
+  meshes_.give(scene);
   std::vector<Fault> faults;
   std::vector<std::string> notes;
   load_meshes(scene, fs::path(path_).parent_path().string(), faults, notes);
-  for_each_mesh(scene, [&](const MeshSource& mesh, const std::string&) {
-    if (mesh.shape) meshes_[mesh.file] = mesh.shape;
-  });
+  meshes_.take(scene);
   return faults;
 }
 
@@ -177,9 +170,9 @@ std::string Document::next_undo() const {
 std::string Document::text_for(const std::string& path) const {
   Scene scene = scene_;
   const fs::path folder = fs::absolute(path).parent_path();
-  for_each_mesh(scene, [&](MeshSource& mesh, const std::string&) {
-    const fs::path beside = fs::path(mesh.file).lexically_relative(folder);
-    if (!beside.empty() && *beside.begin() != "..") mesh.file = beside.string();
+  for_each_mesh_file(scene, [&](std::string& file) {
+    const fs::path beside = fs::path(file).lexically_relative(folder);
+    if (!beside.empty() && *beside.begin() != "..") file = beside.string();
   });
   return write_scene_text(scene);
 }

@@ -78,7 +78,7 @@ class Document {
   text::Json json_;
   std::vector<std::string> notes_;
   Scene scene_;
-  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;  // by the name of the file
+  MeshStore meshes_;  // that are read
   std::string path_, name_;
   bool shipped_ = false;
   std::vector<State> history_;

@@ -87,11 +87,12 @@ void copy_view(const View& view, const Scene& scene, FrameData& to) {
 }
 
 Collider collider_at(const Collider& collider, double time) {
-  return {moved(collider.shape, displacement(collider, time)),
-          collider.friction,
-          collider.offset,
-          {},
-          collider.cuts};
+  Collider now;
+  now.shape = at_time(moved(collider.shape, displacement(collider, time)), time);
+  now.friction = collider.friction;
+  now.offset = collider.offset;
+  now.cuts = collider.cuts;
+  return now;
 }
 
 Shape about_its_place(const Shape& shape) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -60,15 +61,38 @@ void for_each_mesh(AnyScene& scene, Visit&& visit) {
       visit(*body, "/colliders/" + std::to_string(c) + "/mesh");
 }
 
-// What is asked of the surface of a body, whose mesh is read, scaled and turned, about its place.
-std::shared_ptr<const BodySurface> surface_of(const MeshBody& body);
+// Calls visit(name) for the name of every file of meshes and animations.
+template <class Visit>
+void for_each_mesh_file(Scene& scene, Visit&& visit) {
+  for_each_mesh(scene, [&](MeshSource& mesh, const std::string&) { visit(mesh.file); });
+  for (Collider& collider : scene.colliders)
+    if (!collider.animation.empty()) visit(collider.animation);
+}
+
+// What is asked of the surface of a body, whose mesh and motion are read, scaled and turned, about its place.
+// `frame` [s]: of the scene, which is the unit of time of some motions.
+std::shared_ptr<const BodySurface> surface_of(const MeshBody& body, double frame = 1.0 / 60);
 
 // The edges that one triangle alone has, by the numbers of their vertices in the file from 0 on; none: the
 // body is closed.
 std::span<const std::array<int, 2>> open_edges(const BodySurface& surface);
 
-// Reads the meshes of a scene that have no shape yet, files beside `folder` where they are not absolute, and
-// makes the surfaces of bodies. Faults have the place in the scene, and where in the file.
+// Meshes and motions by the names of their files, for scenes that come from the same files.
+struct MeshStore {
+  std::map<std::string, std::shared_ptr<const TriangleMesh>> shapes;
+  std::map<std::string, std::shared_ptr<const PointCache>> motions;
+  // What a scene has.
+  void take(const Scene& scene);
+  // To the meshes of a scene that have nothing yet.
+  void give(Scene& scene) const;
+};
+
+// Names the files of meshes and animations by their whole paths, where they lie beside `folder`.
+void use_full_paths(Scene& scene, const std::string& folder);
+
+// Reads the meshes of a scene that have no shape yet, and the animations of bodies, files beside `folder`
+// where they are not absolute, and makes the surfaces of bodies. Faults have the place in the scene, and
+// where in the file.
 void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& faults,
                  std::vector<std::string>& notes);
 

@@ -50,10 +50,14 @@ class Recorder {
   const std::string& path() const { return file_.path(); }
 
  private:
-  std::map<std::string, std::string> new_meshes(const Scene& scene);
+  using Texts = std::map<std::string, std::string>;
+  Texts new_meshes(const Scene& scene);
+  Texts new_animations(const Scene& scene);
 
   OutputFile file_;
-  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;  // that are written, by file
+  // That are written, by file.
+  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
+  std::map<std::string, std::shared_ptr<const PointCache>> animations_;
 };
 
 // A recording cannot be read: what() says where and why.

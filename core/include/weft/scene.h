@@ -98,8 +98,8 @@ struct Membrane {
   double warp = 0;  // N/m, C11
   double weft = 0;  // N/m, C22
   double coupling =
-      0;  // N/m, C12; |C12| is at most the root of C11 C22, where the energy stays above zero
-  double shear = 0;    // N/m, C66
+      0;             // N/m, C12; |C12| is at most the root of C11 C22: the energy stays above zero
+  double shear = 0;  // N/m, C66
   double damping = 0;  // s
   bool given() const { return warp > 0 || weft > 0 || shear > 0; }
   friend bool operator==(const Membrane&, const Membrane&) = default;
@@ -227,15 +227,19 @@ struct Box {
 };
 
 class BodySurface;  // of a mesh, made ready for questions about distances (load_meshes())
+struct PointCache;  // weft/point_cache.h
 
 // A body of any shape: the triangles of a mesh file. Where every edge has two triangles, it is closed, and
 // the cloth is kept out of it, whichever way its faces look; else it is a surface without an inside, which
 // cloth does not cross: what is on one side of it stays there. Its place is `translate`. Parts of a closed
 // one may overlap. At least one triangle, edges of at least 1e-6 m.
 struct MeshBody : MeshSource {
-  std::shared_ptr<const BodySurface> surface{};  // of `shape`, scaled and turned (load_meshes())
+  std::shared_ptr<const PointCache> motion{};  // of its vertices, as read; null: it keeps its form
+  std::shared_ptr<const BodySurface> surface{};  // of both, scaled and turned (load_meshes())
+  double time = 0;  // s; what is asked of the shape by itself is asked of it as it is then
   friend bool operator==(const MeshBody& a, const MeshBody& b) {
-    return static_cast<const MeshSource&>(a) == static_cast<const MeshSource&>(b);
+    return static_cast<const MeshSource&>(a) == static_cast<const MeshSource&>(b) &&
+           a.time == b.time && (!a.file.empty() || a.motion == b.motion);
   }
 };
 
@@ -282,10 +286,11 @@ struct Collider {
   Shape shape;
   Friction friction;
   double offset = 0;  // m; the cloth is kept this far off the surface
-  std::vector<Key>
-      keys;  // path of the sphere's or box's center, the plane's point, the capsule's or cylinder's a, the
-             // mesh's translate
+  // Path of the sphere's or box's center, the plane's point, the capsule's or cylinder's a, the mesh's translate.
+  std::vector<Key> keys;
   bool cuts = false;  // cuts the constraints that pass through it instead of pushing
+  // Of a mesh: where its vertices are over time, placed as it is: .pc2 or .mdd, beside the scene file or absolute.
+  std::string animation{};
   friend bool operator==(const Collider&, const Collider&) = default;
 };
 
@@ -307,11 +312,10 @@ struct Solver {
   bool tethers = false;               // one-sided distance to the pins (positional, compliant)
   int order = 1;                      // 2: second-order substep (compliant)
   int iterations = 1;                 // constraint sweeps per substep, 1 … 1000
-  // Methods spring and spring_friction: every iteration adds the spring forces again, so that stiffness
-  // and damping count `iterations` times (seed 000); false: springs have no iterations.
+  // Of springs: every iteration adds their forces again, which count `iterations` times (seed 000).
   bool iterate_springs = false;
-  // The same methods: the first substep adds a whole substep of acceleration to the velocities, as
-  // position Verlet does whose previous positions are its first (the course); false: half of one.
+  // Of springs: the first substep adds a whole substep of acceleration to the velocities, not half of one, as
+  // position Verlet does whose previous positions are its first (the course).
   bool full_first_kick = false;
   int collision_iterations = 1;  // passes over the colliders per substep, 1 … 100
   double sleep = 0;              // m/s; 0 … 1: row-blocks slower than this for half a second rest
@@ -320,7 +324,6 @@ struct Solver {
 };
 
 inline constexpr int kAutoSubsteps = 0;
-
 struct Time {
   double frame = 1.0 / 60;       // s; one frame, 1e-5 … 1
   int substeps = kAutoSubsteps;  // per frame, 1 … 100000; kAutoSubsteps: from the stability limit

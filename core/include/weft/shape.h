@@ -24,6 +24,9 @@ Vec3 place_of(const Shape& shape);
 // The shape moved by so much [m].
 Shape moved(Shape shape, const Vec3& by);
 
+// The shape as it is at a time [s] by its animation, where it has one.
+Shape at_time(Shape shape, double time);
+
 // How far a collider has moved along its keys at `time` [m]; zero without keys. Add it to the
 // positions of triangulate().
 Vec3 displacement(const Collider& collider, double time);

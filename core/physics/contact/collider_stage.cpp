@@ -10,7 +10,7 @@ namespace {
 std::string detail_of(const Collider& c) {
   return std::string(kShapeNames[c.shape.index()]) +
          (c.friction.model == FrictionModel::course ? ", course friction" : ", Coulomb friction") +
-         (c.keys.empty() ? "" : ", moving");
+         (c.keys.empty() ? "" : ", moving") + (c.animation.empty() ? "" : ", animated");
 }
 
 class ColliderStage final : public ParticlesStage {
@@ -23,14 +23,14 @@ class ColliderStage final : public ParticlesStage {
         collider_(parts, collider, start),
         far_(parts, collider_.fastest()),
         kernel_(kernel) {
-    if (const auto* body = std::get_if<MeshBody>(&collider.shape))
-      probe_ = std::make_unique<BodyProbe>(*body->surface, parts.particles);
+    if (const BodySurface* surface = surface_of(collider))
+      probe_ = std::make_unique<BodyProbe>(*surface, parts.particles);
   }
 
   void run(int j, const Substep& s) override {
     if (far_.skip(j, s)) return;
-    CollideRow row = collider_.row(parts_, j, s);
-    if (probe_) probe_->look(row, j);
+    ColliderRow row = collider_.row(parts_, j, s);
+    if (probe_) probe_->look(row, row.body, j, s);
     far_.found(j, s, kernel_(row));
   }
   std::size_t bytes() const override { return probe_ ? probe_->bytes() : 0; }

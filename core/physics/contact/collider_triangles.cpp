@@ -25,19 +25,19 @@ constexpr double kMostLever = 2;  // the greatest share of a corner; 1.37 where 
 constexpr double kSudden = 5;     // m/s; of a blow by something else than the collider
 constexpr double kShort = 1.5;    // times the flat ones: edges that need no reach of their own
 
-// Whether deepest_on() looks at the whole way of a triangle by itself.
-template <class Shape>
-constexpr bool follows_paths(const Shape&) {
-  return std::is_same_v<Shape, MeshBody>;
-}
-
 struct Touch {
   Weights weights{};
   Vec3 normal{};
   double depth = 0;  // m; > 0: to be lifted by, at the end of the substep
+  Vec3 way{};        // m; how far the surface there has come, beside the collider
 };
 
 // The first contact on the way of the triangle, seen from the collider.
+Touch first_touch(const BodyPassage& body, double offset, const Corners& end, double edge) {
+  const DeepestOnBody d = deepest_on(body, end, offset, edge);
+  if (d.nearest.distance >= offset) return {};
+  return {d.weights, d.nearest.normal, offset - d.nearest.distance, d.way};
+}
 template <class Shape>
 Touch first_touch(const Shape& shape, double offset, const Corners& end, int places, double edge,
                   double tolerance) {
@@ -48,7 +48,7 @@ Touch first_touch(const Shape& shape, double offset, const Corners& end, int pla
     const Deepest d = deepest_on(shape, c, offset, edge, tolerance);
     if (d.nearest.distance >= offset) continue;
     const double beyond = dot(minus(c.at(d.weights), end.at(d.weights)), d.nearest.normal);
-    return {d.weights, d.nearest.normal, offset - d.nearest.distance + std::max(0.0, beyond)};
+    return {d.weights, d.nearest.normal, offset - d.nearest.distance + std::max(0.0, beyond), {}};
   }
   return {};
 }
@@ -113,7 +113,7 @@ int ColliderTriangles::passes(double longest) const {
   return longest > AllowedDepth::kStretched * edge_ ? kPasses : 1;
 }
 
-void ColliderTriangles::lift(const CollideRow& r, const std::array<int, 3>& j,
+void ColliderTriangles::lift(const ColliderRow& r, const std::array<int, 3>& j,
                              const std::array<int, 3>& i) {
   for (int n = 0; n < kTurns && touch(r, j, i); ++n) continue;
 }
@@ -135,7 +135,7 @@ double ColliderTriangles::time_to_grow(int j, double by) const {
   return std::max(0.0, by) / (2 * greatest(cloth_.particles.v, j) + kSudden + collider_.fastest());
 }
 
-bool ColliderTriangles::touch(const CollideRow& r, const std::array<int, 3>& j,
+bool ColliderTriangles::touch(const ColliderRow& r, const std::array<int, 3>& j,
                               const std::array<int, 3>& i) {
   Particles& l = cloth_.particles;
   const Vec3 place{r.cx, r.cy, r.cz}, u{r.ux, r.uy, r.uz};
@@ -155,10 +155,13 @@ bool ColliderTriangles::touch(const CollideRow& r, const std::array<int, 3>& j,
   const bool stretched = longest > AllowedDepth::kStretched * edge_;
   Touch touch = std::visit(
       [&](const auto& shape) {
-        const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
-        const int places =
-            follows_paths(shape) ? 1 : clamp_to_int(std::ceil(2 * path / size), 1, kMostPlaces);
-        return first_touch(shape, offset, c, places, edge_, stretched ? kExact : kSteady);
+        if constexpr (std::is_same_v<decltype(shape), const MeshBody&>)
+          return first_touch(r.body, offset, c, edge_);
+        else {
+          const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
+          const int places = clamp_to_int(std::ceil(2 * path / size), 1, kMostPlaces);
+          return first_touch(shape, offset, c, places, edge_, stretched ? kExact : kSteady);
+        }
       },
       upright_.shape);
   if (touch.depth <= 0) return false;
@@ -172,6 +175,7 @@ bool ColliderTriangles::touch(const CollideRow& r, const std::array<int, 3>& j,
     greatest = std::max(greatest, share[k]);
     speed = plus(speed, times(v[k], touch.weights[k]));
   }
+  speed = minus(speed, times(touch.way, r.inverse_dt));
   if (mobility <= 0) return false;
   const bool lever = greatest > kMostLever * mobility;
   const double scale = lever ? kMostLever / greatest : 1 / mobility;

@@ -52,7 +52,7 @@ class ColliderTriangles : public RowStage {
   // How often the triangles of a row are gone through.
   int passes(double longest) const;
   // An edge or a corner of the collider leaves a triangle by one of its sides after another.
-  void lift(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i);
+  void lift(const ColliderRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i);
   const MovingCollider& collider() const { return collider_; }
   double edge() const { return edge_; }
   const AllowedDepth& allowed() const { return allowed_; }
@@ -75,7 +75,7 @@ class ColliderTriangles : public RowStage {
   double time_to_grow(int j, double by) const;
 
   // Lifts one triangle out once; whether it may be in by another side still.
-  bool touch(const CollideRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i);
+  bool touch(const ColliderRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i);
 
   ClothParts cloth_;
   MovingCollider collider_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/contact/body/body_passage.h"
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/collider_stage.h"
 #include "physics/model/path.h"
@@ -21,26 +22,31 @@ Vec3 rubbed(const Friction& friction, const Vec3& along, double pressed) {
   return times(along, std::max(0.0, 1 - friction.dynamic * pressed / size));
 }
 
-Nearest nearest_to(const Shape& shape, const Vec3& p) {
-  return std::visit([&](const auto& s) { return nearest_of(s, p); }, shape);
+// What a point is off a collider at least [m]: of a mesh known by less work than the distance.
+double least_distance(const BodySurface* body, double time, const Vec3& p) {
+  return body ? std::sqrt(body->at(time).bounds().square_from(p)) : 0;
 }
 
-// What a point is off a shape at least [m]: of a mesh known by less work than the distance.
-double least_distance(const Shape& shape, const Vec3& p) {
-  const MeshBody* body = std::get_if<MeshBody>(&shape);
-  return body ? std::sqrt(body->surface->bounds().square_from(p)) : 0;
+// Of the surface nearest to p, beside the collider's, over the substep that ends at a time [m/s].
+Vec3 velocity_at(const BodySurface& body, double time, double dt, const Vec3& p) {
+  if (!body.moves()) return {};
+  const BodyPassage passage{body.at(time - dt), body.at(time), 0};
+  const BodyMoment::Point point = passage.now.nearest(p);
+  return times(passage.way(point.triangle, point.weights), 1 / dt);
 }
 
 // What makes a velocity along the surface at p, where the normal is n, follow it for a substep [m/s²].
-double turning_of(const Shape& shape, const Vec3& p, const Vec3& n, const Vec3& along, double dt) {
+double turning_of(const Shape& shape, double time, const Vec3& p, const Vec3& n, const Vec3& along,
+                  double dt) {
   const Vec3 way = times(along, dt);
-  return std::max(0.0, dot(minus(nearest_to(shape, plus(p, way)).normal, n), way)) / (dt * dt);
+  const Vec3 next = nearest_at(shape, time, plus(p, way)).normal;
+  return std::max(0.0, dot(minus(next, n), way)) / (dt * dt);
 }
 
 // What a particle that rests on a surface at p, or slides along it, keeps of an acceleration a; all of
 // it where it does neither. v is its velocity as seen from the collider.
-Vec3 supported(const Collider& c, bool chords, const Vec3& p, const Nearest& surface, const Vec3& v,
-               const Vec3& a, const Lag& lag) {
+Vec3 supported(const Collider& c, double time, bool chords, const Vec3& p, const Nearest& surface,
+               const Vec3& v, const Vec3& a, const Lag& lag) {
   constexpr int kRounds = 3;  // turning and friction depend on each other, hardly
   const Vec3& n = surface.normal;
   const double inward = -dot(a, n), off = dot(v, n);
@@ -48,7 +54,7 @@ Vec3 supported(const Collider& c, bool chords, const Vec3& p, const Nearest& sur
   double turning = 0;
   for (int round = 0; chords && round < kRounds; ++round) {
     const Vec3 gained = times(rubbed(c.friction, along, inward - turning), lag.behind);
-    turning = turning_of(c.shape, p, n, plus(sliding, gained), lag.dt);
+    turning = turning_of(c.shape, time, p, n, plus(sliding, gained), lag.dt);
   }
   const double pressed = inward - turning;
   // On a chord it was off the surface half a substep ago, by so much.
@@ -65,6 +71,7 @@ void support(const Scene& scene, const Cloth& cloth, double time, const Lag& lag
     if (c.cuts) continue;
     const Vec3 place = c.keys.empty() ? place_of(c.shape) : position_at(c.keys, time);
     const Vec3 u = c.keys.empty() ? Vec3{} : velocity_over(c.keys, time, lag.dt);
+    const BodySurface* body = surface_of(c);
     const bool chords = c.friction.model == FrictionModel::coulomb && resolves(cloth, c);
     l.for_each([&](int j, int i) {
       if (l.w(j, i) <= 0) return;
@@ -74,12 +81,13 @@ void support(const Scene& scene, const Cloth& cloth, double time, const Lag& lag
       const double rounding =
           kRounding * std::max({1.0, std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
       const double most = std::sqrt(dot(own, own)) * lag.dt * lag.dt;
-      if (least_distance(c.shape, p) > c.offset + rounding + most) return;
-      const Nearest surface = nearest_to(c.shape, p);
+      if (least_distance(body, time, p) > c.offset + rounding + most) return;
+      const Nearest surface = nearest_at(c.shape, time, p);
       const double inward = -dot(own, surface.normal);
       if (inward > 0 && surface.distance < c.offset + rounding + inward * lag.dt * lag.dt) {
         const Vec3 v{l.v.at(0, j, i), l.v.at(1, j, i), l.v.at(2, j, i)};
-        own = supported(c, chords, p, surface, minus(v, u), own, lag);
+        const Vec3 local = body ? velocity_at(*body, time, lag.dt, p) : Vec3{};
+        own = supported(c, time, chords, p, surface, minus(minus(v, u), local), own, lag);
       }
     });
   }

@@ -54,7 +54,7 @@ class MeshTriangles final : public ColliderTriangles {
   RowReach look(int j, const Substep& s, double longest) override {
     const RowReach near = reach_of_particles(j, s);
     if (out_of_reach(near, s, longest)) return near;
-    const CollideRow row = collider().row(parts_, j, s);
+    const ColliderRow row = collider().row(parts_, j, s);
     for (int pass = 0; pass < passes(longest); ++pass)
       for (const Placed& t : rows_[std::size_t(j)]) lift(row, t.j, t.i);
     return near;

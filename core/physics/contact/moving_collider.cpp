@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/contact/body/body_surface.h"
 #include "physics/model/path.h"
 #include "weft/mesh.h"
 
@@ -59,6 +60,7 @@ bool caught_by_triangles(const Collider& collider) {
 MovingCollider::MovingCollider(const ClothParts& parts, const Collider& collider,
                                const StartInside& start, bool by_triangles)
     : collider_(collider),
+      body_(surface_of(collider)),
       start_(start),
       by_triangles_(by_triangles),
       growth_(kPulledFrames * parts.scene.time.frame) {
@@ -87,7 +89,7 @@ void MovingCollider::follow_keys() {
     const Vec3 e = minus(b.position, a.position);
     along = std::max(along, std::sqrt(dot(e, e)) / (b.time - a.time));
   }
-  fastest_ = along + deepest() / growth_;
+  fastest_ = along + deepest() / growth_ + (body_ ? body_->fastest() : 0);
 }
 
 double MovingCollider::deepest() const {
@@ -96,9 +98,9 @@ double MovingCollider::deepest() const {
                        : start_.deepest_particle;
 }
 
-CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s) const {
+ColliderRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s) const {
   Particles& l = parts.particles;
-  CollideRow r = constants_;
+  ColliderRow r{constants_};
   r.columns = l.count(j);
   r.x = l.x.row(j);
   r.v = l.v.row(j);
@@ -108,6 +110,11 @@ CollideRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s)
   r.damped = float(std::min(1.0, collider_.friction.damping * s.dt));
   const double grown = (s.time - start_.time) / growth_;
   if (grown < 1) r.offset -= float(deepest() * (1 - grown));
+  if (body_) {
+    r.body.now = body_->at(s.time);
+    r.body.before = body_->moves() ? body_->at(s.time - s.dt) : r.body.now;
+    r.body.travel = body_->travel(s.time - s.dt, s.time);
+  }
   if (collider_.keys.empty()) return r;
   const Vec3 c = position_at(collider_.keys, s.time);
   const Vec3 u = velocity_over(collider_.keys, s.time, s.dt);

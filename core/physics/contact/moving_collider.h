@@ -2,6 +2,7 @@
 // from it to matter.
 #pragma once
 
+#include "physics/contact/body/body_passage.h"
 #include "physics/contact/colliders/shapes.h"
 #include "physics/model/cloth_model.h"
 
@@ -57,6 +58,11 @@ class AllowedDepth {
 // Whether triangles, too, can get into a collider whose particles are all out of it.
 bool caught_by_triangles(const Collider& collider);
 
+// One row and the collider, and, where that is a mesh, how its surface has come there.
+struct ColliderRow : CollideRow {
+  BodyPassage body{};
+};
+
 // A collider in motion, as the kernels take it. What is inside when it meets the cloth would be torn
 // from its neighbours if it were put onto the surface at once: the collider begins as much smaller as
 // the deepest of it lies below the surface.
@@ -67,8 +73,8 @@ class MovingCollider {
   MovingCollider(const ClothParts& parts, const Collider& collider, const StartInside& start,
                  bool by_triangles = false);
   // The collider at the end of the substep, and row j of the cloth.
-  CollideRow row(const ClothParts& parts, int j, const Substep& s) const;
-  // Greatest speed along its keys, and of its growth [m/s].
+  ColliderRow row(const ClothParts& parts, int j, const Substep& s) const;
+  // Greatest speed along its keys, of its animation and of its growth [m/s].
   double fastest() const { return fastest_; }
   // Takes up keys, and what is inside, when they have changed.
   void follow_keys();
@@ -79,6 +85,7 @@ class MovingCollider {
   double deepest() const;  // m below the surface when they met
 
   const Collider& collider_;
+  const BodySurface* body_;  // of a mesh
   CollideRow constants_{};
   double fastest_ = 0;
   const StartInside& start_;

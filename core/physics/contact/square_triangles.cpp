@@ -81,7 +81,8 @@ class SquareTriangles final : public ColliderTriangles {
       return look_at_all(j, s, longest);
     Lattice& l = parts_.lattice;
     FacesRow f;
-    f.row = collider().row(parts_, j, s);
+    const ColliderRow row = collider().row(parts_, j, s);
+    f.row = row;
     f.x_next = l.x.row(j + 1);
     f.v_next = l.v.row(j + 1);
     f.edge = float(std::max(edge(), longest / kReached));
@@ -96,10 +97,9 @@ class SquareTriangles final : public ColliderTriangles {
     const float near = way > 0.5f * f.row.shape.thin ? way : -f.slack;
     for (int pass = 0; pass < passes(longest); ++pass)
       for (int i = 0; i + 1 < l.columns; ++i) {
-        if (f.bound[0][i] < near && edges_.whole(i, j, 0))
-          lift(f.row, {j, j, j + 1}, {i, i + 1, i});
+        if (f.bound[0][i] < near && edges_.whole(i, j, 0)) lift(row, {j, j, j + 1}, {i, i + 1, i});
         if (f.bound[1][i] < near && edges_.whole(i, j, 1))
-          lift(f.row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
+          lift(row, {j, j + 1, j + 1}, {i + 1, i + 1, i});
       }
     return reach;
   }
@@ -108,7 +108,7 @@ class SquareTriangles final : public ColliderTriangles {
   RowReach look_at_all(int j, const Substep& s, double longest) {
     const RowReach near = reach_of_particles(j, s);
     if (out_of_reach(near, s, longest)) return near;
-    const CollideRow row = collider().row(parts_, j, s);
+    const ColliderRow row = collider().row(parts_, j, s);
     for (int pass = 0; pass < passes(longest); ++pass)
       for (int i = 0; i + 1 < parts_.lattice.columns; ++i) {
         if (edges_.whole(i, j, 0)) lift(row, {j, j, j + 1}, {i, i + 1, i});

@@ -58,7 +58,7 @@ void find_triangles_inside(const ClothParts& parts, const Collider& collider, St
   const bool resolved = resolves(parts.cloth, collider);
   const AllowedDepth allowed(parts.cloth, collider);
   const double edge = longest_edge(parts.cloth);
-  const Upright upright(collider.shape);
+  const Upright upright(at_time(collider.shape, found.time));
   const Vec3 place = place_at(collider, found.time);
   for (const std::array<int, 3>& triangle : parts.model.surface().triangles) {
     Corners c{};
@@ -104,7 +104,7 @@ StartInside start_inside(const ClothParts& parts, const Collider& collider, doub
 double deepest_in(const Cloth& cloth, const Collider& collider, double time,
                   std::span<const Vec3> x, std::span<const std::array<std::int32_t, 3>> triangles) {
   const Vec3 place = place_at(collider, time);
-  const Upright upright(collider.shape);
+  const Upright upright(at_time(collider.shape, time));
   const AllowedDepth allowed(cloth, collider);
   const double at_rest = longest_edge(cloth);
   constexpr double kFlatness = 0.02;  // of an edge: so deep a moving sheet cuts a sharp edge

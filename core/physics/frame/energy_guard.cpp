@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "physics/contact/body/body_surface.h"
 #include "physics/contact/colliders/shapes.h"
 #include "physics/model/path.h"
 
@@ -28,16 +29,12 @@ Rows pushed_out(const Scene& scene, double time, const Particles& l) {
   x.copy(l.x);
   for (const Collider& c : scene.colliders) {
     if (c.cuts) continue;
-    const Vec3 moved = displacement(c, time);
+    const Vec3 place = plus(place_of(c.shape), displacement(c, time));
     for_each_free(l, [&](int j, int i, double) {
       const Vec3 p{x.at(0, j, i), x.at(1, j, i), x.at(2, j, i)};
-      std::visit(
-          [&](const auto& shape) {
-            const Nearest n = nearest_of(shape, minus(minus(p, moved), place_of(shape)));
-            for (int k = 0; k < 3 && n.distance < c.offset; ++k)
-              x.at(k, j, i) = coordinate(p[k] + (c.offset - n.distance) * n.normal[k]);
-          },
-          c.shape);
+      const Nearest n = nearest_at(c.shape, time, minus(p, place));
+      for (int k = 0; k < 3 && n.distance < c.offset; ++k)
+        x.at(k, j, i) = coordinate(p[k] + (c.offset - n.distance) * n.normal[k]);
     });
   }
   return x;
@@ -82,7 +79,10 @@ double fastest_drive(const Scene& scene, double from, double to) {
     return most;
   };
   double most = greatest_wind(scene.wind);
-  for (const Collider& c : scene.colliders) most = std::max(most, fastest(c.keys));
+  for (const Collider& c : scene.colliders) {
+    const BodySurface* body = surface_of(c);
+    most = std::max(most, fastest(c.keys) + (body ? body->fastest(from, to) : 0));
+  }
   for (const Cloth& c : scene.cloths)
     for (const Pin& p : c.pins) most = std::max(most, fastest(p.keys) + turning(c, p));
   return most;

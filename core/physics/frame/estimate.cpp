@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "physics/contact/body/body_surface.h"
 #include "physics/contact/moving_collider.h"
 #include "physics/model/lattice/stability.h"
 #include "physics/model/lattice/stencil.h"
@@ -212,6 +213,8 @@ Estimate estimate(const Scene& scene) {
     nanoseconds += cost::kFrame + cost::kFrameParticle * particle_count(cloth) +
                    way.substeps * substep_cost(scene, cloth, way.solver);
   }
+  for (const Collider& collider : scene.colliders)
+    if (const BodySurface* body = physics::surface_of(collider)) e.bytes += double(body->bytes());
   e.frame_seconds = nanoseconds * 1e-9;
   return e;
 }

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/contact/body/body_surface.h"
 #include "physics/contact/colliders/shapes.h"
 #include "physics/model/path.h"
+#include "weft/shape.h"
 
 namespace weft::physics {
 namespace {
@@ -134,10 +136,11 @@ bool Sleeping::met_by_collider(const Block& block, double time) const {
     square += (block.box.high[k] - middle[k]) * (block.box.high[k] - middle[k]);
   }
   for (const Collider& c : scene_.colliders) {
-    if (c.keys.empty()) continue;
+    const BodySurface* body = surface_of(c);
+    if (c.keys.empty() && !(body && body->moves())) continue;
     const double later = time + scene_.time.frame;
-    const Vec3 way = minus(position_at(c.keys, later), position_at(c.keys, time));
-    const double path = std::sqrt(dot(way, way));
+    const Vec3 way = minus(displacement(c, later), displacement(c, time));
+    const double path = std::sqrt(dot(way, way)) + (body ? body->travel(time, later) : 0);
     if (path == 0) continue;
     const double reach = c.offset + (c.friction.damps() ? c.friction.bias : 0);
     if (signed_distance(c, later, middle) < std::sqrt(square) + reach + path) return true;

@@ -245,7 +245,7 @@ bool Simulation::State::carried() const {
 }
 
 bool Simulation::State::driven() const {
-  const auto moves = [](const Collider& c) { return !c.keys.empty(); };
+  const auto moves = [](const Collider& c) { return !c.keys.empty() || !c.animation.empty(); };
   const auto pulls = [](const Pin& pin) { return pin.moves(); };
   return grab_ || carried() || self_collision || !scene.gravity_keys.empty() || sleeping ||
          blown() || std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||

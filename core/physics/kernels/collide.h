@@ -70,6 +70,13 @@ WEFT_INLINE Surface surface_before(const Shape& shape, Wide3 p, int i) {
     return shape.at(p);
 }
 
+// Velocity of the surface beside the collider's: meshes may change their form.
+template <class Shape>
+WEFT_INLINE Wide3 own_velocity(const Shape& shape, int i) {
+  if constexpr (Found<Shape>) return shape.velocity(i);
+  return Wide3{};
+}
+
 WEFT_INLINE WideInt free_lanes(const CollideRow& r, int i) {
   return (load(r.w + i) > 0.0f) & lanes_below(r.columns - i);
 }
@@ -97,8 +104,8 @@ WEFT_INLINE Push along_chords(const CollideRow& r, const Surface& before, Wide3 
           select(slides, before.normal, straight.normal), select(slides, middle, straight.across)};
 }
 
-WEFT_INLINE void rub(const CollideRow& r, int i, WideInt touching, const Push& push) {
-  const Wide3 u = wide3(r.ux, r.uy, r.uz), n = push.normal;
+WEFT_INLINE void rub(const CollideRow& r, int i, Wide3 u, WideInt touching, const Push& push) {
+  const Wide3 n = push.normal;
   const Wide3 v = load3(r.v, i);
   const Wide3 relative = v - u;
   const Wide into = dot(relative, push.across);
@@ -193,10 +200,10 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
     if constexpr (kCourse) {
       course_correct(r, i, touching, load3(r.x, i) + push.normal * push.depth);
     } else {
-      const Wide3 path = relative * wide(r.dt);
+      const Wide3 own = own_velocity(shape, i), path = (relative - own) * wide(r.dt);
       if (!Shape::kFlat && r.resolved)
         push = along_chords(r, surface_before(shape, p - path, i), path, push);
-      rub(r, i, touching, push);
+      rub(r, i, u + own, touching, push);
     }
   }
   return {least(clearance), __builtin_sqrtf(greatest(fastest))};
@@ -218,18 +225,18 @@ WEFT_INLINE RowReach damp_sliding_row(const CollideRow& r) {
     fastest = max(fastest, select(free, dot(relative, relative), Wide{}));
     const WideInt within = free & (left < 0.0f);
     if (!any(within)) continue;
-    const Wide3 lost = (relative - s.normal * dot(relative, s.normal)) * wide(r.damped);
+    const Wide3 slid = relative - own_velocity(shape, i);
+    const Wide3 lost = (slid - s.normal * dot(slid, s.normal)) * wide(r.damped);
     store3(r.v, i, select(within, v - lost, v));
     store3(r.x, i, select(within, x - lost * wide(r.dt), x));
   }
   return {least(clearance), __builtin_sqrtf(greatest(fastest))};
 }
 
-// A convex shape's distance is never below its tangents: d(y) >= d(p) + n(p)·(y - p). On a triangle
-// the tangent at any point p is least at a vertex, so that
-//   d >= d(p) + min over vertices W of n(p)·(W - p).
-// The vertices as p are enough for sheets that lie on a flat side. Where they say too little, p
-// descends: a step against the normal, and back to the nearest point of the triangle.
+// A convex shape's distance is never below its tangents: d(y) >= d(p) + n(p)·(y - p). On a triangle the tangent
+// at any p is least at a vertex, so that d >= d(p) + min over vertices W of n(p)·(W - p). The vertices as p
+// are enough for sheets on a flat side. Where they say too little, p descends: a step against the normal, and
+// back to the nearest point of the triangle.
 struct Face {
   Wide3 a, b, c;
 };
@@ -264,7 +271,7 @@ WEFT_INLINE Wide3 nearest_on(const Face& f, Wide3 q) {
 
 constexpr int kDescents = 6;
 
-// Raises the bounds of faces that are below `enough`, as far as a few descents do.
+// Raises bounds of faces below `enough`, as far as a few descents do.
 template <class Shape>
 WEFT_INLINE Wide descend(const Shape& shape, const FacesRow& f, const Face& face, WideInt wanted,
                          Wide bound, float enough) {
@@ -281,8 +288,7 @@ WEFT_INLINE Wide descend(const Shape& shape, const FacesRow& f, const Face& face
   return bound;
 }
 
-// The same for triangles of a row by number: the first (2a) or second (2a+1) beside lane a. They are few
-// and far between, so that they are brought together first.
+// The same for triangles of a row by number: the first (2a) or second (2a+1) beside lane a, brought together.
 template <class Shape>
 WEFT_INLINE void descend_listed(const Shape& shape, const FacesRow& f, Wide3 place, int count,
                                 float enough) {
@@ -311,7 +317,7 @@ WEFT_INLINE void descend_listed(const Shape& shape, const FacesRow& f, Wide3 pla
   }
 }
 
-// The lanes one further on, the last of them from the block that follows.
+// The lanes one further on, the last from the block that follows.
 template <int... I>
 WEFT_INLINE Wide one_on(Wide here, Wide next, std::integer_sequence<int, I...>) {
   return __builtin_shufflevector(here, next, (I + 1)...);
@@ -374,7 +380,6 @@ WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
   return {least(clearance), speed};
 }
 
-// Defines the kernels of a shape under `name`.
 #define WEFT_COLLIDER(name, Shape)             \
   namespace {                                  \
   RowReach coulomb(const CollideRow& r) {      \

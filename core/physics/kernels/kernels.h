@@ -220,13 +220,13 @@ struct TangentRow : FarRows {
   bool sideways;
 };
 
-// How a surface lies to the particles of a row, where they are and where they were before the substep, seen
-// from the collider: found before the kernels run (contact/body).
+// How a surface lies to the particles of a row, now and before the substep, seen from the collider (contact/body).
 struct FoundSurface {
   const float* distance;  // m
   ConstRow3 normal;
   const float* distance_before;
   ConstRow3 normal_before;
+  ConstRow3 velocity{};  // m/s; of the nearest point, beside the collider's; null: of none
 };
 
 // Constants of a collider's shape, about its place (colliders/).

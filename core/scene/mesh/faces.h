@@ -26,6 +26,8 @@ struct RawMesh {
 // What keeps a mesh, which is read or made by a program, from being simulated where the scene puts it. Faces
 // without area and edges of more than two are told of as files are read.
 std::optional<Fault> fault_of(const MeshSource& mesh, const std::string& place);
+// Where the scene has points that a file has.
+void put(const MeshSource& mesh, std::vector<Vec3>& points);
 
 // Cuts a polygon into triangles of its corners' numbers, by ears, seen along its mean normal; the shorter
 // diagonal of a quadrilateral where both lie inside.

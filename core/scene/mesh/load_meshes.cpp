@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "scene/mesh/animation.h"
 #include "scene/mesh/faces.h"
 #include "weft/mesh.h"
 
@@ -13,14 +14,15 @@ namespace {
 
 constexpr double kFarthest = 1e4, kLarge = 100, kShortest = 1e-6;  // m
 
-// Turned about one axis, the others following in order.
-Vec3 turned(const Vec3& p, std::size_t axis, double degrees) {
+// Turned about one axis.
+void turn(std::vector<Vec3>& points, std::size_t axis, double degrees) {
   const double angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
   const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;
-  Vec3 q = p;
-  q[a] = c * p[a] - s * p[b];
-  q[b] = s * p[a] + c * p[b];
-  return q;
+  for (Vec3& p : points) {
+    const Vec3 q = p;
+    p[a] = c * q[a] - s * q[b];
+    p[b] = s * q[a] + c * q[b];
+  }
 }
 
 void note_size(const MeshSource& mesh, const std::string& place, std::vector<std::string>& notes) {
@@ -77,14 +79,18 @@ std::optional<Fault> text::fault_of(const MeshSource& mesh, const std::string& p
   return {};
 }
 
+void text::put(const MeshSource& mesh, std::vector<Vec3>& points) {
+  for (Vec3& p : points)
+    for (double& value : p) value *= mesh.scale;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (mesh.rotate[axis] != 0) turn(points, axis, mesh.rotate[axis]);
+  for (Vec3& p : points)
+    for (std::size_t k = 0; k < 3; ++k) p[k] += mesh.translate[k];
+}
+
 std::vector<Vec3> placed_vertices(const MeshSource& mesh) {
   std::vector<Vec3> placed = mesh.shape->vertices;
-  for (Vec3& p : placed) {
-    for (double& value : p) value *= mesh.scale;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      if (mesh.rotate[axis] != 0) p = turned(p, axis, mesh.rotate[axis]);
-    for (std::size_t k = 0; k < 3; ++k) p[k] += mesh.translate[k];
-  }
+  text::put(mesh, placed);
   return placed;
 }
 
@@ -111,10 +117,45 @@ void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& fa
     mesh.shape = std::make_shared<const TriangleMesh>(std::move(file.mesh));
     note_size(mesh, place, notes);
   });
-  for (Collider& collider : scene.colliders)
-    if (auto* body = std::get_if<MeshBody>(&collider.shape);
-        body && body->shape && !body->surface && !text::fault_of(*body, ""))
-      body->surface = surface_of(*body);
+  for (std::size_t n = 0; n < scene.colliders.size(); ++n) {
+    Collider& collider = scene.colliders[n];
+    MeshBody* body = std::get_if<MeshBody>(&collider.shape);
+    if (!body || !body->shape) continue;
+    const std::string place = "/colliders/" + std::to_string(n) + "/animation";
+    if (!collider.animation.empty() && !body->motion &&
+        !text::read_motion(collider.animation, folder, *body, place, faults))
+      continue;
+    if (!body->surface && !text::fault_of(*body, "") && !text::fault_of_motion(*body, ""))
+      body->surface = surface_of(*body, scene.time.frame);
+  }
+}
+
+void use_full_paths(Scene& scene, const std::string& folder) {
+  for_each_mesh_file(scene, [&](std::string& file) {
+    file = std::filesystem::absolute(std::filesystem::path(folder) / file).string();
+  });
+}
+
+void MeshStore::take(const Scene& scene) {
+  for_each_mesh(scene, [&](const auto& mesh, const std::string&) {
+    if (mesh.shape) shapes[mesh.file] = mesh.shape;
+  });
+  for (const Collider& collider : scene.colliders)
+    if (const auto* body = std::get_if<MeshBody>(&collider.shape); body && body->motion)
+      motions[collider.animation] = body->motion;
+}
+
+void MeshStore::give(Scene& scene) const {
+  for_each_mesh(scene, [&](auto& mesh, const std::string&) {
+    if (const auto known = shapes.find(mesh.file); known != shapes.end() && !mesh.shape)
+      mesh.shape = known->second;
+  });
+  for (Collider& collider : scene.colliders) {
+    MeshBody* body = std::get_if<MeshBody>(&collider.shape);
+    if (!body || body->motion) continue;
+    if (const auto known = motions.find(collider.animation); known != motions.end())
+      body->motion = known->second;
+  }
 }
 
 }  // namespace weft

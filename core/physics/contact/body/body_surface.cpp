@@ -1,7 +1,5 @@
-// Distances from the surface of a body that is a mesh (body_surface.h).
 #include "physics/contact/body/body_surface.h"
 
-#include <cassert>
 #include <cmath>
 
 namespace weft {
@@ -10,178 +8,126 @@ using namespace physics;
 
 namespace {
 
-constexpr double kTouching = 1e-10;  // m; nearer points have no direction of their own
-
-double length(const Vec3& a) {
-  return std::sqrt(dot(a, a));
+std::vector<Vec3> about_the_place(const MeshSource& source) {
+  MeshSource about = source;
+  about.translate = {};
+  return placed_vertices(about);
 }
 
 }  // namespace
 
-Triangle BodySurface::corners(int triangle) const {
-  const auto& [a, b, c] = triangles_[std::size_t(triangle)];
-  return {vertices_[std::size_t(a)], vertices_[std::size_t(b)], vertices_[std::size_t(c)]};
+BodySurface::BodySurface(const TriangleMesh& mesh, std::vector<Vec3> vertices)
+    : form_(mesh, vertices) {
+  auto pose = std::make_shared<BodyPose>(form_, form_.split(vertices));
+  const auto corners = [&](int n) {
+    const auto& [a, b, c] = form_.triangles[std::size_t(n)];
+    return Triangle{pose->vertices[std::size_t(a)], pose->vertices[std::size_t(b)],
+                    pose->vertices[std::size_t(c)]};
+  };
+  const auto normal = [&](int n) -> const Vec3& { return pose->face_normals[std::size_t(n)]; };
+  std::vector<Vec3> normals;
+  for (std::size_t v = 0; v < pose->vertices.size(); ++v)
+    normals.push_back(normal_at(form_, int(v), corners, normal));
+  pose->vertex_normals = std::move(normals);
+  least_radius_ = pose->least_radius();
+  rest_ = std::move(pose);
 }
 
-std::span<const int> BodySurface::at_vertex(int vertex) const {
-  const auto begin = std::size_t(first_at_[std::size_t(vertex)]);
-  return std::span(at_).subspan(begin, std::size_t(first_at_[std::size_t(vertex) + 1]) - begin);
+BodySurface::BodySurface(const MeshSource& about, std::shared_ptr<const PointCache> motion,
+                         double frame)
+    : form_(*about.shape, about_the_place(about)), about_(about), motion_(std::move(motion)) {
+  about_.translate = {};
+  for (const float time : motion_->times)
+    times_.push_back(double(time) * (motion_->in_frames ? frame : 1));
+  travelled_.push_back(0);
+  least_radius_ = std::numeric_limits<double>::infinity();
+  std::vector<Vec3> last;
+  for (int n = 0; n < motion_->samples(); ++n) {
+    const BodyPose here(form_, vertices(n));
+    least_radius_ = std::min(least_radius_, here.least_radius());
+    if (n > 0) {
+      double square = 0;
+      for (std::size_t v = 0; v < last.size(); ++v) {
+        const Vec3 d = minus(here.vertices[v], last[v]);
+        square = std::max(square, dot(d, d));
+      }
+      travelled_.push_back(travelled_.back() + std::sqrt(square));
+    }
+    last = here.vertices;
+  }
+  if (!times_.empty()) fastest_ = fastest(times_.front(), times_.back());
+}
+
+BodyMoment BodySurface::at(double time) const {
+  if (rest_) return {form_, rest_};
+  const int after = next(time), last = motion_->samples();
+  if (after == 0 || after == last) {
+    const Pose held = pose(after == 0 ? 0 : last - 1);
+    return {form_,
+            held,
+            held,
+            0,
+            after == 0 ? -1e300 : times_.back(),
+            after == 0 ? times_.front() : 1e300};
+  }
+  const double begin = times_[std::size_t(after - 1)], end = times_[std::size_t(after)];
+  return {form_, pose(after - 1), pose(after), (time - begin) / (end - begin), begin, end};
+}
+
+std::vector<Vec3> BodySurface::vertices(int sample) const {
+  return form_.split(placed_vertices(about_, *motion_, sample));
+}
+
+BodySurface::Pose BodySurface::pose(int sample) const {
+  const std::lock_guard lock(mutex_);
+  const auto known = std::find_if(kept_.begin(), kept_.end(),
+                                  [&](const auto& one) { return one.first == sample; });
+  if (known != kept_.end()) {
+    std::rotate(known, known + 1, kept_.end());
+    return kept_.back().second;
+  }
+  if (kept_.size() == kKept) kept_.erase(kept_.begin());
+  kept_.emplace_back(sample, std::make_shared<const BodyPose>(form_, vertices(sample)));
+  return kept_.back().second;
+}
+
+int BodySurface::next(double time) const {
+  return int(std::upper_bound(times_.begin(), times_.end(), time) - times_.begin());
+}
+
+double BodySurface::travelled(double time) const {
+  const auto after = std::size_t(next(time));
+  if (after == 0) return 0;
+  if (after == times_.size()) return travelled_.back();
+  const double share = (time - times_[after - 1]) / (times_[after] - times_[after - 1]);
+  return between(travelled_[after - 1], travelled_[after], share);
+}
+
+double BodySurface::travel(double from, double to) const {
+  return moves() ? std::abs(travelled(to) - travelled(from)) : 0;
+}
+
+double BodySurface::fastest(double from, double to) const {
+  double most = 0;
+  for (std::size_t n = 1; n < times_.size(); ++n)
+    if (times_[n] > from && times_[n - 1] < to)
+      most = std::max(most, (travelled_[n] - travelled_[n - 1]) / (times_[n] - times_[n - 1]));
+  return most;
 }
 
 std::size_t BodySurface::bytes() const {
-  std::size_t bytes = vertices_.size() * sizeof(Vec3) * 2 + feature_tree_.bytes() +
-                      triangles_.size() * (sizeof(triangles_[0]) * 2 + sizeof(Vec3)) +
-                      at_.size() * sizeof(int) + features_.size() * sizeof(Feature);
-  for (const Part& part : parts_) bytes += part.tree.bytes();
-  return bytes;
+  if (rest_) return form_.bytes() + rest_->bytes();
+  return form_.bytes() + motion_->places.size() * sizeof(PointCache::Place) +
+         kKept * pose(0)->bytes();
 }
 
-void BodySurface::look_at(int triangle, const Vec3& p, Candidate& best) const {
-  const Triangle t = corners(triangle);
-  const Weights w = nearest_on(t, p);
-  const Vec3 d = minus(p, plus(plus(times(t[0], w[0]), times(t[1], w[1])), times(t[2], w[2])));
-  const double square = dot(d, d);
-  if (square > best.square || (square == best.square && triangle >= best.triangle)) return;
-  best = {square, triangle, w};
-}
-
-// On a face, an edge or a corner, as the weights say.
-BodySurface::Point BodySurface::point_of(const Candidate& c, const Vec3& p) const {
-  const auto n = std::size_t(c.triangle);
-  const Triangle t = corners(c.triangle);
-  const Weights& w = c.weights;
-  const Vec3 d = minus(p, plus(plus(times(t[0], w[0]), times(t[1], w[1])), times(t[2], w[2])));
-  const int held = (w[0] != 0) + (w[1] != 0) + (w[2] != 0);
-  Vec3 normal = face_normals_[n];
-  if (held == 1)
-    normal = vertex_normals_[std::size_t(triangles_[n][w[0] != 0 ? 0 : w[1] != 0 ? 1 : 2])];
-  if (held == 2)
-    if (const int other = beside_[n][w[2] == 0 ? 0 : w[0] == 0 ? 1 : 2]; other >= 0)
-      normal = plus(normal, face_normals_[std::size_t(other)]);
-  const double apart = length(d), side = dot(d, normal) < 0 ? -1 : 1;
-  const Vec3 unit = held < 3 && apart > kTouching
-                        ? times(d, (closed() ? side : 1) / apart)
-                        : times(normal, (closed() ? 1 : side) / std::max(length(normal), 1e-300));
-  return {closed() ? side * apart : apart, unit, c.triangle};
-}
-
-BodySurface::Point BodySurface::nearest_in(const Part& part, const Vec3& p, int hint,
-                                           double enough) const {
-  Candidate best;
-  best.square = enough;
-  look_at(hint >= part.first && hint < part.last ? hint : part.first, p, best);
-  part.tree.nearest(p, best.square, [&](int n) { look_at(part.first + n, p, best); });
-  return best.triangle < 0 ? Point{1e300, {}, -1} : point_of(best, p);
-}
-
-BodySurface::Point BodySurface::nearest(const Vec3& p, int hint) const {
-  Point best{1e300, {}, -1};
-  for (const Part& part : parts_) {
-    const double square = part.tree.bounds().square_from(p);
-    const double most = best.distance > 0 ? best.distance * best.distance : 0;
-    // What p is outside of can only be nearer.
-    if (square > most) continue;
-    const Point one = nearest_in(part, p, hint, square > 0 ? most : 1e300);
-    if (one.distance < best.distance) best = one;
-  }
-  return best;
-}
-
-BodySurface::Point BodySurface::nearest_among(std::span<const int> triangles, const Vec3& p) const {
-  Point best{1e300, {}, -1};
-  for (std::size_t n = 0; n < triangles.size();) {
-    const int first = triangles[n];
-    const int last =
-        parts_.size() == 1
-            ? parts_[0].last
-            : std::upper_bound(parts_.begin(), parts_.end(), first, [](int t, const Part& part) {
-                return t < part.last;
-              })->last;
-    Candidate nearest;
-    for (; n < triangles.size() && triangles[n] < last; ++n) look_at(triangles[n], p, nearest);
-    const Point one = point_of(nearest, p);
-    if (one.distance < best.distance) best = one;
-  }
-  return best;
-}
-
-int BodySurface::within(const Vec3& p, double distance, std::array<int, kListed>& found) const {
-  AlignedBox box;
-  box.add(p);
-  box = box.grown(distance);
-  int count = 0;
-  for (const Part& part : parts_)
-    part.tree.within(box, [&](int n) {
-      Candidate one;
-      look_at(part.first + n, p, one);
-      if (one.square > distance * distance) return;
-      if (count < kListed) found[std::size_t(count)] = part.first + n;
-      ++count;
-    });
-  if (count > kListed) return -1;
-  std::sort(found.begin(), found.begin() + count);
-  return count;
-}
-
-// By Moller and Trumbore (1997). What passes an edge is not to be lost.
-int BodySurface::first_on(const Vec3& from, const Vec3& to, Vec3& hit) const {
-  constexpr double kEdge = 1e-9;
-  const Vec3 way = minus(to, from);
-  AlignedBox box;
-  box.add(from);
-  box.add(to);
-  double first = 2;
-  int triangle = -1;
-  for (const Part& part : parts_)
-    part.tree.within(box, [&](int n) {
-      const Triangle t = corners(part.first + n);
-      const Vec3 e = minus(t[1], t[0]), f = minus(t[2], t[0]), s = minus(from, t[0]);
-      const Vec3 across = cross(way, f), q = cross(s, e);
-      const double det = dot(e, across);
-      if (det == 0) return;
-      const double u = dot(s, across) / det, v = dot(way, q) / det, at = dot(f, q) / det;
-      const bool meets = u >= -kEdge && v >= -kEdge && u + v <= 1 + kEdge && at >= 0 && at <= 1;
-      if (!meets || at > first || (at == first && part.first + n > triangle)) return;
-      first = at;
-      triangle = part.first + n;
-    });
-  hit = plus(from, times(way, first));
-  return triangle;
-}
-
-// What is only pressed into the surface sees the same side from both ends of its path.
-BodySurface::Point BodySurface::entered_at(const Vec3& before, const Vec3& now, const Point& was,
-                                           const Point& is) const {
-  constexpr double kSameSide = 0.5;  // cosine
-  if (dot(was.normal, is.normal) > kSameSide) return is;
-  Vec3 hit;
-  const int triangle = first_on(before, now, hit);
-  if (triangle < 0) return is;
-  const Vec3& n = face_normals_[std::size_t(triangle)];
-  const double beyond = dot(minus(now, hit), n);
-  return beyond < 0 ? Point{beyond, n, triangle} : is;
-}
-
-BodySurface::Point BodySurface::on_side_of(const Vec3& before, const Vec3& now,
-                                           const Point& is) const {
-  constexpr double kSameSheet = 0.5;  // cosine
-  Vec3 hit;
-  const int triangle = first_on(before, now, hit);
-  if (triangle < 0) return is;
-  const Vec3& n = face_normals_[std::size_t(triangle)];
-  const Vec3 back = times(n, dot(minus(now, before), n) > 0 ? -1 : 1);  // to where it was
-  if (dot(is.normal, back) < -kSameSheet) return {-is.distance, times(is.normal, -1), is.triangle};
-  return {dot(minus(now, hit), back), back, triangle};
-}
-
-std::shared_ptr<const BodySurface> surface_of(const MeshBody& body) {
-  MeshSource about = body;
-  about.translate = {};
-  return std::make_shared<const BodySurface>(*body.shape, placed_vertices(about));
+std::shared_ptr<const BodySurface> surface_of(const MeshBody& body, double frame) {
+  if (body.motion) return std::make_shared<const BodySurface>(body, body.motion, frame);
+  return std::make_shared<const BodySurface>(*body.shape, about_the_place(body));
 }
 
 std::span<const std::array<int, 2>> open_edges(const BodySurface& surface) {
-  return surface.open_edges();
+  return surface.form().open_edges;
 }
 
 }  // namespace weft

@@ -1,11 +1,12 @@
 #include "physics/contact/body/body_triangle.h"
 
+#include "physics/contact/body/body_surface.h"
 #include "physics/contact/moving_collider.h"
 
 namespace weft::physics {
 namespace {
 
-using Feature = BodySurface::Feature;
+using Feature = BodyMoment::Feature;
 
 constexpr double kHardly = 0.1;  // of an edge; so deep is no contact that has just begun
 constexpr double kReach = 0.25;  // the same: what is deeper is left to the particles
@@ -41,27 +42,27 @@ Pair nearest_to_edge(const Corners& c, std::size_t k, const Vec3& p, const Vec3&
 
 class Search {
  public:
-  Search(const BodySurface& surface, const Corners& c, double offset, double edge)
-      : surface_(surface), c_(c), edge_(std::max(edge, longest_side(c.x))) {
+  Search(const BodyPassage& body, const Corners& c, double offset, double edge)
+      : body_(body), c_(c), longest_(longest_side(c.x)), edge_(std::max(edge, longest_)) {
     found_.nearest.distance = offset;
   }
 
-  Deepest run() {
+  DeepestOnBody run() {
     AlignedBox box;
     double way = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       box.add(c_.x[k]);
       way = std::max(way, dot(c_.path[k], c_.path[k]));
     }
-    reach_ = std::max(found_.nearest.distance, kReach * edge_) + std::sqrt(way);
-    surface_.features(box.grown(reach_), kSmallFeature * edge_, [&](const Feature& f) { look(f); });
+    reach_ = std::max(found_.nearest.distance, kReach * edge_) + std::sqrt(way) + body_.travel;
+    body_.now.features(box.grown(reach_), kSmallFeature * edge_,
+                       [&](const Feature& f) { look(f); });
     return found_;
   }
 
  private:
   void look(const Feature& f) {
-    const Vec3 &p = surface_.vertices()[std::size_t(f.a)],
-               &q = surface_.vertices()[std::size_t(f.b)];
+    const Vec3 p = body_.now.vertex(f.a), q = body_.now.vertex(f.b);
     if (f.a == f.b) return look(f, nearest_to_corner(c_, p));
     for (std::size_t k = 0; k < 3; ++k) look(f, nearest_to_edge(c_, k, p, q));
   }
@@ -69,35 +70,42 @@ class Search {
   void look(const Feature& f, const Pair& pair) {
     if (!pair.inner) return;
     const Vec3 here = c_.at(pair.weights), out = minus(pair.on, here);
-    const double square = dot(out, out), through = dot(out, f.normal);
+    const double square = dot(out, out);
     if (square > reach_ * reach_) return;
-    const bool pierces = surface_.closed() && through > 0;
+    const Vec3 normal = body_.now.outward(f);
+    const double through = dot(out, normal);
+    const bool pierces = body_.now.closed() && through > 0;
     const double most = std::max(found_.nearest.distance, 0.0);
-    if (surface_.closed() && !pierces && square > most * most) return;
+    if (body_.now.closed() && !pierces && square > most * most) return;
     const Vec3 before = minus(here, Corners{c_.path, {}}.at(pair.weights));
     int hint = f.triangle;
-    const auto nearest = [&](const Vec3& at, bool) {
-      const BodySurface::Point point = surface_.nearest(at, hint);
+    const auto nearest = [&](const BodyMoment& moment, const Vec3& at) {
+      const BodyMoment::Point point = moment.nearest(at, hint);
       hint = point.triangle;
       return point;
     };
-    const BodySurface::Point point = surface_.meet(before, here, nearest).now;
+    const BodyMoment::Point point = body_.meet(before, here, nearest).now;
     Nearest deep{point.distance, point.normal};
-    if (pierces && point.distance < 0 && dot(minus(pair.on, before), f.normal) < kHardly * edge_)
-      deep = {std::min(-through, point.distance), f.normal};
-    if (deep.distance < found_.nearest.distance) found_ = {pair.weights, deep};
+    if (pierces && point.distance < 0 && dot(minus(pair.on, before), normal) < kHardly * edge_)
+      deep = {std::min(-through, point.distance), normal};
+    if (deep.distance < found_.nearest.distance)
+      found_ = {{pair.weights, deep}, body_.way(point.triangle, point.weights)};
   }
 
-  const BodySurface& surface_;
+  const BodyPassage& body_;
   const Corners& c_;
-  double edge_, reach_ = 0;  // m
-  Deepest found_;
+  double longest_, edge_, reach_ = 0;  // m
+  DeepestOnBody found_;
 };
 
 }  // namespace
 
+DeepestOnBody deepest_on(const BodyPassage& body, const Corners& c, double offset, double edge) {
+  return Search(body, c, offset, edge).run();
+}
+
 Deepest deepest_on(const MeshBody& body, const Corners& c, double offset, double edge, double) {
-  return Search(*body.surface, c, offset, edge).run();
+  return deepest_on(BodyPassage::standing(body.surface->at(body.time)), c, offset, edge);
 }
 
 }  // namespace weft::physics

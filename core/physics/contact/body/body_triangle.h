@@ -1,7 +1,7 @@
 // A triangle of cloth against the edges and corners of a body that is a mesh.
 #pragma once
 
-#include "physics/contact/body/body_surface.h"
+#include "physics/contact/body/body_passage.h"
 #include "physics/contact/triangle_shape.h"
 
 namespace weft::physics {
@@ -11,6 +11,11 @@ namespace weft::physics {
 // hardly deeper than its corners, which particles are. A point inside of the body that was outside before
 // the substep, or hardly in it, goes back over the edge or corner that has come through; others go the
 // nearest way out. `edge` [m]: the longest of a flat triangle; no point is deep: distance is `offset`.
+struct DeepestOnBody : Deepest {
+  Vec3 way{};  // m; how far the surface there has come
+};
+DeepestOnBody deepest_on(const BodyPassage& body, const Corners& c, double offset, double edge);
+// Of one that stands.
 Deepest deepest_on(const MeshBody& body, const Corners& c, double offset, double edge,
                    double tolerance = kExact);
 

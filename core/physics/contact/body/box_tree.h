@@ -1,8 +1,10 @@
-// A tree of boxes (bounding volume hierarchy) over items, halved along the longest side of their middles. What
-// is asked of it visits every item that may matter, whatever the shape of the tree.
+// A tree of boxes (bounding volume hierarchy) over items, halved along the longest side of their middles. It keeps
+// how they hang together; where the boxes are is told by those who ask, as a function of the node, for items that
+// move keep their places in the tree. What is asked of it visits every item that may matter, whatever its shape.
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -20,6 +22,7 @@ struct AlignedBox {
     add(b.low);
     add(b.high);
   }
+  AlignedBox moved(const Vec3& by) const { return {plus(low, by), plus(high, by)}; }
   AlignedBox grown(double by) const {
     AlignedBox b = *this;
     for (std::size_t k = 0; k < 3; ++k) b.low[k] -= by, b.high[k] += by;
@@ -49,15 +52,29 @@ class BoxTree {
   }
 
   bool empty() const { return nodes_.empty(); }
-  const AlignedBox& bounds() const { return nodes_[0].box; }
   std::size_t bytes() const {
     return nodes_.size() * sizeof(Node) + order_.size() * sizeof(order_[0]);
   }
 
+  // The boxes of all nodes, where the items have the boxes box_of(item).
+  template <class BoxOf>
+  std::vector<AlignedBox> refitted(BoxOf&& box_of) const {
+    std::vector<AlignedBox> boxes(nodes_.size());
+    for (std::size_t n = nodes_.size(); n-- > 0;) {
+      const Node& node = nodes_[n];
+      for (int k = 0; k < node.count; ++k)
+        boxes[n].add(box_of(order_[std::size_t(node.first + k)]));
+      if (node.count > 0) continue;
+      boxes[n].add(boxes[n + 1]);
+      boxes[n].add(boxes[std::size_t(node.first)]);
+    }
+    return boxes;
+  }
+
   // Calls visit(item) for all items whose boxes may be nearer to p than the root of `square` [m²], which visit
   // lowers as it finds them; those as near are visited, too.
-  template <class Visit>
-  void nearest(const Vec3& p, const double& square, Visit&& visit) const {
+  template <class Boxes, class Visit>
+  void nearest(const Boxes& box, const Vec3& p, const double& square, Visit&& visit) const {
     // What is as near but for rounding is looked at: which item comes first does not matter.
     constexpr double kRounding = 1 + 1e-9;
     struct Left {
@@ -66,7 +83,7 @@ class BoxTree {
     };
     Left left[kDeepest];
     int count = 0;
-    left[count++] = {0, nodes_[0].box.square_from(p)};
+    left[count++] = {0, box(0).square_from(p)};
     while (count > 0) {
       const Left next = left[--count];
       if (next.square > square * kRounding) continue;
@@ -75,24 +92,24 @@ class BoxTree {
         for (int n = 0; n < node.count; ++n) visit(order_[std::size_t(node.first + n)]);
         continue;
       }
-      Left near{next.node + 1, nodes_[std::size_t(next.node) + 1].box.square_from(p)};
-      Left far{node.first, nodes_[std::size_t(node.first)].box.square_from(p)};
+      Left near{next.node + 1, box(next.node + 1).square_from(p)};
+      Left far{node.first, box(node.first).square_from(p)};
       if (far.square < near.square) std::swap(near, far);
       left[count++] = far;
       left[count++] = near;
     }
   }
 
-  // Calls visit(item) for all items in leaves that meet a box and of whose nodes wanted(node) holds.
+  // Calls visit(item) for all items in leaves of whose nodes, and of those above, wanted(node) holds.
   template <class Wanted, class Visit>
-  void within(const AlignedBox& box, Wanted&& wanted, Visit&& visit) const {
+  void visit(Wanted&& wanted, Visit&& visit) const {
     int left[kDeepest];
     int count = 0;
     if (!nodes_.empty()) left[count++] = 0;
     while (count > 0) {
       const int at = left[--count];
       const Node& node = nodes_[std::size_t(at)];
-      if (!node.box.meets(box) || !wanted(at)) continue;
+      if (!wanted(at)) continue;
       if (node.count > 0) {
         for (int n = 0; n < node.count; ++n) visit(order_[std::size_t(node.first + n)]);
         continue;
@@ -101,15 +118,10 @@ class BoxTree {
       left[count++] = at + 1;
     }
   }
-  template <class Visit>
-  void within(const AlignedBox& box, Visit&& visit) const {
-    within(
-        box, [](int) { return true; }, visit);
-  }
 
   // The least value of the items below each node.
   std::vector<double> least_of(const std::vector<double>& values) const {
-    std::vector<double> least(nodes_.size(), 1e300);
+    std::vector<double> least(nodes_.size(), std::numeric_limits<double>::infinity());
     for (std::size_t n = nodes_.size(); n-- > 0;) {
       const Node& node = nodes_[n];
       for (int k = 0; k < node.count; ++k)
@@ -122,22 +134,19 @@ class BoxTree {
  private:
   static constexpr int kLeaf = 4, kDeepest = 64;  // halves of less than 2^31 items
   struct Node {
-    AlignedBox box;
-    int first =
-        0;  // of a leaf: of its items in the order; else the second child, the first being next
+    // Of a leaf: of its items in the order; else the second child, the first being next.
+    int first = 0;
     int count = 0;  // of a leaf; else 0
   };
 
   int build(const std::vector<AlignedBox>& boxes, int begin, int end) {
     const int at = int(nodes_.size());
     nodes_.emplace_back();
-    AlignedBox box, middles;
+    AlignedBox middles;
     for (int n = begin; n < end; ++n) {
       const AlignedBox& b = boxes[std::size_t(order_[std::size_t(n)])];
-      box.add(b);
       middles.add(plus(b.low, b.high));
     }
-    nodes_.back().box = box;
     if (end - begin <= kLeaf) {
       nodes_.back().first = begin;
       nodes_.back().count = end - begin;

@@ -16,6 +16,10 @@ struct MeshSurface {
   WEFT_INLINE Surface before(int i) const {
     return {load(found.distance_before + i), load3(found.normal_before, i)};
   }
+  // Beside the collider's.
+  WEFT_INLINE Wide3 velocity(int i) const {
+    return found.velocity.x ? load3(found.velocity, i) : Wide3{};
+  }
   const physics::FoundSurface& found;
 };
 
@@ -56,7 +60,7 @@ void move(MeshBody& body, const Vec3& by) {
 }
 
 Nearest nearest_of(const MeshBody& body, const Vec3& p) {
-  const BodySurface::Point point = body.surface->nearest(p);
+  const BodySurface::Point point = body.surface->at(body.time).nearest(p);
   return {point.distance, point.normal};
 }
 
@@ -68,18 +72,21 @@ double feature_of(const MeshBody& body) {
 // the triangle's own.
 ShapeMesh mesh_of(const MeshBody& body) {
   constexpr double kCrease = 0.7;  // cosine
-  const BodySurface& surface = *body.surface;
+  const BodyMoment moment = body.surface->at(body.time);
+  const BodyForm& form = moment.form();
+  std::vector<Vec3> normals;
+  for (std::size_t n = 0; n < form.triangles.size(); ++n)
+    normals.push_back(moment.face_normal(int(n)));
   ShapeMesh mesh;
-  for (std::size_t n = 0; n < surface.triangles().size(); ++n) {
-    const Vec3& own = surface.face_normal(int(n));
-    for (const int vertex : surface.triangles()[n]) {
+  for (std::size_t n = 0; n < form.triangles.size(); ++n) {
+    for (const int vertex : form.triangles[n]) {
       Vec3 sum{};
-      for (const int other : surface.at_vertex(vertex)) {
-        const Vec3& normal = surface.face_normal(other);
-        if (dot(own, normal) > kCrease) sum = plus(sum, normal);
+      for (const int other : form.at_vertex(vertex)) {
+        const Vec3& normal = normals[std::size_t(other)];
+        if (dot(normals[n], normal) > kCrease) sum = plus(sum, normal);
       }
-      mesh.positions.push_back(surface.vertices()[std::size_t(vertex)]);
-      mesh.normals.push_back(times(sum, 1 / std::sqrt(dot(sum, sum))));
+      mesh.positions.push_back(moment.vertex(vertex));
+      mesh.normals.push_back(unit(sum));
     }
     const auto first = std::uint32_t(3 * n);
     mesh.triangles.push_back({first, first + 1, first + 2});

@@ -1,6 +1,7 @@
 // Colliders as geometry (weft/shape.h): the shapes' own halves, put where the scene has them.
 #include "physics/contact/colliders/shapes.h"
 
+#include "physics/contact/body/body_surface.h"
 #include "physics/model/path.h"
 
 namespace weft {
@@ -31,13 +32,27 @@ Vec3 displacement(const Collider& collider, double time) {
   return minus(position_at(collider.keys, time), place_of(collider.shape));
 }
 
-double signed_distance(const Collider& collider, double time, const Vec3& point) {
-  return std::visit(
-      [&](const auto& s) {
-        const Vec3 place = collider.keys.empty() ? place_of(s) : position_at(collider.keys, time);
-        return nearest_of(s, minus(point, place)).distance;
-      },
-      collider.shape);
+Shape at_time(Shape shape, double time) {
+  if (MeshBody* body = std::get_if<MeshBody>(&shape); body && body->motion) body->time = time;
+  return shape;
 }
+
+double signed_distance(const Collider& collider, double time, const Vec3& point) {
+  const Vec3 place =
+      collider.keys.empty() ? place_of(collider.shape) : position_at(collider.keys, time);
+  return nearest_at(collider.shape, time, minus(point, place)).distance;
+}
+
+namespace physics {
+
+Nearest nearest_at(const Shape& shape, double time, const Vec3& p) {
+  if (const MeshBody* body = std::get_if<MeshBody>(&shape)) {
+    const BodySurface::Point point = body->surface->at(time).nearest(p);
+    return {point.distance, point.normal};
+  }
+  return std::visit([&](const auto& s) { return nearest_of(s, p); }, shape);
+}
+
+}  // namespace physics
 
 }  // namespace weft

@@ -48,6 +48,15 @@ struct Core {
 WEFT_SHAPES(WEFT_SHAPE)
 #undef WEFT_SHAPE
 
+// The surface of a collider that is a mesh; null of others.
+inline const BodySurface* surface_of(const Collider& collider) {
+  const MeshBody* body = std::get_if<MeshBody>(&collider.shape);
+  return body ? body->surface.get() : nullptr;
+}
+
+// Of a collider that stands at its place, by how it is at a time [s].
+Nearest nearest_at(const Shape& shape, double time, const Vec3& p);
+
 // Adds a surface of `across` by `along` quads between points point(u, v), 0 <= u, v <= 1, with
 // normals normal(u, v); seen from outside, u runs to the right and v up.
 template <class Point, class Normal>

@@ -1,0 +1,91 @@
+#include "physics/contact/body/body_passage.h"
+
+#include <cmath>
+
+#include "physics/contact/body/meeting.h"
+
+namespace weft::physics {
+
+// What passes an edge is not to be lost, and of two triangles that a path meets at once the first counts.
+BodyPassage::Hit BodyPassage::first_on(const Vec3& from, const Vec3& to) const {
+  AlignedBox box;
+  box.add(from);
+  box.add(to);
+  double first = 2;
+  Hit hit;
+  now.swept(before, box, [&](int n) {
+    const Triangle end = now.corners(n);
+    const Met met = moves() ? meets_moving(from, to, before.corners(n), end) : meets(from, to, end);
+    if (met.at > first || (met.at == first && n > hit.triangle)) return;
+    first = met.at;
+    hit = {n, met.weights};
+  });
+  return first > 1 ? Hit{} : hit;
+}
+
+// What is only pressed into the surface sees the same side from both ends of its path.
+BodyPassage::Point BodyPassage::entered_at(const Vec3& from, const Vec3& to, const Point& was,
+                                           const Point& is) const {
+  constexpr double kSameSide = 0.5;  // cosine
+  if (dot(was.normal, is.normal) > kSameSide) return is;
+  const Hit hit = first_on(from, to);
+  if (hit.triangle < 0) return is;
+  const Vec3 n = now.face_normal(hit.triangle);
+  const double beyond = dot(minus(to, now.on(hit.triangle, hit.weights)), n);
+  return beyond < 0 ? Point{beyond, n, hit.triangle, hit.weights} : is;
+}
+
+BodyPassage::Point BodyPassage::on_side_of(const Vec3& from, const Vec3& to,
+                                           const Point& is) const {
+  constexpr double kSameSheet = 0.5;  // cosine
+  const Hit hit = first_on(from, to);
+  if (hit.triangle < 0) return is;
+  const Vec3 n = now.face_normal(hit.triangle);
+  const Vec3 path = minus(minus(to, from), way(hit.triangle, hit.weights));
+  const Vec3 back = times(n, dot(path, n) > 0 ? -1 : 1);  // to where it was
+  if (dot(is.normal, back) < -kSameSheet)
+    return {-is.distance, times(is.normal, -1), is.triangle, is.weights};
+  return {dot(minus(to, now.on(hit.triangle, hit.weights)), back), back, hit.triangle, hit.weights};
+}
+
+double strays(const BodyMoment& begin, const BodyMoment& end, const Vec3& way, int triangle) {
+  const Triangle from = begin.corners(triangle), to = end.corners(triangle);
+  double square = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 d = minus(minus(to[k], from[k]), way);
+    square = std::max(square, dot(d, d));
+  }
+  return std::sqrt(square);
+}
+
+int within_between(const BodyMoment& begin, const BodyMoment& end, const Vec3& from, const Vec3& to,
+                   double distance, std::array<int, BodyMoment::kListed>& found, double& loose) {
+  loose = 0;
+  const Vec3 way = minus(to, from), back = times(way, -1);
+  int count = 0;
+  const std::vector<BodyForm::Part>& parts = begin.form().parts;
+  for (std::size_t part = 0; part < parts.size(); ++part)
+    parts[part].tree.visit(
+        [&](int node) {
+          AlignedBox all = begin.part_box(part, node);
+          all.add(end.part_box(part, node).moved(back));
+          return all.square_from(from) <= distance * distance;
+        },
+        [&](int n) {
+          const int triangle = parts[part].first + n;
+          const Triangle t = begin.corners(triangle);
+          const Weights w = nearest_on(t, from);
+          const Vec3 d =
+              minus(from, plus(plus(times(t[0], w[0]), times(t[1], w[1])), times(t[2], w[2])));
+          const double strayed = strays(begin, end, way, triangle);
+          if (std::sqrt(dot(d, d)) - strayed > distance) return;
+          loose = std::max(loose, strayed);
+          if (count < BodyMoment::kListed) found[std::size_t(count)] = triangle;
+          ++count;
+        });
+  if (count > BodyMoment::kListed) return -1;
+  std::sort(found.begin(), found.begin() + count);
+  return count;
+}
+
+}  // namespace weft::physics
