@@ -107,7 +107,7 @@ Scene scene_of(const Value& value, const Meshes& meshes) {
   for_each_mesh(file.scene, [&](MeshSource& mesh, const std::string& place) {
     const auto found = meshes.find(mesh.file);
     if (found == meshes.end())
-      fail(value.place + place + "/file", "the mesh is missing",
+      fail(value.place + place_of_file(place), "the mesh is missing",
            "a file in meshes, of this line or one before");
     mesh.shape = found->second;
     any = true;
