@@ -41,7 +41,7 @@ TEST(CliErrors, CommandLineFaultsNameTheOptionAndWhatIsAllowed) {
 
 TEST(CliErrors, WhatCannotBeWrittenIsRefusedWithWhatCan) {
   expect_usage_error("run small.json --export a.abc", "--export",
-                     "(.pc2, .mdd, .obj, .gltf, .glb)");
+                     "(.pc2, .mdd, .obj, .gltf, .glb, .usda)");
 }
 
 TEST(CliErrors, TwoOutputsToOneFileAreRefused) {

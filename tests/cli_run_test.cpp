@@ -100,12 +100,13 @@ TEST(CliRun, WritesAnObjSequence) {
 TEST(CliRun, WritesEveryAnimationFormat) {
   const Folder folder;
   small_scene(folder);
-  for (const char* name : {"a.mdd", "a.glb", "a.gltf"})
+  for (const char* name : {"a.mdd", "a.glb", "a.gltf", "a.usda"})
     EXPECT_EQ(run_weft(folder, std::string("run small.json --frames 2 --export ") + name).exit_code,
               0);
   EXPECT_EQ(folder.read("a.mdd").size(), 8U + 3 * 4 + 3 * 48 * 12);
   EXPECT_EQ(folder.read("a.glb").substr(0, 4), "glTF");
   EXPECT_TRUE(folder.has("a.bin"));
+  EXPECT_EQ(folder.read("a.usda").substr(0, 10), "#usda 1.0\n");
   const Outcome outcome = run_weft(folder, "run small.json --frames 9000 --export b.glb");
   EXPECT_EQ(outcome.exit_code, 5);
   EXPECT_NE(outcome.err.find("do not fit morph targets"), std::string::npos) << outcome.err;

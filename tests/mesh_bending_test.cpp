@@ -1,4 +1,4 @@
-// Bending of a mesh: its damping takes what flaps and leaves alone what turns as a whole; it is flat at rest.
+// Bending of a mesh: its damping takes what flaps and leaves alone what turns as a whole; a note tells where it flattens.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,22 +66,25 @@ TEST(MeshBending, TakesWhatFlaps) {
   EXPECT_GT(left[1], -1e-6);
 }
 
-// Bending knows no curve at rest: a mesh that is read curved is told of, a flat one is not.
+// A mesh that is curved and is to be flat is told of; not one that is flat, nor one that stays curved.
 TEST(MeshBending, ANoteTellsThatBendingFlattens) {
   const auto flat = made_up({.nx = 15, .ny = 13, .width = 0.6, .height = 0.5, .shift = 0.3});
   auto curved = std::make_shared<TriangleMesh>(*flat);
   const std::vector<double> x = rolled(*flat);
   for (std::size_t n = 0; n < curved->vertices.size(); ++n)
     curved->vertices[n] = {x[3 * n], x[3 * n + 1], x[3 * n + 2]};
-  const auto told = [](std::shared_ptr<const TriangleMesh> mesh) {
-    const Simulation run(free_scene(std::move(mesh), 0), {.threads = 1});
+  const auto told = [](std::shared_ptr<const TriangleMesh> mesh, MeshRest rest) {
+    Scene scene = free_scene(std::move(mesh), 0);
+    scene.cloths[0].mesh.rest = rest;
+    const Simulation run(scene, {.threads = 1});
     const std::vector<std::string>& notes = run.plan().notes;
     return std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
-      return note.find("cloth 0: bending draws the mesh flat") == 0;
+      return note.find("cloth 0: bending draws the mesh to its shape at rest") == 0;
     });
   };
-  EXPECT_TRUE(told(curved));
-  EXPECT_FALSE(told(flat));
+  EXPECT_TRUE(told(curved, MeshRest::flat));
+  EXPECT_FALSE(told(curved, MeshRest::shape));
+  EXPECT_FALSE(told(flat, MeshRest::flat));
 }
 
 }  // namespace

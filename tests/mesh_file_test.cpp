@@ -136,6 +136,9 @@ TEST(MeshFile, RefusesWhatIsNoClothAndNamesTheLine) {
   EXPECT_EQ(told(weft::read_mesh("/no/such.obj")),
             "/no/such.obj: there is no such mesh file (a readable .obj file)\n");
   EXPECT_EQ(told(weft::read_mesh("a.txt")), "a.txt: the file is of no known kind (.obj)\n");
+  EXPECT_EQ(told(weft::read_mesh("obj")), "obj: the file is of no known kind (.obj)\n");
+  EXPECT_EQ(told(weft::read_mesh("a.oBJ")),
+            "a.oBJ: there is no such mesh file (a readable .obj file)\n");
 }
 
 // Any bytes: no crash, and faults stay few.

@@ -34,6 +34,12 @@ const char* const kMeets = R"({"cloths": [
     {"mesh": {"file": "other.obj", "translate": [0, 0.11, 0]}, "velocity": [1, -1, 0],
      "self_collision": {"mode": "particles", "thickness": 0.1}}]})";
 
+// What bends, and what rests as its texture coordinates.
+const char* const kCurved = R"({"cloths": [{"mesh": {"file": "curved.obj"}, "pins": [0, 30],
+    "bending": 0.01}]})";
+const char* const kPattern = R"({"cloths": [{"mesh": {"file": "mapped.obj", "rest": "uv"},
+    "pins": [0, 30]}]})";
+
 const std::map<std::string, Key> kKeys = {
     {"/gravity", {"[0, -5, 0]"}},
     {"/time/frame", {"0.01"}},
@@ -61,6 +67,8 @@ const std::map<std::string, Key> kKeys = {
     {"/cloths/0/mesh/scale", {"1.1"}},
     {"/cloths/0/mesh/rotate", {"[10, 0, 0]"}},
     {"/cloths/0/mesh/translate", {"[0, 1, 0]"}},
+    {"/cloths/0/mesh/rest", {R"("flat")", kCurved}},
+    {"/cloths/0/mesh/uv_scale", {"1.1", kPattern}},
     {"/cloths/0/density", {"0.1"}},
     {"/cloths/0/particle_mass", {"0.01"}},
     {"/cloths/0/masses", {"[0.01, 0.01]"}},
@@ -142,6 +150,17 @@ class MeshKeys : public testing::Test {
   MeshKeys() {
     write_mesh(folder_ / "m.obj", *made_up({.nx = 7, .ny = 6, .shift = 0.2}));
     write_mesh(folder_ / "other.obj", *made_up({.nx = 6, .ny = 6, .shift = 0.2}));
+    TriangleMesh mesh = *made_up({.nx = 7, .ny = 6, .shift = 0.2});
+    for (const auto& t : mesh.triangles) {
+      auto& uv = mesh.uv.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& at = mesh.vertices[std::size_t(t[k])];
+        uv[k] = {at[0], at[2]};
+      }
+    }
+    folder_.write("mapped.obj", write_obj(mesh));
+    for (Vec3& at : mesh.vertices) at[1] = 0.3 * at[0] * at[0];
+    write_mesh(folder_ / "curved.obj", mesh);
   }
   Outcome run(const Json& scene) {
     std::ofstream(folder_ / "s.json") << scene;

@@ -27,7 +27,8 @@ TEST(MeshCloth, ForcesAreTheSlopeOfTheEnergy) {
   for (const Material& material : kMaterials) {
     Scene scene = scene_of(mesh);
     material.set(scene);
-    const auto triangles = physics::rest_triangles(*mesh, mesh->vertices, scene.cloths[0].bending);
+    const auto triangles =
+        physics::rest_triangles(*mesh, {mesh->vertices}, scene.cloths[0].bending);
     const auto made_of = physics::material_of(scene.cloths[0], false);
     std::vector<Vec3> x = rumpled(*mesh, 0.05, 3), force(x.size());
     physics::add_mesh_forces(triangles, made_of, x, nullptr, force);
@@ -63,7 +64,7 @@ TEST(MeshCloth, KernelsDoWhatTheEquationsSay) {
     const auto rounded = positions_of(run);
     run.advance_frame();
 
-    const auto triangles = physics::rest_triangles(*mesh, mesh->vertices, cloth.bending);
+    const auto triangles = physics::rest_triangles(*mesh, {mesh->vertices}, cloth.bending);
     const auto made_of =
         physics::material_of(cloth, scene.solver.method == Method::spring_friction);
     std::vector<double> masses(start.size());

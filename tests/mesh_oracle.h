@@ -33,7 +33,7 @@ class Oracle {
         cloth_(scene.cloths[0]),
         mesh_(*cloth_.mesh.shape),
         edges_(physics::edges_of(mesh_, mesh_.vertices)),
-        triangles_(physics::rest_triangles(mesh_, mesh_.vertices, cloth_.bending)),
+        triangles_(physics::rest_triangles(mesh_, {mesh_.vertices}, cloth_.bending)),
         dt_(scene.time.frame / scene.time.substeps),
         w_(start.size()) {
     for (const Vec3& p : start) x_.emplace_back(p[0], p[1], p[2]);

@@ -122,9 +122,12 @@ TEST(Obj, ShowsWhatIsLeftOfTornCloth) {
   std::istringstream lines(folder.read("run_0000.obj"));
   std::vector<std::string> faces, vertices;
   for (std::string line; std::getline(lines, line);)
-    if (line[0] != 'o') (line[0] == 'f' ? faces : vertices).push_back(line);
-  EXPECT_EQ(faces, (std::vector<std::string>{"f 1 2 4", "f 2 3 5", "f 3 6 5", "f 7 8 9",
-                                             "f 10 11 13 12"}));
+    if (line[0] == 'f')
+      faces.push_back(line);
+    else if (line[1] == ' ' && line[0] == 'v')
+      vertices.push_back(line);
+  EXPECT_EQ(faces, (std::vector<std::string>{"f 1/1 2/2 4/4", "f 2/2 3/3 5/5", "f 3/3 6/6 5/5",
+                                             "f 7 8 9", "f 10/7 11/8 13/10 12/9"}));
   ASSERT_EQ(vertices.size(), 6U + 3 + 4);
   EXPECT_EQ(vertices[7], "v 4 5 6");
 }
@@ -177,12 +180,13 @@ TEST(Obj, HasOneObjectOfQuadsPerCloth) {
   std::size_t vertices = 0;
   for (std::string line; std::getline(lines, line);) {
     if (line[0] == 'o') objects.push_back(line);
-    if (line[0] == 'v') ++vertices;
+    if (line.starts_with("v ")) ++vertices;
     if (line[0] == 'f') faces.push_back(line);
   }
   EXPECT_EQ(objects, (std::vector<std::string>{"o cloth_0", "o cloth_1"}));
   EXPECT_EQ(vertices, 10U);
-  EXPECT_EQ(faces, (std::vector<std::string>{"f 1 2 5 4", "f 2 3 6 5", "f 7 8 10 9"}));
+  EXPECT_EQ(faces, (std::vector<std::string>{"f 1/1 2/2 5/5 4/4", "f 2/2 3/3 6/6 5/5",
+                                             "f 7/7 8/8 10/10 9/9"}));
 }
 
 TEST(Obj, CoordinatesReadBackToTheSameBits) {

@@ -24,6 +24,9 @@ weft::Scene full_scene() {
   weft::Cloth& cloth = scene.cloths.emplace_back();
   cloth.masses = {1, 1, 1, 1};
   cloth.pins = {{0, 0, {}}, {1, 1, {{0, {0, 0, 0}}}}};
+  cloth.pins.push_back({.keys = {{0, {0, 0, 0}}}, .vertices = {1}});
+  cloth.pins.push_back({.keys = {}, .group = "hem"});
+  cloth.pins.push_back({.keys = {}, .box = weft::BoxCorners{}});
   for (const weft::Shape& shape :
        {weft::Shape(weft::Sphere{}), weft::Shape(weft::Plane{}), weft::Shape(weft::Capsule{}),
         weft::Shape(weft::Box{}), weft::Shape(weft::Cylinder{}), weft::Shape(weft::MeshBody{})})

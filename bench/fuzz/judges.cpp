@@ -115,7 +115,7 @@ Judges::Judges(const Simulation& simulation) {
     const ClothView& c = view.cloths[n];
     const Cloth& cloth = simulation.scene().cloths[n];
     const std::vector<std::size_t> lanes = lanes_of(c);
-    for (const Pin& pin : cloth.pins) {
+    for (const Pin& pin : single_pins(cloth)) {
       const std::size_t p = lanes[std::size_t(particle_number(cloth, pin))];
       if (!pin.moves()) held_.push_back({n, p, {c.x[p], c.y[p], c.z[p]}});
     }

@@ -214,7 +214,7 @@ void Laws::check_planes(const Simulation& simulation) const {
 void Laws::check_paths(const Simulation& simulation) const {
   const Vec3 origin = simulation.view().origin;
   for_each_cloth(simulation, [&](const Cloth& c, const auto& x, const auto&) {
-    for (const Pin& pin : c.pins) {
+    for (const Pin& pin : single_pins(c)) {
       if (pin.keys.empty() || pin.follow >= 0 || !pin.rotate.keys.empty()) continue;
       const Vec3 here = x[std::size_t(particle_number(c, pin))];
       const Vec3 there = physics::position_at(pin.keys, simulation.time());

@@ -30,6 +30,20 @@ void leave_out_what_is_of_grids(Cloth& c) {
   c.self_collision.response = plain.self_collision.response;
 }
 
+// As it is, flat, as its texture coordinates, or bent otherwise.
+void choose_rest(Cloth& c, Draw& draw, const std::string& file) {
+  c.mesh.rest =
+      draw.of({MeshRest::shape, MeshRest::shape, MeshRest::flat, MeshRest::uv, MeshRest::file});
+  if (c.mesh.rest == MeshRest::uv && c.mesh.shape->uv.empty()) c.mesh.rest = MeshRest::flat;
+  if (c.mesh.rest == MeshRest::uv) c.mesh.uv_scale = draw.decades(0.8, 1.25);
+  if (c.mesh.rest != MeshRest::file) return;
+  auto shape = std::make_shared<TriangleMesh>(*c.mesh.shape);
+  const double curve = draw.uniform(-1, 1) / std::max(extent(c).size / c.mesh.scale, 1e-9);
+  for (Vec3& p : shape->vertices) p[1] += curve * p[0] * p[0];
+  c.mesh.at_rest.file = file;
+  c.mesh.at_rest.shape = std::move(shape);
+}
+
 // The method and the sweep that meshes have.
 void choose_method(Scene& scene, Draw& draw) {
   Solver& s = scene.solver;
@@ -41,7 +55,10 @@ void choose_method(Scene& scene, Draw& draw) {
   }
   if (s.sweep == Sweep::jacobi) s.sweep = draw.of({Sweep::line, Sweep::gauss_seidel});
   for (Cloth& c : scene.cloths)
-    if (c.mesh.given()) c.membrane = {};
+    if (c.mesh.given()) {
+      c.membrane = {};
+      if (s.tethers && c.mesh.rest == MeshRest::uv) c.mesh.rest = MeshRest::flat;
+    }
 }
 
 }  // namespace
@@ -70,6 +87,25 @@ std::vector<Pin> Parts::vertex_pins(const Cloth& c, const Time& time) {
   return pins;
 }
 
+void Parts::gather_pins(Scene& scene) {
+  for (Cloth& c : scene.cloths) {
+    if (!draw_.chance(0.2)) continue;
+    Pin all{-1, 0, {}};
+    for (const Pin& pin : c.pins)
+      if (!pin.moves()) all.vertices.push_back(particle_number(c, pin));
+    std::erase_if(c.pins, [](const Pin& pin) { return !pin.moves(); });
+    const Extent e = extent(c);
+    if (draw_.chance(0.5)) all.keys = path({}, e.size, scene.time.frame);
+    if (all.vertices.empty()) {
+      const Vec3 corner = plus(e.middle, draw_.vector(0.6 * e.size));
+      all.box = BoxCorners{corner, plus(corner, draw_.vector(e.size))};
+    }
+    c.pins.push_back(std::move(all));
+    // A box may hold nothing, or what is held already.
+    if (c.pins.back().box && !validate(scene).empty()) c.pins.pop_back();
+  }
+}
+
 // Pins hold the vertices of their particles' numbers, where there are as many.
 void Parts::make_mesh(Cloth& c, const std::string& file) {
   const Grid g = c.grid;
@@ -90,6 +126,7 @@ void Parts::make_mesh(Cloth& c, const std::string& file) {
   for (Pin& pin : c.pins) pin.i = particle_number(g, pin.i, pin.j), pin.j = 0;
   std::erase_if(c.pins, [&](const Pin& pin) { return pin.i >= vertices; });
   leave_out_what_is_of_grids(c);
+  choose_rest(c, draw_, "rest-" + file);
 }
 
 MeshBody Parts::body(const Vec3& at, double size, const std::string& file) {

@@ -44,6 +44,8 @@ class Parts {
 
   // Some optional feature, more often in rich scenes.
   bool some(double share) { return draw_.chance(share * richness_); }
+  // Some that stand still become one pin of several; others hold what starts within a box.
+  void gather_pins(weft::Scene& scene);
   std::vector<weft::Pin> pins(const weft::Cloth& cloth, const weft::Time& time);
   double stiffness();
 

@@ -78,6 +78,7 @@ Scene draw_scene(Draw draw) {
     scene.colliders.push_back(parts.collider(scene.cloths[0], scene.time));
   parts.add_motion(scene);
   if (draw.chance(0.3)) parts.add_meshes(scene);
+  parts.gather_pins(scene);
   shorten_frames(scene);
   return scene;
 }

@@ -268,7 +268,8 @@ void add_run(CLI::App& program, int& exit_code) {
   command
       ->add_option("--export", arguments->files.animation,
                    "Write the animation: FILE.pc2 or FILE.mdd (point caches), FILE.obj "
-                   "(FILE_0000.obj, …), FILE.glb or FILE.gltf (morph targets)")
+                   "(FILE_0000.obj, …), FILE.glb or FILE.gltf (morph targets), FILE.usda (time "
+                   "samples)")
       ->type_name("FILE")
       ->check(CLI::Validator(fault_of_animation, ""));
   command

@@ -16,12 +16,13 @@ struct Format {
                                      std::int64_t samples);
 };
 
-constexpr std::array<Format, 5> kFormats{{
+constexpr std::array<Format, 6> kFormats{{
     {".pc2", open_pc2},
     {".mdd", open_mdd},
     {".obj", open_obj_sequence},
     {".gltf", open_gltf},
     {".glb", open_gltf},
+    {".usda", open_usda},
 }};
 
 }  // namespace

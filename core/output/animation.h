@@ -50,6 +50,8 @@ std::unique_ptr<Animation> open_mdd(const std::string& path, const View& first,
                                     std::int64_t samples);
 std::unique_ptr<Animation> open_gltf(const std::string& path, const View& first,
                                      std::int64_t samples);
+std::unique_ptr<Animation> open_usda(const std::string& path, const View& first,
+                                     std::int64_t samples);
 std::unique_ptr<Animation> open_obj_sequence(const std::string& path, const View& first,
                                              std::int64_t samples);
 

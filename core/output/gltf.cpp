@@ -2,16 +2,19 @@
 // is each cloth's mesh, every later one a morph target (its displacement from the first), and one
 // animation blends from each to the next at the times of the samples. Morph targets move vertices and
 // keep triangles, so that cloth that tears cannot be written, and each target is held whole by whoever
-// reads it, so that an animation may be too large.
+// reads it, so that an animation may be too large. Vertices are the particles in scene order; where one has
+// several texture coordinates, as along a seam, vertices of its own for the others follow all of these.
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "output/animation.h"
 #include "output/bytes.h"
+#include "output/faces.h"
 #include "output/gltf_pair.h"
 #include "output/spool.h"
 
@@ -39,12 +42,7 @@ class Gltf final : public Animation {
     else
       pair_.emplace(path);
     refuse_size(std::max<std::int64_t>(samples, 1), particle_count(first));
-    for (const ClothView& cloth : first.cloths) {
-      if (!cloth.lanes.empty())
-        throw WriteError(path_, "a mesh is not written as glTF; .obj, .pc2 and .mdd take it");
-      shapes_.push_back({cloth.columns, cloth.rows});
-      append_indices(cloth);
-    }
+    for (const ClothView& cloth : first.cloths) shapes_.push_back(shape_of(cloth));
   }
 
   void append(const View& view) override {
@@ -56,11 +54,11 @@ class Gltf final : public Animation {
     std::size_t at = 0;  // in base_
     for (std::size_t c = 0; c < view.cloths.size(); ++c) {
       const ClothView& cloth = view.cloths[c];
-      if (cloth.columns != shapes_[c].columns || cloth.rows != shapes_[c].rows)
+      if (particle_count(cloth) != shapes_[c].particles)
         throw std::invalid_argument("an animation keeps its number of particles");
-      if (cloth.topology_version > 0)
+      if (cloth.topology_version != shapes_[c].version)
         throw WriteError(path_, "the cloth tears, which morph targets cannot follow; .obj can");
-      append_positions(view, cloth, base, at);
+      append_positions(view, c, base, at);
     }
   }
 
@@ -72,7 +70,7 @@ class Gltf final : public Animation {
       for (std::size_t target = 1; target < times_.size(); ++target)
         append_little_endian(tail, s == target ? 1.0F : 0.0F);
     const std::int64_t size =
-        std::int64_t(indices_.size()) + spool_.bytes() + std::int64_t(tail.size());
+        std::int64_t(indices_.size() + uv_.size()) + spool_.bytes() + std::int64_t(tail.size());
     if (pair_) {
       write_buffer(pair_->buffer(), tail);
       pair_->complete([&](const std::string& uri) { return document(size, uri) + "\n"; });
@@ -91,9 +89,10 @@ class Gltf final : public Animation {
 
  private:
   struct Shape {
-    int columns, rows;
-    std::int64_t vertices() const { return std::int64_t{columns} * rows; }
-    std::int64_t corners() const { return 6 * std::int64_t{columns - 1} * (rows - 1); }
+    std::int64_t particles, corners, uv;  // how many; uv: of vertices, or 0
+    std::uint64_t version;                // of the topology
+    std::vector<std::int64_t> copies;     // the particles of vertices that follow them
+    std::int64_t vertices() const { return particles + std::int64_t(copies.size()); }
   };
 
   void refuse_size(std::int64_t samples, std::int64_t particles) const {
@@ -102,35 +101,66 @@ class Gltf final : public Animation {
                                   " particles do not fit morph targets; .pc2 and .mdd can");
   }
 
-  void append_indices(const ClothView& cloth) {
-    const auto columns = static_cast<std::uint32_t>(cloth.columns);
-    for (int j = 0; j + 1 < cloth.rows; ++j)
-      for (int i = 0; i + 1 < cloth.columns; ++i) {
-        const std::uint32_t a =
-            static_cast<std::uint32_t>(j) * columns + static_cast<std::uint32_t>(i);
-        for (const std::uint32_t corner :
-             {a, a + 1, a + columns, a + 1, a + columns + 1, a + columns})
-          append_little_endian(indices_, corner);
+  // Indices and texture coordinates go to their buffers. A grid that tears is refused with its first sample.
+  Shape shape_of(const ClothView& cloth) {
+    const Faces faces = faces_of(cloth);
+    Shape shape{particle_count(cloth), 0, 0, cloth.lanes.empty() ? 0 : cloth.topology_version, {}};
+    const bool mapped = !faces.uv_of.empty();
+    std::vector<std::int64_t> uv(std::size_t(shape.particles), -1);  // of vertices
+    std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> copies;
+    const auto vertex = [&](std::size_t corner) {
+      const std::int64_t p = faces.particles[corner];
+      if (!mapped) return p;
+      std::int64_t& first = uv[std::size_t(p)];
+      if (first < 0) first = faces.uv_of[corner];
+      if (first == faces.uv_of[corner]) return p;
+      const auto [copy, fresh] =
+          copies.try_emplace({p, faces.uv_of[corner]}, std::int64_t(uv.size()));
+      if (fresh) {
+        shape.copies.push_back(p);
+        uv.push_back(faces.uv_of[corner]);
       }
+      return copy->second;
+    };
+    for (std::size_t face = 0; face < faces.particles.size(); face += faces.corners) {
+      const std::size_t last = face + faces.corners - 1;
+      for (std::size_t k = face; k + 2 <= last; ++k)
+        for (const std::size_t corner : {k, k + 1, last}) {
+          append_little_endian(indices_, static_cast<std::uint32_t>(vertex(corner)));
+          ++shape.corners;
+        }
+    }
+    for (const std::int64_t n : uv) {
+      if (!mapped) break;
+      const std::array<double, 2> at = n < 0 ? std::array<double, 2>{} : faces.uv[std::size_t(n)];
+      append_little_endian(uv_, static_cast<float>(at[0]));
+      append_little_endian(uv_, static_cast<float>(1 - at[1]));  // from above in this format
+      ++shape.uv;
+    }
+    return shape;
   }
 
-  void append_positions(const View& view, const ClothView& cloth, bool base, std::size_t& at) {
+  void append_positions(const View& view, std::size_t c, bool base, std::size_t& at) {
     constexpr float far = std::numeric_limits<float>::max();
     Bounds bounds{{far, far, far}, {-far, -far, -far}};
     some_.clear();
+    now_.clear();
     std::array<float, 3> off{};  // from the node's translation
     for (std::size_t k = 0; k < 3; ++k) off[k] = static_cast<float>(view.origin[k] - origin_[k]);
-    for_each_particle(cloth, [&](float x, float y, float z) {
-      x += off[0], y += off[1], z += off[2];
-      if (base) base_.push_back({x, y, z});
-      const std::array<float, 3> from = base ? std::array<float, 3>{} : base_[at++];
-      const std::array<float, 3> now{x - from[0], y - from[1], z - from[2]};
-      for (std::size_t k = 0; k < 3; ++k) {
-        bounds.low[k] = std::min(bounds.low[k], now[k]);
-        bounds.high[k] = std::max(bounds.high[k], now[k]);
-        append_little_endian(some_, now[k]);
-      }
+    for_each_particle(view.cloths[c], [&](float x, float y, float z) {
+      now_.push_back({x + off[0], y + off[1], z + off[2]});
     });
+    for (const std::int64_t p : shapes_[c].copies) now_.push_back(now_[std::size_t(p)]);
+    for (const std::array<float, 3>& p : now_) {
+      if (base) base_.push_back(p);
+      const std::array<float, 3> from = base ? std::array<float, 3>{} : base_[at++];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float moved = p[k] - from[k];
+        bounds.low[k] = std::min(bounds.low[k], moved);
+        bounds.high[k] = std::max(bounds.high[k], moved);
+        append_little_endian(some_, moved);
+      }
+    }
     spool_.write(some_);
     bounds_.push_back(bounds);
   }
@@ -157,7 +187,9 @@ class Gltf final : public Animation {
       return std::int64_t(accessors.size()) - 1;
     };
     for (const Shape& s : shapes_)  // accessor c: triangles of cloth c
-      accessor(place(s.corners() * 4, kIndices), kUnsignedInt, s.corners(), "SCALAR");
+      accessor(place(s.corners * 4, kIndices), kUnsignedInt, s.corners, "SCALAR");
+    std::vector<std::int64_t> uv_views;
+    for (const Shape& s : shapes_) uv_views.push_back(s.uv > 0 ? place(s.uv * 8, kVertices) : -1);
     const std::size_t samples = times_.size();
     for (std::size_t n = 0; n < samples * shapes_.size(); ++n) {  // then sample after sample
       const std::int64_t vertices = shapes_[n % shapes_.size()].vertices();
@@ -168,6 +200,9 @@ class Gltf final : public Animation {
     for (std::size_t c = 0; c < shapes_.size(); ++c) {
       const auto position = [&](std::size_t sample) { return shapes_.size() * (1 + sample) + c; };
       Json primitive{{"attributes", {{"POSITION", position(0)}}}, {"indices", c}, {"material", 0}};
+      if (uv_views[c] >= 0)
+        primitive["attributes"]["TEXCOORD_0"] =
+            accessor(uv_views[c], kFloat, shapes_[c].uv, "VEC2");
       for (std::size_t s = 1; s < samples; ++s)
         primitive["targets"].push_back({{"POSITION", position(s)}});
       const std::string name = "cloth_" + std::to_string(c);
@@ -201,6 +236,7 @@ class Gltf final : public Animation {
 
   void write_buffer(OutputFile& file, const std::string& tail) {
     file.write(indices_);
+    file.write(uv_);
     spool_.copy_to(file);
     file.write(tail);
   }
@@ -231,7 +267,8 @@ class Gltf final : public Animation {
   Spool spool_;                       // positions and displacements
   std::vector<Shape> shapes_;
   std::array<double, 3> origin_;  // the nodes' translation [m]
-  std::string indices_, some_;
+  std::string indices_, uv_, some_;
+  std::vector<std::array<float, 3>> now_;
   std::vector<float> times_;
   std::vector<std::array<float, 3>> base_;
   std::vector<Bounds> bounds_;  // of every sample's cloths

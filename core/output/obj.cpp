@@ -1,6 +1,7 @@
 // Wavefront OBJ, one file per sample: run.obj becomes run_0000.obj, run_0001.obj, … Every cloth is
 // an object of quads over its grid or, once it is torn, of the triangles that are left and those along
-// its seams; coordinates are written so that they read back to the same bits. All files take their
+// its seams, or of its mesh's triangles, with texture coordinates; coordinates are written so that they read
+// back to the same bits. All files take their
 // names at the end, in order.
 #include <fcntl.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include <filesystem>
 
 #include "output/animation.h"
+#include "output/faces.h"
 
 namespace weft {
 
@@ -39,47 +41,44 @@ void append_vertices(std::string& text, const View& view, const ClothView& cloth
   for (const auto& [x, y, z] : cloth.tear_points) append_vertex(text, placed(view, x, y, z));
 }
 
-// Corners in the order that makes u × v the face normal. OBJ counts vertices from 1 over the whole
-// file; `first` is the number of the cloth's first one.
-void append_quads(std::string& text, const ClothView& cloth, std::int64_t first) {
-  const auto corner = [&](int i, int j) {
-    text += ' ';
-    append_number(text, first + static_cast<std::int64_t>(j) * cloth.columns + i);
-  };
-  for (int j = 0; j + 1 < cloth.rows; ++j) {
-    for (int i = 0; i + 1 < cloth.columns; ++i) {
-      text += 'f';
-      corner(i, j);
-      corner(i + 1, j);
-      corner(i + 1, j + 1);
-      corner(i, j + 1);
-      text += '\n';
+void append_uv(std::string& text, const Faces& faces) {
+  for (const auto& at : faces.uv) {
+    text += "vt";
+    for (const double value : at) {
+      text += ' ';
+      append_number(text, value);
     }
+    text += '\n';
   }
 }
 
-// What a mesh or a torn cloth shows: its triangles, then its seams, whose points follow the particles.
-void append_torn(std::string& text, const ClothView& cloth, std::int64_t first) {
-  const auto face = [&](const std::array<std::int64_t, 3>& corners) {
+// The numbers that a cloth's first vertex and texture coordinate have in the file, from 1.
+struct First {
+  std::int64_t vertex = 1, uv = 1;
+};
+
+void append_faces(std::string& text, const Faces& faces, const First& first) {
+  for (std::size_t n = 0; n < faces.particles.size(); ++n) {
+    text += n % faces.corners == 0 ? "f " : " ";
+    append_number(text, first.vertex + faces.particles[n]);
+    if (!faces.uv_of.empty()) {
+      text += '/';
+      append_number(text, first.uv + faces.uv_of[n]);
+    }
+    if (n % faces.corners + 1 == faces.corners) text += '\n';
+  }
+}
+
+// What is seen along a tear: triangles of points that follow the particles.
+void append_tears(std::string& text, const ClothView& cloth, std::int64_t first) {
+  for (const auto& t : cloth.tear_triangles) {
     text += 'f';
-    for (const std::int64_t corner : corners) {
+    for (const std::uint32_t point : t) {
       text += ' ';
-      append_number(text, corner);
+      append_number(text, first + point);
     }
     text += '\n';
-  };
-  std::vector<std::int64_t> numbers;  // of a mesh, by lane
-  if (!cloth.lanes.empty()) numbers.resize(cloth.x.size());
-  for (std::size_t n = 0; n < cloth.lanes.size(); ++n)
-    numbers[cloth.lanes[n]] = static_cast<std::int64_t>(n);
-  const auto particle = [&](std::uint32_t p) {
-    if (!numbers.empty()) return first + numbers[p];
-    const auto stride = static_cast<std::uint32_t>(cloth.stride);
-    return first + static_cast<std::int64_t>(p / stride) * cloth.columns + p % stride;
-  };
-  for (const auto& t : cloth.triangles) face({particle(t[0]), particle(t[1]), particle(t[2])});
-  const std::int64_t points = first + particle_count(cloth);
-  for (const auto& t : cloth.tear_triangles) face({points + t[0], points + t[1], points + t[2]});
+  }
 }
 
 // run.obj -> run_0012.obj; beyond 9999 the number grows a digit.
@@ -98,17 +97,19 @@ class ObjSequence final : public Animation {
   void append(const View& view) override {
     if (samples_ > 0) files_.emplace_back(obj_name(path_, samples_), files_.front());
     OutputFile& file = files_.back();
-    std::int64_t first = 1;
-    int number = 0;
-    for (const ClothView& cloth : view.cloths) {
-      text_ = "o cloth_" + std::to_string(number++) + "\n";
+    First first;
+    shown_.resize(view.cloths.size());
+    for (std::size_t c = 0; c < view.cloths.size(); ++c) {
+      const ClothView& cloth = view.cloths[c];
+      const Faces& faces = faces_now(c, cloth);
+      text_ = "o cloth_" + std::to_string(c) + "\n";
       append_vertices(text_, view, cloth);
-      if (cloth.topology_version > 0)
-        append_torn(text_, cloth, first);
-      else
-        append_quads(text_, cloth, first);
+      append_uv(text_, faces);
+      append_faces(text_, faces, first);
+      append_tears(text_, cloth, first.vertex + particle_count(cloth));
       file.write(text_);
-      first += particle_count(cloth) + static_cast<std::int64_t>(cloth.tear_points.size());
+      first.vertex += particle_count(cloth) + static_cast<std::int64_t>(cloth.tear_points.size());
+      first.uv += static_cast<std::int64_t>(faces.uv.size());
     }
     file.complete(false);
     ++samples_;
@@ -138,7 +139,19 @@ class ObjSequence final : public Animation {
   }
 
  private:
+  struct Shown {
+    std::uint64_t version = 0;  // of the topology
+    Faces faces;
+  };
+  const Faces& faces_now(std::size_t c, const ClothView& cloth) {
+    Shown& shown = shown_[c];
+    if (shown.faces.particles.empty() || shown.version != cloth.topology_version)
+      shown = {cloth.topology_version, faces_of(cloth)};
+    return shown.faces;
+  }
+
   std::filesystem::path path_;
+  std::vector<Shown> shown_;  // of every cloth
   std::int64_t samples_ = 0;
   std::vector<OutputFile> files_;
   std::string text_;  // one cloth, kept for its memory

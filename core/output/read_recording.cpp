@@ -126,7 +126,7 @@ Scene scene_of(const Value& value, const MeshStore& meshes) {
   bool any = false;
   for_each_mesh(file.scene, [&](const MeshSource& mesh, const std::string& place) {
     if (!mesh.shape)
-      fail(value.place + place + "/file", "the mesh is missing",
+      fail(value.place + place_of_file(place), "the mesh is missing",
            "a file in meshes, of this line or one before");
     any = true;
   });

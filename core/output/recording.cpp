@@ -21,7 +21,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Kind = Input::Kind;
 
-Json scene_json(const Scene& scene) {
+// What a group of a mesh holds is told by number: recorded meshes have no groups.
+Json scene_json(Scene scene) {
+  for (Cloth& cloth : scene.cloths)
+    for (Pin& pin : cloth.pins)
+      if (pin.group) {
+        pin.vertices = held_particles(cloth, pin);
+        pin.group.reset();
+      }
   return Json::parse(write_scene_text(scene));
 }
 
@@ -171,7 +178,7 @@ std::string difference(const Scene& a, const Scene& b) {
   std::string place;
   std::size_t n = 0;
   for_each_mesh(b, [&](const MeshSource& mesh, const std::string& here) {
-    if (!same_shape(*of_a[n++], mesh) && place.empty()) place = here + "/file";
+    if (!same_shape(*of_a[n++], mesh) && place.empty()) place = place_of_file(here);
   });
   for (n = 0; n < a.colliders.size() && place.empty(); ++n)
     if (!same_motion(a.colliders[n], b.colliders[n]))

@@ -1,6 +1,7 @@
 // Samples kept on disk (spool.h).
 #include "output/spool.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -17,12 +18,13 @@ void Spool::write(std::string_view bytes) {
   bytes_ += static_cast<std::int64_t>(bytes.size());
 }
 
-void Spool::copy_to(OutputFile& file) {
-  std::rewind(file_.get());
+void Spool::copy_to(OutputFile& file, std::int64_t from, std::int64_t bytes) {
   std::array<char, 1 << 16> block{};
-  for (std::int64_t left = bytes_; left > 0;) {
-    const std::size_t got = std::fread(block.data(), 1, block.size(), file_.get());
-    if (got == 0) throw WriteError(path_, "the temporary file cannot be read back");
+  const bool there = ::fseeko(file_.get(), from, SEEK_SET) == 0;
+  for (std::int64_t left = bytes; left > 0;) {
+    const auto most = std::min<std::int64_t>(left, std::int64_t(block.size()));
+    const std::size_t got = std::fread(block.data(), 1, std::size_t(most), file_.get());
+    if (!there || got == 0) throw WriteError(path_, "the temporary file cannot be read back");
     file.write({block.data(), got});
     left -= static_cast<std::int64_t>(got);
   }

@@ -17,8 +17,9 @@ class Spool {
   explicit Spool(std::string path);
   void write(std::string_view bytes);
   std::int64_t bytes() const { return bytes_; }
-  // Appends all that was written to the file.
-  void copy_to(OutputFile& file);
+  // Appends all that was written to the file, or so many bytes of it from a place on.
+  void copy_to(OutputFile& file) { copy_to(file, 0, bytes_); }
+  void copy_to(OutputFile& file, std::int64_t from, std::int64_t bytes);
 
  private:
   struct Close {

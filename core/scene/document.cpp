@@ -47,6 +47,10 @@ class FieldWriter {
     return object;
   }
 
+  static Json write(RestShape field) {
+    return field.rest == MeshRest::file ? Json(field.file) : write(field.rest);
+  }
+
   static Json write(Substeps field) {
     if (field.value == kAutoSubsteps) return "auto";
     return field.value;
@@ -67,7 +71,10 @@ class FieldWriter {
     Json at = write(Points{pin.i, pin.j});
     if (pin == Pin{pin.i, pin.j, {}, {}, -1}) return at;
     Json object = Json::object();
-    object["at"] = std::move(at);
+    if (!pin.vertices.empty()) object["vertices"] = write(pin.vertices);
+    if (pin.group) object["group"] = *pin.group;
+    if (pin.box) object["box"] = Json::array({write((*pin.box)[0]), write((*pin.box)[1])});
+    if (!pin.of_several()) object["at"] = std::move(at);
     if (!pin.keys.empty()) object["keys"] = write(pin.keys);
     if (pin.rotate != Rotation{}) object["rotate"] = write(pin.rotate);
     if (pin.follow != -1) object["follow"] = write(pin.follow);

@@ -17,6 +17,11 @@ struct Points {  // [nx, ny]
   int& ny;
 };
 
+struct RestShape {  // a word, or the name of a file
+  MeshRest& rest;
+  std::string& file;
+};
+
 struct VectorInTime {  // a vector, or {"keys": [[t, x, y, z], …]}
   Vec3& value;
   std::vector<Key>& keys;
@@ -42,6 +47,9 @@ constexpr std::array<const char*, 3> words(Lumping) {
 
 constexpr std::array<const char*, 3> words(Tears) {
   return {"split", "holes", "particles"};
+}
+constexpr std::array<const char*, 3> words(MeshRest) {
+  return {"shape", "flat", "uv"};
 }
 constexpr std::array<const char*, 2> words(LevelDiagonals) {
   return {"both", "one"};
@@ -92,6 +100,13 @@ void fields(Walk& walk, MeshSource& mesh) {
   walk("scale", mesh.scale);
   walk("rotate", mesh.rotate);
   walk("translate", mesh.translate);
+}
+
+template <class Walk>
+void fields(Walk& walk, ClothMesh& mesh) {
+  fields(walk, static_cast<MeshSource&>(mesh));
+  walk("rest", RestShape{mesh.rest, mesh.at_rest.file});
+  walk("uv_scale", mesh.uv_scale);
 }
 
 template <class Walk>

@@ -4,6 +4,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -56,10 +57,27 @@ class FieldReader {
       for (std::size_t k = 0; k < 2; ++k) read(value[k], field[k]);
   }
 
+  static void read(const Json& value, BoxCorners& field) {
+    if (value.is_array() && value.size() == 2)
+      for (std::size_t k = 0; k < 2; ++k) read(value[k], field[k]);
+  }
+
+  template <class T>
+  static void read(const Json& value, std::optional<T>& field) {
+    read(value, field.emplace());
+  }
+
   static void read(const Json& value, VectorInTime field) {
     read(value, field.value);
     FieldReader walk(value);
     walk("keys", field.keys);
+  }
+
+  static void read(const Json& value, RestShape field) {
+    read(value, field.file);
+    field.rest = field.file.empty() ? MeshRest::shape : MeshRest::file;
+    read(value, field.rest);
+    if (field.rest != MeshRest::file) field.file.clear();
   }
 
   static void read(const Json& value, Substeps field) {
@@ -88,10 +106,15 @@ class FieldReader {
   }
 
   static void read(const Json& value, Pin& field) {
-    if (const Json* at = member(value, "at")) {
-      read(*at, Points{field.i, field.j});
-      read(*at, field.i);
+    if (value.is_object()) {
       FieldReader walk(value);
+      if (const Json* at = member(value, "at")) {
+        read(*at, Points{field.i, field.j});
+        read(*at, field.i);
+      }
+      walk("vertices", field.vertices);
+      walk("group", field.group);
+      walk("box", field.box);
       walk("keys", field.keys);
       walk("rotate", field.rotate);
       walk("follow", field.follow);

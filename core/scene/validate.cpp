@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <type_traits>
 #include <utility>
 
@@ -15,6 +14,7 @@
 #include "scene/mesh/animation.h"
 #include "scene/mesh/faces.h"
 #include "scene/mesh/refused.h"
+#include "scene/pins.h"
 #include "scene/vectors.h"
 #include "weft/mesh.h"
 
@@ -29,18 +29,15 @@ constexpr double kMinSine = 1e-3;     // between u and v
 constexpr double kMinOffset = 1e-4;   // m, off a mesh that is open
 constexpr double kMinReach = 0.01;  // spacings; a cutter that reaches less passes between particles
 
-std::string at(int i, int j) {
-  return "[" + std::to_string(i) + ", " + std::to_string(j) + "]";
-}
-
 class Together {
  public:
   Together(const Scene& scene, Check& result) : scene_(scene), result_(result) {}
 
   void run() {
     solver();
-    if (sound({"/gravity"})) keys(scene_.gravity_keys, "/gravity/keys");
-    if (sound({"/wind/velocity"})) keys(scene_.wind.velocity_keys, "/wind/velocity/keys");
+    if (sound({"/gravity"})) check_keys(scene_.gravity_keys, "/gravity/keys", result_);
+    if (sound({"/wind/velocity"}))
+      check_keys(scene_.wind.velocity_keys, "/wind/velocity/keys", result_);
     std::int64_t particles = 0;
     for (std::size_t c = 0; c < scene_.cloths.size() && !result_.full(); ++c) {
       const Cloth& one = scene_.cloths[c];
@@ -103,27 +100,13 @@ class Together {
     if (cloth.mesh.shape)
       if (const auto wrong = fault_of(cloth.mesh, place + "/mesh"))
         return fault(wrong->place, wrong->what, wrong->allowed);
+    if (cloth.mesh.shape)
+      if (const auto wrong = fault_of_rest(cloth.mesh, place + "/mesh"))
+        return fault(wrong->place, wrong->what, wrong->allowed);
     check_mesh(scene_, cloth, place, result_);
     if (cloth.mesh.shape)
       self_collision(cloth, place, mean_edge(cloth.mesh), "mean edge of the mesh");
-    mesh_pins(cloth, place + "/pins");
-  }
-
-  void mesh_pins(const Cloth& cloth, const std::string& place) {
-    std::set<int> held;
-    const int count = particle_count(cloth);
-    for (std::size_t k = 0; k < cloth.pins.size() && !result_.full(); ++k) {
-      const Pin& pin = cloth.pins[k];
-      const std::string here = place + "/" + std::to_string(k);
-      if (pin.j != 0 || pin.i < 0 || (count > 0 && pin.i >= count))
-        fault(here,
-              "the pin " + (pin.j == 0 ? std::to_string(pin.i) : at(pin.i, pin.j)) +
-                  " is no vertex of the mesh",
-              count > 0 ? "0 to " + std::to_string(count - 1) : "a number from 0 on");
-      else if (!held.insert(pin.i).second)
-        fault(here, "the vertex " + std::to_string(pin.i) + " is pinned twice", "once");
-      path(pin, here);
-    }
+    check_pins(scene_, cloth, place + "/pins", result_);
   }
 
   void sheet(const Cloth& cloth, const std::string& place) {
@@ -133,7 +116,7 @@ class Together {
                      "spacing of the grid");
       level(cloth, place + "/level");
     }
-    if (sound({place + "/grid/points"})) pins(cloth, place + "/pins");
+    if (sound({place + "/grid"})) check_pins(scene_, cloth, place + "/pins", result_);
   }
 
   bool grid(const Grid& grid, const std::string& place) {
@@ -206,47 +189,6 @@ class Together {
             "0 to " + std::to_string(most) + " on this grid");
   }
 
-  void pins(const Cloth& cloth, const std::string& place) {
-    const Grid& grid = cloth.grid;
-    std::set<std::pair<int, int>> held;
-    for (std::size_t k = 0; k < cloth.pins.size() && !result_.full(); ++k) {
-      const Pin& pin = cloth.pins[k];
-      const std::string here = place + "/" + std::to_string(k);
-      if (!sound({here})) continue;
-      if (pin.i < 0 || pin.j < 0 || pin.i >= grid.nx || pin.j >= grid.ny)
-        fault(here, "the pin " + at(pin.i, pin.j) + " is outside of the grid",
-              "[0, 0] to " + at(grid.nx - 1, grid.ny - 1));
-      else if (!held.insert({pin.i, pin.j}).second)
-        fault(here, "the particle " + at(pin.i, pin.j) + " is pinned twice", "once");
-      path(pin, here);
-    }
-  }
-
-  // How a pin moves.
-  void path(const Pin& pin, const std::string& here) {
-    keys(pin.keys, here + "/keys");
-    keys(pin.rotate.keys, here + "/rotate/keys");
-    if (length(pin.rotate.axis) < kMinSpacing)
-      fault(here + "/rotate/axis", "axis is zero", "a direction at least 1e-6 long");
-    const auto colliders = static_cast<int>(scene_.colliders.size());
-    if (pin.follow >= colliders)
-      fault(here + "/follow", "there is no collider " + std::to_string(pin.follow),
-            colliders == 0 ? "the scene has none" : "0 to " + std::to_string(colliders - 1));
-    else if (pin.follow >= 0 && !scene_.colliders[std::size_t(pin.follow)].animation.empty())
-      fault(here + "/follow", "collider " + std::to_string(pin.follow) + " has an animation",
-            "a collider that moves as it is, or keys of the pin's own");
-  }
-
-  template <class AnyKey>
-  void keys(const std::vector<AnyKey>& keys, const std::string& place) {
-    for (std::size_t k = 1; k < keys.size() && !result_.full(); ++k)
-      if (keys[k].time <= keys[k - 1].time)
-        fault(
-            place + "/" + std::to_string(k),
-            "time " + number_words(keys[k].time) + " comes after " + number_words(keys[k - 1].time),
-            "times that increase");
-  }
-
   void collider(const Collider& collider, const std::string& place) {
     const Friction& friction = collider.friction;
     if (sound({place + "/friction"}) && friction.model == FrictionModel::coulomb &&
@@ -260,7 +202,7 @@ class Together {
             "damping is " + number_words(friction.damping) + " and bias " +
                 number_words(friction.bias),
             "both above 0, or neither");
-    if (sound({place + "/keys"})) keys(collider.keys, place + "/keys");
+    if (sound({place + "/keys"})) check_keys(collider.keys, place + "/keys", result_);
     std::visit([&](const auto& shape) { this->shape(shape, place); }, collider.shape);
     if (sound({place + "/animation"})) check_animation(collider, place + "/animation", result_);
     if (sound({place + "/offset"})) offset(collider, place);
@@ -382,7 +324,7 @@ std::vector<Fault> validate(const Scene& scene) {
     if constexpr (std::is_same_v<decltype(mesh), const MeshBody&>)
       read = read && (mesh.surface || text::fault_of(mesh, place));
     if (!read && mesh.given())
-      result.fault(place + "/file", "the mesh is not read", "load_meshes() reads it");
+      result.fault(place_of_file(place), "the mesh is not read", "load_meshes() reads it");
   });
   return std::move(result.faults);
 }

@@ -24,7 +24,17 @@ struct Placing {
   }
 };
 
+// What a box holds goes with the cloth; the box, which may be turned, does not.
+void name_vertices(Cloth& cloth) {
+  for (Pin& pin : cloth.pins)
+    if (pin.box) {
+      pin.vertices = held_particles(cloth, pin);
+      pin.box.reset();
+    }
+}
+
 Cloth placed(Cloth cloth, const Placing& placing) {
+  name_vertices(cloth);
   if (cloth.mesh.given()) {
     MeshSource& mesh = cloth.mesh;
     mesh.translate = placing.point(mesh.translate);
@@ -37,7 +47,9 @@ Cloth placed(Cloth cloth, const Placing& placing) {
     grid.v = placing.direction(grid.v);
   }
   for (Pin& pin : cloth.pins) {
-    for (Key& key : pin.keys) key.position = placing.point(key.position);
+    for (Key& key : pin.keys)
+      key.position =
+          pin.of_several() ? placing.direction(key.position) : placing.point(key.position);
     pin.rotate.about = placing.point(pin.rotate.about);
     pin.rotate.axis = times(placing.turn, pin.rotate.axis);
   }

@@ -44,6 +44,24 @@ Json pin_json(const Cloth& cloth, int particle) {
   return Json::array({particle % cloth.grid.nx, particle / cloth.grid.nx});
 }
 
+Json still_pin_json(const Cloth& cloth, const Pin& pin) {
+  if (!pin.of_several()) return pin_json(cloth, particle_number(cloth, pin));
+  return {{"vertices", held_particles(cloth, pin)}};
+}
+
+Json remaining_pin_json(const Json& pin, const std::vector<int>& held,
+                        const std::set<int>& let_go) {
+  std::vector<int> left;
+  for (const int p : held)
+    if (!let_go.contains(p)) left.push_back(p);
+  if (left.size() == held.size()) return pin;
+  if (left.empty()) return nullptr;
+  Json rest = pin;
+  for (const char* key : {"group", "box"}) rest.erase(key);
+  rest["vertices"] = left;
+  return rest;
+}
+
 std::vector<Document::Change> changes_between(const Scene& before, const Scene& after) {
   const Json old = text::document_of(before), fresh = text::document_of(after);
   std::vector<Document::Change> changes;

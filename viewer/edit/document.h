@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -89,6 +90,13 @@ class Document {
 
 // A particle as scenes name it: [i, j] of a grid, its number of a mesh.
 text::Json pin_json(const Cloth& cloth, int particle);
+
+// A pin that holds what another does, but stands still.
+text::Json still_pin_json(const Cloth& cloth, const Pin& pin);
+
+// A pin of several particles, as the document has it, without those let go; null where it holds no other.
+text::Json remaining_pin_json(const text::Json& pin, const std::vector<int>& held,
+                              const std::set<int>& let_go);
 
 // What to change in a document of `before` for one of `after`: the values at its top that differ.
 std::vector<Document::Change> changes_between(const Scene& before, const Scene& after);

@@ -98,7 +98,7 @@ Scene with_mesh(Scene scene, Kind kind, const MeshSource& mesh) {
   }
   const Cloth& like = scene.cloths.front();
   Cloth cloth;
-  cloth.mesh = mesh;
+  static_cast<MeshSource&>(cloth.mesh) = mesh;
   cloth.density = density_of(like);
   cloth.stiffness.structural = like.stiffness.structural;
   cloth.bending = like.bending;

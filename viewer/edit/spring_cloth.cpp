@@ -43,7 +43,7 @@ std::vector<Pin> resized_pins(const Cloth& cloth, const Grid& to) {
   const auto along = [](int k, int before, int now) {
     return int(std::lround(double(k) * (now - 1) / (before - 1)));
   };
-  std::vector<Pin> old = cloth.pins, pins;
+  std::vector<Pin> old = single_pins(cloth), pins;
   std::sort(old.begin(), old.end(),
             [](const Pin& a, const Pin& b) { return std::pair(a.j, a.i) < std::pair(b.j, b.i); });
   const auto held = [&](int i, int j) {

@@ -231,7 +231,7 @@ void Hands::toggle_pins(Workspace& workspace,
   std::vector<std::set<int>> held(particles.size());
   for (std::size_t c = 0; c < particles.size() && c < scene.cloths.size(); ++c) {
     for (const Pin& pin : scene.cloths[c].pins)
-      held[c].insert(particle_number(scene.cloths[c], pin));
+      for (const int p : held_particles(scene.cloths[c], pin)) held[c].insert(p);
     for (const int p : particles[c]) pinned += held[c].count(p);
     all += particles[c].size();
   }
@@ -243,8 +243,10 @@ void Hands::toggle_pins(Workspace& workspace,
     text::Json pins = text::Json::array();
     const text::Json& before = workspace.document().json()[text::Json::json_pointer(place)];
     for (std::size_t k = 0; k < before.size(); ++k) {
-      if (!release || !chosen.contains(particle_number(cloth, cloth.pins[k])))
-        pins.push_back(before[k]);
+      const std::vector<int> held_here = held_particles(cloth, cloth.pins[k]);
+      const text::Json left =
+          release ? remaining_pin_json(before[k], held_here, chosen) : before[k];
+      if (!left.is_null()) pins.push_back(left);
     }
     for (const int p : chosen)
       if (!release && !held[c].contains(p)) pins.push_back(pin_json(cloth, p));

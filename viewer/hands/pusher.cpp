@@ -167,7 +167,7 @@ void Pusher::carry(Workspace& workspace, Vec3f velocity) {
     for (std::size_t p = 0; p < scene.cloths[c].pins.size(); ++p)
       if (const Pin& pin = scene.cloths[c].pins[p]; pin.moves())
         changes.push_back({"/cloths/" + std::to_string(c) + "/pins/" + std::to_string(p),
-                           pin_json(scene.cloths[c], particle_number(scene.cloths[c], pin))});
+                           still_pin_json(scene.cloths[c], pin)});
   if (!changes.empty()) {
     workspace.edit(changes);
     return;

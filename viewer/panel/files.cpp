@@ -125,7 +125,8 @@ void draw_export_form(Workspace& workspace, FileForms& forms) {
     ImGui::TextColored(kAccent, "What is there now is replaced.");
   draw_range(workspace.document().scene(), "export", forms.frames);
   const std::string format = formats[static_cast<std::size_t>(forms.format)];
-  const bool apart = comes_apart(workspace), morphs = format == ".gltf" || format == ".glb";
+  const bool apart = comes_apart(workspace),
+             morphs = format == ".gltf" || format == ".glb" || format == ".usda";
   if (apart && format != ".obj")
     ImGui::TextColored(kBad,
                        morphs ? "The cloth is cut, which %s cannot follow: .obj can"

@@ -10,6 +10,7 @@
 
 #include "panel/panel.h"
 #include "panel/theme.h"
+#include "weft/mesh.h"
 #include "weft/printable.h"
 
 namespace weft::viewer {
@@ -25,7 +26,7 @@ std::vector<std::string> meshes_in(const fs::path& folder) {
   std::vector<std::string> found;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error))
-    if (entry.path().extension() == ".obj") found.push_back(entry.path().string());
+    if (is_mesh_file(entry.path().string())) found.push_back(entry.path().string());
   std::sort(found.begin(), found.end());
   if (found.size() > kMostFiles) found.resize(kMostFiles);
   return found;

@@ -22,7 +22,8 @@ float reach_of(const Cloth& cloth, const ClothCopy& copy, const Bounds& bodies, 
   if (!cloth.pins.empty()) {
     float highest = -1e30f;
     for (const Pin& pin : cloth.pins)
-      highest = std::max(highest, copy.position(particle_number(cloth, pin)).y);
+      for (const int p : held_particles(cloth, pin))
+        highest = std::max(highest, copy.position(p).y);
     lowest = highest - 1.08f * side;
     held = true;
   } else if (!bodies.empty()) {

@@ -18,6 +18,7 @@
 #include "output/interrupt.h"
 #include "panel/theme.h"
 #include "picture/cpu_time.h"
+#include "weft/mesh.h"
 #include "weft/output.h"
 #include "weft/printable.h"
 
@@ -275,7 +276,7 @@ void App::take_dropped() {
     if (extension == ".png" || extension == ".jpg" || extension == ".jpeg") {
       workspace_.pictures.texture = path;
       workspace_.look = find_look("texture");
-    } else if (extension == ".obj") {
+    } else if (is_mesh_file(path)) {
       panel_.mesh_form.ask(path);
     } else {
       workspace_.open(path);

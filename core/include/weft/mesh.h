@@ -35,6 +35,9 @@ struct MeshFile {
   std::vector<std::string> notes;  // what was repaired, a sentence each that begins with the file
 };
 
+// Whether a file's name ends as those of meshes do, in letters of any size.
+bool is_mesh_file(std::string_view path);
+
 // Reads a Wavefront .obj file: faces of three corners or more are cut into triangles. Repaired, with a
 // note: corners that repeat a vertex, faces given twice, faces turned over. Refused: what is not a finite
 // number, faces without area, edges of more than two faces, more than 2^22 triangles or 2^22 vertices.
@@ -50,12 +53,17 @@ std::string write_obj(const TriangleMesh& mesh);
 // The mean length of the edges of a mesh, which is read, as the scene places it [m]; inner edges count twice.
 double mean_edge(const MeshSource& mesh);
 
-// Calls visit(mesh, place in the scene) for every mesh of a scene, of cloths and of bodies.
+// Calls visit(mesh, place in the scene) for every mesh of a scene, of cloths, of their shapes at rest, and of
+// bodies.
 template <class AnyScene, class Visit>
 void for_each_mesh(AnyScene& scene, Visit&& visit) {
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
-    if (scene.cloths[c].mesh.given())
-      visit(scene.cloths[c].mesh, "/cloths/" + std::to_string(c) + "/mesh");
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    auto& mesh = scene.cloths[c].mesh;
+    if (!mesh.given()) continue;
+    const std::string place = "/cloths/" + std::to_string(c) + "/mesh";
+    visit(mesh, place);
+    if (mesh.rest == MeshRest::file) visit(mesh.at_rest, place + "/rest");
+  }
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
     if (auto* body = std::get_if<MeshBody>(&scene.colliders[c].shape))
       visit(*body, "/colliders/" + std::to_string(c) + "/mesh");
@@ -67,6 +75,11 @@ void for_each_mesh_file(Scene& scene, Visit&& visit) {
   for_each_mesh(scene, [&](MeshSource& mesh, const std::string&) { visit(mesh.file); });
   for (Collider& collider : scene.colliders)
     if (!collider.animation.empty()) visit(collider.animation);
+}
+
+// Where the scene names the file of the mesh at such a place.
+inline std::string place_of_file(const std::string& place) {
+  return place.ends_with("/rest") ? place : place + "/file";
 }
 
 // What is asked of the surface of a body, whose mesh and motion are read, scaled and turned, about its place.

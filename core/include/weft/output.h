@@ -97,13 +97,14 @@ class Animation {
 };
 
 // The animation formats, by file extension:
-//   .pc2  point cache that Blender's Mesh Cache modifier reads (axes: y up, -z forward); one float32
+//   .pc2  point cache that Blender's Mesh Cache modifier reads (with its own axes, on the imported .obj); one float32
 //         x,y,z per particle in scene order and sample
-//   .obj  numbered sequence run_0000.obj, run_0001.obj, …: one object of quads per cloth, of triangles
-//         once it is torn
+//   .obj  numbered sequence run_0000.obj, run_0001.obj, …: one object per cloth, of quads of a grid, of
+//         triangles of a mesh or once it is torn, with texture coordinates
 //   .mdd  point cache as .pc2, big-endian, with the time of every sample
-//   .glb, .gltf (with a .bin beside it)  meshes with a morph target for every sample; refuses cloth that
-//         tears, more than 4000 samples, and more than 1 GiB of positions
+//   .glb, .gltf (with a .bin beside it)  meshes with texture coordinates and a morph target for every sample;
+//         refuses cloth that tears, more than 4000 samples, and more than 1 GiB of positions
+//   .usda  USD as text: meshes with texture coordinates, their points as time samples; refuses cloth that tears
 std::vector<std::string> animation_extensions();
 
 // Opens an animation of the particles of `first` (nothing is appended yet). Throws WriteError when

@@ -11,47 +11,9 @@
 #include <variant>
 #include <vector>
 
+#include "weft/pin.h"
+
 namespace weft {
-
-using Vec3 = std::array<double, 3>;
-
-// One point of a path: at `time` [s] the thing is at `position` [m]; linear in between, held
-// before the first key and after the last. Times increase strictly.
-struct Key {
-  double time = 0;
-  Vec3 position{};
-  friend bool operator==(const Key&, const Key&) = default;
-};
-
-// One point of a rotation: at `time` [s] it has turned by so many degrees; linear in between, held before
-// the first key and after the last. Times increase strictly.
-struct Angle {
-  double time = 0;
-  double degrees = 0;
-  friend bool operator==(const Angle&, const Angle&) = default;
-};
-
-// A rotation about the line through `about` [m] along `axis` (not zero, any length), right-handed.
-struct Rotation {
-  Vec3 axis{0, 1, 0};
-  Vec3 about{};
-  std::vector<Angle> keys;  // none: it does not turn
-  friend bool operator==(const Rotation&, const Rotation&) = default;
-};
-
-// A held particle of the grid, or, with j 0, particle i of a mesh. Its place is where it starts or where its
-// keys say, turned by its rotation, and then moved by as much as the collider that it follows has moved
-// since the start.
-struct Pin {
-  int i = 0;  // column, 0 … nx-1; of a mesh the vertex
-  int j = 0;  // row, 0 … ny-1
-  std::vector<Key> keys;
-  Rotation rotate{};
-  int follow = -1;  // number of a collider, or -1: none
-  // Whether it moves on its own, whatever a person carries.
-  bool moves() const { return !keys.empty() || !rotate.keys.empty() || follow >= 0; }
-  friend bool operator==(const Pin&, const Pin&) = default;
-};
 
 // A rectangular sheet of nx*ny particles: particle (i,j) starts at
 // origin + u i/(nx-1) + v j/(ny-1). Rest lengths are those of the flat sheet.
@@ -81,6 +43,19 @@ struct MeshSource {
     return a.file == b.file && a.scale == b.scale && a.rotate == b.rotate &&
            a.translate == b.translate && (!a.file.empty() || a.shape == b.shape);
   }
+};
+
+// What the triangles of a mesh are like at rest: `shape`, as the mesh is, curvature included; `flat`, of its
+// lengths, and bending is towards flat; `uv`, those of its texture coordinates, a flat pattern; `file`, those
+// of a second mesh with the same triangles.
+enum class MeshRest { shape, flat, uv, file };
+
+// A mesh as cloth.
+struct ClothMesh : MeshSource {
+  MeshRest rest = MeshRest::shape;
+  MeshSource at_rest{};  // with `file`: as read, scaled as the mesh is
+  double uv_scale = 1;   // m; of a unit of the texture coordinates, with `uv`
+  friend bool operator==(const ClothMesh&, const ClothMesh&) = default;
 };
 
 // One value for each kind of constraint: structural (1,0) (0,1), shear (1,1) (1,-1),
@@ -160,7 +135,7 @@ enum class Lumping { automatic, area, equal };
 
 struct Cloth {
   Grid grid;
-  MeshSource mesh;             // given: in place of the grid
+  ClothMesh mesh;              // given: in place of the grid
   double density = 0.3;        // kg/m²; total mass density*|u x v|, shared as `lumping` says
   double particle_mass = 0;    // kg; > 0 replaces density
   std::vector<double> masses;  // kg, nx*ny in row-major order; not empty: replaces both
@@ -382,10 +357,17 @@ inline int particle_number(const Grid& grid, int i, int j) {
   return j * grid.nx + i;
 }
 
-// The number of the particle that a pin holds.
+// The number of the particle that a pin of one holds.
 inline int particle_number(const Cloth& cloth, const Pin& pin) {
   return cloth.mesh.given() ? pin.i : particle_number(cloth.grid, pin.i, pin.j);
 }
+
+// The particles that a pin holds, by number, ascending where they are several. What is not there is left
+// out: a group that the mesh has not, or all of a mesh that is not read.
+std::vector<int> held_particles(const Cloth& cloth, const Pin& pin);
+
+// The pins of a cloth, whose mesh is read, with one for each particle that they hold, on the same paths.
+std::vector<Pin> single_pins(const Cloth& cloth);
 
 // Mass of particle (i,j) of a grid [kg] by the cloth's masses, particle_mass, or density and lumping.
 double particle_mass(const Cloth& cloth, int i, int j);

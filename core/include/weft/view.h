@@ -27,6 +27,9 @@ struct ClothView {
   // With topology_version > 0: the triangles that are left, corners as j*stride + i. Else all, two of
   // every square: (i,j) (i+1,j) (i,j+1) and (i+1,j) (i+1,j+1) (i,j+1).
   std::span<const std::array<std::uint32_t, 3>> triangles;
+  // Of a mesh with texture coordinates, those of the triangles' corners. Of a grid's particles they are
+  // (i/(nx-1), j/(ny-1)).
+  std::span<const std::array<std::array<double, 2>, 3>> uv;
   // What each side of a tear keeps of the triangles that the tear passes through, so that no hole is
   // seen: triangles of points of their own, corners as numbers of points. Each point goes with a
   // particle (j*stride + i), whose colour and force are its own. They change with topology_version;

@@ -18,7 +18,10 @@ Scene moved(Scene scene, const Vec3& by) {
     move(cloth.grid.origin);
     move(cloth.mesh.translate);
     for (Pin& pin : cloth.pins) {
-      for (Key& key : pin.keys) move(key.position);
+      if (!pin.of_several())
+        for (Key& key : pin.keys) move(key.position);
+      if (pin.box)
+        for (Vec3& corner : *pin.box) move(corner);
       if (!pin.rotate.keys.empty()) move(pin.rotate.about);
     }
   }

@@ -101,6 +101,7 @@ View Simulation::view() const {
     if (const DrawnMesh* drawn = step->model().drawn_mesh()) {
       c.lanes = drawn->lanes;
       c.triangles = drawn->triangles;
+      c.uv = drawn->uv;
       c.topology_version = 1;
     }
     if (Tearing* t = step->model().tearing()) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 
 #include "physics/frame/measure.h"
 #include "physics/frame/state.h"
@@ -161,16 +162,17 @@ namespace {
 // Pins of the new scene that the old one had not are held, pins it has no more are let go; what a
 // hand held or let go stays so.
 void change_pins(const Cloth& before, const Cloth& after, Snapshot::ClothState& cloth) {
-  const auto pinned = [](const Cloth& c, int particle) {
-    return std::any_of(c.pins.begin(), c.pins.end(),
-                       [&](const Pin& p) { return particle_number(c, p) == particle; });
+  const auto pinned = [](const Cloth& c) {
+    std::set<int> all;
+    for (const Pin& p : c.pins) all.insert(particle_number(c, p));
+    return all;
   };
-  std::erase_if(cloth.held, [&](int at) { return pinned(before, at) && !pinned(after, at); });
+  const std::set<int> were = pinned(before), are = pinned(after);
+  std::erase_if(cloth.held, [&](int at) { return were.contains(at) && !are.contains(at); });
+  const std::set<int> held(cloth.held.begin(), cloth.held.end());
   for (const Pin& p : after.pins) {
     const int at = particle_number(after, p);
-    if (!pinned(before, at) &&
-        std::find(cloth.held.begin(), cloth.held.end(), at) == cloth.held.end())
-      cloth.held.push_back(at);
+    if (!were.contains(at) && !held.contains(at)) cloth.held.push_back(at);
   }
 }
 
@@ -202,7 +204,7 @@ void Simulation::set_scene(Scene scene) {
     Snapshot m = state_->snapshot();
     for (std::size_t n = 0; n < after.cloths.size(); ++n)
       if (before.cloths[n].pins != after.cloths[n].pins)
-        change_pins(before.cloths[n], after.cloths[n], m.cloths[n]);
+        change_pins(state_->scene.cloths[n], next.state_->scene.cloths[n], m.cloths[n]);
     for (std::size_t n = 0; n < after.cloths.size(); ++n)
       if (before.cloths[n].cuts != after.cloths[n].cuts)
         change_cuts(state_->cut_from_start[n], next.state_->cut_from_start[n], m.cloths[n].torn);

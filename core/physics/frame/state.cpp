@@ -101,6 +101,12 @@ void note_thickness(const std::string& which, const Cloth& cloth, bool surfaces,
                     ": particles can pass between others (mode surface lets nothing through)");
 }
 
+bool holds_several(const Scene& scene) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const Cloth& c) {
+    return std::any_of(c.pins.begin(), c.pins.end(), [](const Pin& p) { return p.of_several(); });
+  });
+}
+
 // Whether a cut of the scene passes between two neighbours.
 bool crosses_sheet(const CutLine& cut, const Grid& grid) {
   bool crosses = false;
@@ -122,10 +128,9 @@ Simulation::State::State(Scene given, const Options& given_options, const Vec3& 
       method(scene.solver.method),
       make_model_(make) {
   const std::string changed = steady_jacobi(scene);
-  if (origin != Vec3{}) {
-    placed = scene;
-    scene = moved(std::move(scene), times(origin, -1));
-  }
+  if (origin != Vec3{} || holds_several(scene)) placed = scene;
+  for (Cloth& cloth : scene.cloths) cloth.pins = single_pins(cloth);
+  if (origin != Vec3{}) scene = moved(std::move(scene), times(origin, -1));
   build_cloths();
   for (const auto& cloth : cloths)
     cut_from_start.push_back(cloth->cloth().cuts.empty() ? std::vector<Joined>{}

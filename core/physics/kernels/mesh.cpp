@@ -100,11 +100,14 @@ WEFT_INLINE void forces_of(const MeshForces& m) {
         hinges.jumps(
             {x[0], x[1], x[2], t.at(m.position, 3), t.at(m.position, 4), t.at(m.position, 5)},
             jump);
+        const Wide3 p = x[1] - x[0], q = x[2] - x[0];
+        if (m.bows) hinges.take_off_rest(p, q, jump);
         if (m.bend_damping > 0)
           t.add_rates(
               x, {v[0], v[1], v[2], t.at(m.velocity, 3), t.at(m.velocity, 4), t.at(m.velocity, 5)},
               jump);
         hinges.pull(jump, f, across);
+        if (m.bows) hinges.turn(jump, p, q, f);
         for (int k = 0; k < 3; ++k) add_records(m.force, 4, t.b.corner[3 + k] + lane, across[k]);
       }
       for (int k = 0; k < 3; ++k) add_records(m.force, 4, t.b.corner[k] + lane, f[k]);

@@ -32,6 +32,7 @@ struct alignas(64) MeshBatch {
   // Hinge k: corner 3 + k off the triangle, as weights of all: away[k] (corner 3+k - foot) + own[k]
   // (corner k+2 - foot), each foot at a share of the side from corner k on.
   float away[3][kBatch], away_at[3][kBatch], own[3][kBatch], own_at[3][kBatch];
+  float bow[3][kBatch];     // 1/m²; of a hinge at rest, along x × y
   float moment[6][kBatch];  // of the hinges: 00 11 22 01 12 20 [N·m³]
 };
 
@@ -44,6 +45,7 @@ struct MeshForces {
   float c11, c22, c12, c66, damping;  // N/m, s
   float stiffness, spring_damping;    // N/m, N·s/m; half of an inner edge's
   bool bends;
+  bool bows;           // whether bending is towards a shape that is not flat
   float bend_damping;  // s
 };
 

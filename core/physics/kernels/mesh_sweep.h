@@ -42,6 +42,7 @@ struct HingeSweep {
   const MeshBatch* batches;
   int count;
   float* records;
+  bool bows;  // whether bending is towards a shape that is not flat
 };
 
 }  // namespace weft::physics

@@ -100,7 +100,10 @@ void sweep_hinges(const HingeSweep& s) {
       for (int k = 0; k < 6; ++k) at[k] = vertices_at(s.records, hinges.b.corner[k] + lane);
       Wide3 jump[3], own[3] = {}, across[3];
       hinges.jumps({at[0].xyz, at[1].xyz, at[2].xyz, at[3].xyz, at[4].xyz, at[5].xyz}, jump);
+      const Wide3 p = at[1].xyz - at[0].xyz, q = at[2].xyz - at[0].xyz;
+      if (s.bows) hinges.take_off_rest(p, q, jump);
       hinges.pull(jump, own, across);
+      if (s.bows) hinges.turn(jump, p, q, own);
       for (int k = 0; k < 3; ++k) {
         correct(s.records, hinges.b.corner[k] + lane, own[k] * at[k].last);
         correct(s.records, hinges.b.corner[3 + k] + lane, across[k] * at[3 + k].last);

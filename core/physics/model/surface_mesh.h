@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace weft::physics {
@@ -13,10 +14,12 @@ struct SurfaceMesh {
   std::uint64_t version = 0;                  // rises when they change
 };
 
-// The same by lanes of the component arrays, for views: where each particle is, and the triangles' corners.
+// The same by lanes of the component arrays, for views: where each particle is, the triangles' corners, and
+// their texture coordinates where the mesh has some.
 struct DrawnMesh {
   std::vector<std::uint32_t> lanes;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::span<const std::array<std::array<double, 2>, 3>> uv;
 };
 
 }  // namespace weft::physics

@@ -29,6 +29,9 @@ std::optional<Fault> fault_of(const MeshSource& mesh, const std::string& place);
 // Where the scene has points that a file has.
 void put(const MeshSource& mesh, std::vector<Vec3>& points);
 
+// What keeps a mesh from being cloth with its shape at rest.
+std::optional<Fault> fault_of_rest(const ClothMesh& mesh, const std::string& place);
+
 // Cuts a polygon into triangles of its corners' numbers, by ears, seen along its mean normal; the shorter
 // diagonal of a quadrilateral where both lie inside.
 std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec3>& corners);

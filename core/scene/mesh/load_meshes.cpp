@@ -111,11 +111,11 @@ void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& fa
     if (mesh.file.empty() || mesh.shape) return;
     MeshFile file = read_mesh((std::filesystem::path(folder) / mesh.file).string());
     for (Fault& fault : file.faults)
-      faults.push_back({place + "/file", fault.place + ": " + fault.what, fault.allowed});
+      faults.push_back({place_of_file(place), fault.place + ": " + fault.what, fault.allowed});
     notes.insert(notes.end(), file.notes.begin(), file.notes.end());
     if (!file.faults.empty()) return;
     mesh.shape = std::make_shared<const TriangleMesh>(std::move(file.mesh));
-    note_size(mesh, place, notes);
+    if (!place.ends_with("/rest")) note_size(mesh, place, notes);
   });
   for (std::size_t n = 0; n < scene.colliders.size(); ++n) {
     Collider& collider = scene.colliders[n];

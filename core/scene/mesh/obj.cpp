@@ -1,4 +1,5 @@
 // Wavefront .obj -> TriangleMesh, line by line, so that every fault has its line.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -245,13 +246,22 @@ MeshFile read_obj(std::string_view text, const std::string& name) {
   return file;
 }
 
+bool is_mesh_file(std::string_view path) {
+  constexpr std::string_view kEnd = ".obj";
+  return path.size() >= kEnd.size() &&
+         std::equal(kEnd.begin(), kEnd.end(), path.end() - std::ptrdiff_t(kEnd.size()),
+                    [](char small, char c) {
+                      return c == small || (c >= 'A' && c <= 'Z' && c - 'A' + 'a' == small);
+                    });
+}
+
 MeshFile read_mesh(const std::string& path) {
   MeshFile file;
   const auto refuse = [&](const char* what, const char* allowed) {
     file.faults.push_back({path, what, allowed});
     return file;
   };
-  if (!path.ends_with(".obj")) return refuse("the file is of no known kind", ".obj");
+  if (!is_mesh_file(path)) return refuse("the file is of no known kind", ".obj");
   std::ifstream in(path, std::ios::binary);
   if (!in) return refuse("there is no such mesh file", "a readable .obj file");
   std::string bytes(1 << 16, '\0'), all;

@@ -90,6 +90,7 @@ void set_triangle(MeshBatch& b, std::size_t n, const RestTriangle& r) {
     b.rest[k][n] = float(r.rest[k]);
     b.half[k][n] = 1;
     b.away[k][n] = float(r.away[k]), b.away_at[k][n] = float(r.away_at[k]);
+    b.bow[k][n] = float(r.bow[k]);
     b.own[k][n] = float(r.own[k]), b.own_at[k][n] = float(r.own_at[k]);
   }
   for (std::size_t m = 0; m < 6; ++m) b.moment[m][n] = float(r.moment[m]);

@@ -27,4 +27,16 @@ MeshEdges edges_of(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
   return edges;
 }
 
+void take_lengths(const std::vector<RestTriangle>& triangles, MeshEdges& edges) {
+  std::fill(edges.rest.begin(), edges.rest.end(), 0);
+  for (const RestTriangle& r : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = r.corner[k], b = r.corner[(k + 1) % 3];
+      const auto at = std::lower_bound(edges.ends.begin(), edges.ends.end(),
+                                       Joined{std::min(a, b), std::max(a, b)});
+      const auto n = std::size_t(at - edges.ends.begin());
+      edges.rest[n] += r.rest[k] / edges.triangles[n];
+    }
+}
+
 }  // namespace weft::physics

@@ -1,6 +1,7 @@
 // The edges of a mesh as constraints.
 #pragma once
 
+#include "physics/model/mesh/rest_triangles.h"
 #include "physics/model/tearing.h"
 #include "weft/mesh.h"
 
@@ -15,5 +16,8 @@ struct MeshEdges {
 
 // `x`: of the vertices at rest [m].
 MeshEdges edges_of(const TriangleMesh& mesh, const std::vector<Vec3>& x);
+
+// Gives edges the mean of what they are in their triangles at rest, where these need not agree.
+void take_lengths(const std::vector<RestTriangle>& triangles, MeshEdges& edges);
 
 }  // namespace weft::physics

@@ -33,18 +33,21 @@ MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t
       method_(method),
       seed_(seed),
       start_(placed_vertices(scene.cloths[std::size_t(index)].mesh)),
-      triangles_(rest_triangles(mesh_, start_, scene.cloths[std::size_t(index)].bending)),
+      rest_(rest_places(scene.cloths[std::size_t(index)].mesh)),
+      triangles_(rest_triangles(mesh_, rest_, scene.cloths[std::size_t(index)].bending)),
       material_(material_of(scene.cloths[std::size_t(index)], method == Method::spring_friction)),
       order_(order_of(mesh_)),
       particles_(order_.counts, false, order_.vertices),
       parts_{scene, scene.cloths[std::size_t(index)], method_, particles_, kernels, *this},
-      edges_(edges_of(mesh_, start_)) {
+      edges_(edges_of(mesh_, rest_.x)) {
+  if (rest_.uv_scale > 0) take_lengths(triangles_, edges_);
   for (const Collider& c : scene.colliders) first_moves_.push_back(displacement(c, 0));
   surface_.triangles = mesh_.triangles;
   const auto lane = [&](int p) { return std::uint32_t(particles_.lane(p)); };
   for (int p = 0; p < particles_.count(); ++p) drawn_.lanes.push_back(lane(p));
   for (const auto& [a, b, c] : mesh_.triangles)
     drawn_.triangles.push_back({lane(a), lane(b), lane(c)});
+  drawn_.uv = mesh_.uv;
   weigh();
   place();
 }
@@ -127,7 +130,7 @@ void MeshModel::append_projections(StageList& list) {
 std::vector<std::vector<Tether>> MeshModel::attachments() const {
   std::vector<int> pins;
   for (const Pin& pin : parts_.cloth.pins) pins.push_back(pin.i);
-  return mesh_attachments(mesh_, start_, pins);
+  return mesh_attachments(mesh_, rest_.x, pins);
 }
 
 // What is farther from a pin than the mesh is long is taken back at once.
@@ -311,19 +314,38 @@ bool MeshModel::folds_freely() const {
   return material_.membrane && (material_.c66 == 0 || material_.c11 == 0 || material_.c22 == 0);
 }
 
-// As read nothing is stretched: what it holds is bending, in proportion to rigidity times squared angles.
+// The bending that a mesh holds as it starts, in proportion to rigidity times squared angles, where it is to be
+// flat.
 std::vector<std::string> MeshModel::notes() const {
-  constexpr double kCurved = 1e-3;
+  constexpr double kCurved = 1e-3, kStretched = 1e-3;
   std::vector<std::string> notes;
   if (!is_explicit(method_) && material_.bend_damping > 0)
     notes.push_back("bending runs without its damping, which explicit methods alone have");
   const Bending& bending = parts_.cloth.bending;
   const double rigidity = std::max({bending.warp, bending.weft, bending.twist});
-  const double held = mesh_energy(triangles_, material_, start_);
-  if (rigidity > 0 && held > kCurved * rigidity)
-    notes.push_back("bending draws the mesh flat: curved as its file has it, it holds " +
+  MeshMaterial bends = material_;
+  bends.membrane = false;
+  bends.stiffness = 0;
+  const double held = mesh_energy(triangles_, bends, start_);
+  const MeshRest rest = parts_.cloth.mesh.rest;
+  if (rest != MeshRest::shape && rigidity > 0 && held > kCurved * rigidity)
+    notes.push_back("bending draws the mesh to its shape at rest: as it starts, it holds " +
                     number(held) + " J");
+  if (const double strain = start_strain(); strain > kStretched)
+    notes.push_back("the mesh starts with edges up to " + number(100 * strain) +
+                    " % longer or shorter than at rest");
   return notes;
+}
+
+double MeshModel::start_strain() const {
+  double most = 0;
+  for (std::size_t n = 0; n < edges_.ends.size(); ++n) {
+    const auto& [a, b] = edges_.ends[n];
+    most = std::max(
+        most,
+        std::abs(distance(start_[std::size_t(a)], start_[std::size_t(b)]) / edges_.rest[n] - 1));
+  }
+  return most;
 }
 
 std::vector<Joined> MeshModel::constraints_near(const Vec3& a, const Vec3& way,

@@ -50,11 +50,13 @@ class MeshModel final : public ClothModel {
   MeshSweeps& sweeps();
   std::vector<std::vector<Tether>> attachments() const;
   double projected_energy(const Rows& x, double dt) const;
+  double start_strain() const;  // the greatest of all edges
 
   const TriangleMesh& mesh_;
   Method method_;
   std::uint64_t seed_;
   std::vector<Vec3> start_;  // of every particle [m]
+  RestPlaces rest_;
   std::vector<RestTriangle> triangles_;
   MeshMaterial material_;
   MeshOrder order_;

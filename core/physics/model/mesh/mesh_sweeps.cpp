@@ -123,7 +123,8 @@ class SweepHinges final : public RowStage {
         parts_(parts),
         colour_(colour),
         triangles_(triangles),
-        records_(records) {}
+        records_(records),
+        bows_(is_curved(triangles)) {}
   Velocities velocities(double) const override { return Velocities::left_alone; }
   void prepare(double dt) override {
     dt_ = dt;
@@ -134,8 +135,8 @@ class SweepHinges final : public RowStage {
   }
   void run(int begin, int end, const Substep&) override {
     const int first = colour_.first[std::size_t(begin)];
-    parts_.kernels.sweep_hinges(
-        {colour_.batches.data() + first, colour_.first[std::size_t(end)] - first, records_.data()});
+    parts_.kernels.sweep_hinges({colour_.batches.data() + first,
+                                 colour_.first[std::size_t(end)] - first, records_.data(), bows_});
   }
 
  private:
@@ -158,6 +159,7 @@ class SweepHinges final : public RowStage {
   HingeColour& colour_;
   const std::vector<RestTriangle>& triangles_;
   AlignedArray<float>& records_;
+  const bool bows_;
   double dt_ = 0;
 };
 

@@ -40,11 +40,15 @@ Foot foot_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {length(minus(way, times(side, at))), at};
 }
 
-// The corner across each side.
+// What lies across each side.
+struct Across {
+  int vertex = -1, triangle = -1;  // -1: none
+  std::size_t side = 0;            // of that triangle
+};
 struct Side {
   int low, high, triangle, k;
 };
-std::vector<std::array<int, 3>> across_of(const TriangleMesh& mesh) {
+std::vector<std::array<Across, 3>> across_of(const TriangleMesh& mesh) {
   std::vector<Side> sides;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -55,35 +59,86 @@ std::vector<std::array<int, 3>> across_of(const TriangleMesh& mesh) {
   std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
     return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
   });
-  std::vector<std::array<int, 3>> across(mesh.triangles.size(), {-1, -1, -1});
-  const auto third = [&](const Side& s) {
-    return mesh.triangles[std::size_t(s.triangle)][std::size_t(s.k + 2) % 3];
+  std::vector<std::array<Across, 3>> across(mesh.triangles.size());
+  const auto beyond = [&](const Side& s) {
+    const int third = mesh.triangles[std::size_t(s.triangle)][std::size_t(s.k + 2) % 3];
+    return Across{third, s.triangle, std::size_t(s.k)};
   };
   for (std::size_t n = 1; n < sides.size(); ++n) {
     const Side &a = sides[n - 1], &b = sides[n];
     if (a.low != b.low || a.high != b.high) continue;
-    across[std::size_t(a.triangle)][std::size_t(a.k)] = third(b);
-    across[std::size_t(b.triangle)][std::size_t(b.k)] = third(a);
+    across[std::size_t(a.triangle)][std::size_t(a.k)] = beyond(b);
+    across[std::size_t(b.triangle)][std::size_t(b.k)] = beyond(a);
   }
   return across;
 }
 
-void set_hinges(RestTriangle& r, const std::vector<Vec3>& x, const Vec3& warp, const Vec3& weft,
-                const Vec3& normal, const Bending& bending) {
+// Where a triangle's six corners are at rest, as seen from itself.
+using Places = std::array<Vec3, 6>;
+
+Places places_of(const RestTriangle& r, const std::vector<Vec3>& x) {
+  Places places{};
+  for (std::size_t c = 0; c < 6; ++c)
+    if (r.corner[c] >= 0) places[c] = x[std::size_t(r.corner[c])];
+  return places;
+}
+
+// On the flat pattern, in the plane z = 0 and counter-clockwise; neighbours are unfolded about the common side.
+Places places_of(const TriangleMesh& mesh, std::size_t t, const std::array<Across, 3>& across,
+                 double scale) {
+  const auto on_pattern = [&](std::size_t triangle, std::size_t k) {
+    const TriangleMesh::Uv& at = mesh.uv[triangle][k % 3];
+    return Vec3{scale * at[0], scale * at[1], 0};
+  };
+  Places places{};
+  for (std::size_t k = 0; k < 3; ++k) places[k] = on_pattern(t, k);
+  if (cross(minus(places[1], places[0]), minus(places[2], places[0]))[2] < 0)
+    for (std::size_t k = 0; k < 3; ++k) places[k][1] *= -1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& [vertex, other, side] = across[k];
+    if (vertex < 0) continue;
+    // That triangle goes along the side the other way.
+    const auto there = std::size_t(other);
+    const Foot foot =
+        foot_of(on_pattern(there, side + 1), on_pattern(there, side), on_pattern(there, side + 2));
+    const Vec3 a = places[k], along = minus(places[(k + 1) % 3], a);
+    const Vec3 out = times(Vec3{along[1], -along[0], 0}, foot.height / length(along));
+    places[3 + k] = plus(plus(a, times(along, foot.at)), out);
+  }
+  return places;
+}
+
+// Makes hinge k rest as it is where the corner across stands off the triangle's plane.
+void curve(RestTriangle& r, std::size_t k, const Places& x, const Vec3& normal, const Foot& own,
+           const Foot& away) {
+  constexpr double kFlat = 1e-7;  // rad; less is none in single precision
+  const Vec3 a = x[k], side = minus(x[(k + 1) % 3], a);
+  const auto off = [&](const Vec3& corner, const Foot& foot) {
+    return times(minus(minus(corner, a), times(side, foot.at)), 1 / foot.height);
+  };
+  const Vec3 out = off(x[3 + k], away), in = off(x[(k + 2) % 3], own);
+  const double sine = dot(out, normal);
+  if (std::abs(sine) < kFlat) return;
+  r.own[k] = -dot(out, in) / own.height;
+  r.bow[k] = sine / (2 * r.area);
+}
+
+void set_hinges(RestTriangle& r, const Places& x, const Vec3& warp, const Vec3& weft,
+                const Vec3& normal, const Bending& bending, bool flat) {
   double weight[3], n1[3], n2[3];  // of a side: w, and its normal along warp and weft
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto at = [&](std::size_t c) { return x[std::size_t(r.corner[c])]; };
-    const Vec3 a = at(k), b = at((k + 1) % 3);
+    const Vec3 a = x[k], b = x[(k + 1) % 3];
     const Vec3 out = times(cross(minus(b, a), normal), 1 / r.rest[k]);
     n1[k] = dot(out, warp);
     n2[k] = dot(out, weft);
-    weight[k] = r.away[k] = r.away_at[k] = r.own[k] = r.own_at[k] = 0;
+    weight[k] = r.away[k] = r.away_at[k] = r.own[k] = r.own_at[k] = r.bow[k] = 0;
     if (r.corner[3 + k] < 0) continue;
-    const Foot own = foot_of(a, b, at((k + 2) % 3)), away = foot_of(a, b, at(3 + k));
+    const Foot own = foot_of(a, b, x[(k + 2) % 3]), away = foot_of(a, b, x[3 + k]);
     r.own[k] = 1 / own.height;
     r.own_at[k] = own.at;
     r.away[k] = 1 / away.height;
     r.away_at[k] = away.at;
+    if (!flat) curve(r, k, x, normal, own, away);
     weight[k] = own.height / (own.height + away.height) * r.rest[k] / r.area;
   }
   for (std::size_t m = 0; m < 6; ++m) {
@@ -149,13 +204,14 @@ void bend(const RestTriangle& r, const MeshMaterial& m, const Corners& c, Pulled
     };
     return plus(off(3 + k, r.away_at[k], r.away[k]), off((k + 2) % 3, r.own_at[k], r.own[k]));
   };
-  const Vec3 normal = normal_of(c.x[0], c.x[1], c.x[2]);
+  const Vec3 p1 = minus(c.x[1], c.x[0]), p2 = minus(c.x[2], c.x[0]), normal = cross(p1, p2);
   const double scale = m.bend_damping / std::max(dot(normal, normal), 1e-30);
   std::array<Vec3, 3> h, felt;
   for (std::size_t k = 0; k < 3; ++k) {
-    h[k] = jump(c.x, k);
+    h[k] = minus(jump(c.x, k), times(normal, r.bow[k]));
     felt[k] = plus(h[k], times(normal, scale * dot(normal, jump(c.v, k))));
   }
+  Vec3 turning{};  // what pulls at the product of the sides
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
     const auto moment = [&](const std::array<Vec3, 3>& of) {
@@ -169,7 +225,12 @@ void bend(const RestTriangle& r, const MeshMaterial& m, const Corners& c, Pulled
     p.force[last] = minus(p.force[last], own);
     p.force[next] = plus(p.force[next], far);
     p.force[k] = plus(p.force[k], minus(plus(away, own), far));
+    turning = plus(turning, times(moment(felt), r.bow[k]));
   }
+  const Vec3 f1 = cross(p2, turning), f2 = cross(turning, p1);
+  p.force[1] = plus(p.force[1], f1);
+  p.force[2] = plus(p.force[2], f2);
+  p.force[0] = minus(p.force[0], plus(f1, f2));
 }
 
 Pulled pulled(const RestTriangle& r, const MeshMaterial& m, const std::vector<Vec3>& x,
@@ -188,16 +249,33 @@ Pulled pulled(const RestTriangle& r, const MeshMaterial& m, const std::vector<Ve
 
 }  // namespace
 
-std::vector<RestTriangle> rest_triangles(const TriangleMesh& mesh, const std::vector<Vec3>& x,
+RestPlaces rest_places(const ClothMesh& mesh) {
+  RestPlaces rest{placed_vertices(mesh), mesh.rest == MeshRest::flat, 0};
+  if (mesh.rest == MeshRest::uv) rest.uv_scale = mesh.uv_scale;
+  if (mesh.rest != MeshRest::file) return rest;
+  MeshSource scaled = mesh.at_rest;
+  scaled.scale = mesh.scale;
+  rest.x = placed_vertices(scaled);
+  return rest;
+}
+
+bool is_curved(const std::vector<RestTriangle>& triangles) {
+  return std::any_of(triangles.begin(), triangles.end(), [](const RestTriangle& r) {
+    return r.bow[0] != 0 || r.bow[1] != 0 || r.bow[2] != 0;
+  });
+}
+
+std::vector<RestTriangle> rest_triangles(const TriangleMesh& mesh, const RestPlaces& rest,
                                          const Bending& bending) {
   const auto across = across_of(mesh);
   std::vector<RestTriangle> all(mesh.triangles.size());
   for (std::size_t t = 0; t < all.size(); ++t) {
     RestTriangle& r = all[t];
     const auto& [a, b, c] = mesh.triangles[t];
-    r.corner = {a, b, c, across[t][0], across[t][1], across[t][2]};
-    const Vec3 p = minus(x[std::size_t(b)], x[std::size_t(a)]);
-    const Vec3 q = minus(x[std::size_t(c)], x[std::size_t(a)]);
+    r.corner = {a, b, c, across[t][0].vertex, across[t][1].vertex, across[t][2].vertex};
+    const Places x =
+        rest.uv_scale > 0 ? places_of(mesh, t, across[t], rest.uv_scale) : places_of(r, rest.x);
+    const Vec3 p = minus(x[1], x[0]), q = minus(x[2], x[0]);
     const Vec3 doubled = cross(p, q), normal = times(doubled, 1 / length(doubled));
     const Vec3 warp = warp_of(mesh, t, p, q, normal), weft = cross(normal, warp);
     r.area = 0.5 * length(doubled);
@@ -209,7 +287,7 @@ std::vector<RestTriangle> rest_triangles(const TriangleMesh& mesh, const std::ve
     const double d = pu * qv - qu * pv;
     r.du[0] = qv / d, r.du[1] = -pv / d;
     r.dv[0] = -qu / d, r.dv[1] = pu / d;
-    set_hinges(r, x, warp, weft, normal, bending);
+    set_hinges(r, x, warp, weft, normal, bending, rest.flat || rest.uv_scale > 0);
   }
   return all;
 }

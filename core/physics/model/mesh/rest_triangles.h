@@ -7,6 +7,11 @@
 // energy is a quadratic form of them. Regular meshes converge with the square of the edge, whichever way
 // their diagonals go; on meshes that are wild plates are about a tenth too stiff. Damping acts on what jumps become along the
 // triangle's normal: cloth that turns as a whole is not braked.
+//
+// Curved at rest: a jump counts from what it is at rest as seen from the triangle (Garg, Grinspun, Wardetzky,
+// Zorin 2007, "Cubic Shells"). What of it lies in the triangle's plane goes into `own`, so that it stays linear;
+// what lies along the normal turns with the product of two sides, p × q `bow`: exact where nothing is stretched,
+// without a root, and zero at rest.
 #pragma once
 
 #include "physics/model/cloth_model.h"
@@ -20,13 +25,25 @@ struct RestTriangle {
   double area;                // m²
   double rest[3];             // m; of the side from corner k to the next
   double away[3], away_at[3], own[3], own_at[3];  // of the jumps of slope: kernels/mesh.h
+  double bow[3];     // 1/m²; of a jump at rest along the product of the sides from corner 0
   double moment[6];  // their quadratic form, 00 11 22 01 12 20 [N·m³]
 };
 
-// `x`: where the vertices are at rest [m]. Warp goes along the first texture coordinate or, where there is
+// What a mesh is like at rest.
+struct RestPlaces {
+  std::vector<Vec3> x;  // where the vertices are [m]
+  bool flat = false;    // whether bending is towards flat, however these lie
+  double uv_scale = 0;  // m; above 0: triangles are those of the texture coordinates in place of x
+};
+RestPlaces rest_places(const ClothMesh& mesh);
+
+// Warp goes along the first texture coordinate or, where there is
 // none, along the x axis, as seen in the triangle; weft at right angles to it.
-std::vector<RestTriangle> rest_triangles(const TriangleMesh& mesh, const std::vector<Vec3>& x,
+std::vector<RestTriangle> rest_triangles(const TriangleMesh& mesh, const RestPlaces& rest,
                                          const Bending& bending);
+
+// Whether bending is towards a shape that is not flat.
+bool is_curved(const std::vector<RestTriangle>& triangles);
 
 // What a cloth's triangles are made of.
 struct MeshMaterial {

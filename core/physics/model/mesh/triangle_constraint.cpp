@@ -39,6 +39,13 @@ std::array<double, 6> hinge_matrix(const RestTriangle& r, double h,
   for (int c = 0; c < 6; ++c)
     if (r.corner[std::size_t(c)] >= 0)
       coupling += inverse_mass(r.corner[std::size_t(c)]) * a.col(c) * a.col(c).transpose();
+  // The normal's share is no scalar: its greatest value keeps the step a short one.
+  const Eigen::Vector3d bow(r.bow[0], r.bow[1], r.bow[2]);
+  for (int c = 0; c < 3; ++c) {
+    const double opposite = r.rest[(c + 1) % 3];
+    coupling +=
+        inverse_mass(r.corner[std::size_t(c)]) * opposite * opposite * bow * bow.transpose();
+  }
   const Matrix stiff = h * h * m;
   const Matrix p = stiff * (Matrix::Identity() + coupling * stiff).inverse();
   return {p(0, 0), p(1, 1), p(2, 2), p(0, 1), p(1, 2), p(2, 0)};

@@ -24,6 +24,7 @@ class TriangleStage final : public RowStage {
         damped_(material.damped()),
         ring_(reach + 1) {
     fill(material);
+    forces_.bows = is_curved(triangles);
     make_batches(order, triangles, material.bends);
   }
 
