@@ -103,6 +103,8 @@ const std::map<std::string, Key> kKeys = {
     {"/cloths/0/self_collision/friction", {"0.1", kMeets}},
     {"/cloths/0/self_collision/response", {R"("course")"}},
     {"/cloths/0/pins", {"[1]"}},
+    {"/cloths/0/sewing", {"true"}},
+    {"/cloths/0/seams", {"[[3, 38]]"}},
 };
 // Words for people, how long a run is, and from where it is seen.
 const std::set<std::string> kNotOfTheCloth = {
@@ -137,6 +139,7 @@ void write_mesh(const std::string& path, const TriangleMesh& mesh) {
   for (const Vec3& v : mesh.vertices) file << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
   for (const auto& t : mesh.triangles)
     file << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+  file << "l 8 14\n";  // from side to side
 }
 
 struct Outcome {

@@ -129,6 +129,24 @@ void Parts::make_mesh(Cloth& c, const std::string& file) {
   choose_rest(c, draw_, "rest-" + file);
 }
 
+// A few pairs of vertices and a loose edge, unless these join two corners of a triangle.
+void Parts::sew(Cloth& c) {
+  const int last = int(c.mesh.shape->vertices.size()) - 1;
+  for (int n = draw_.between(1, 6); n > 0; --n)
+    c.seams.push_back({draw_.between(0, last), draw_.between(0, last)});
+  auto shape = std::make_shared<TriangleMesh>(*c.mesh.shape);
+  shape->edges.push_back({draw_.between(0, last), draw_.between(0, last)});
+  c.mesh.shape = std::move(shape);
+  c.sewing = draw_.chance(0.5);
+  Scene alone;
+  alone.cloths = {c};
+  const std::vector<Fault> faults = validate(alone);
+  if (std::any_of(faults.begin(), faults.end(), [](const Fault& f) {
+        return f.place.starts_with("/cloths/0/sewing") || f.place.starts_with("/cloths/0/seams");
+      }))
+    c.seams.clear(), c.sewing = false;
+}
+
 MeshBody Parts::body(const Vec3& at, double size, const std::string& file) {
   MeshBody body;
   body.file = file;
@@ -155,7 +173,10 @@ void Parts::add_meshes(Scene& scene) {
         c.offset = std::min(1.0, spacing_ * draw_.decades(0.01, 1));
     }
   for (std::size_t n = 0; n < scene.cloths.size(); ++n)
-    if (draw_.chance(0.7)) make_mesh(scene.cloths[n], "cloth" + std::to_string(n) + ".obj");
+    if (draw_.chance(0.7)) {
+      make_mesh(scene.cloths[n], "cloth" + std::to_string(n) + ".obj");
+      if (scene.cloths[n].mesh.given() && draw_.chance(0.3)) sew(scene.cloths[n]);
+    }
   const auto is_mesh = [](const Cloth& c) { return c.mesh.given(); };
   if (std::none_of(scene.cloths.begin(), scene.cloths.end(), is_mesh)) return;
   choose_method(scene, draw_);

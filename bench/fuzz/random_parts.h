@@ -53,6 +53,7 @@ class Parts {
   std::vector<weft::Pin> grid_pins(const weft::Grid& grid, const weft::Time& time);
   std::vector<weft::Pin> vertex_pins(const weft::Cloth& cloth, const weft::Time& time);
   void make_mesh(weft::Cloth& cloth, const std::string& file);
+  void sew(weft::Cloth& cloth);
   weft::MeshBody body(const weft::Vec3& at, double size, const std::string& file);
   weft::Grid grid();
   void points(weft::Grid& grid);

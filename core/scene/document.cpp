@@ -40,6 +40,8 @@ class FieldWriter {
     return Json::array({write(field[0]), write(field[1])});
   }
 
+  static Json write(const Seam& field) { return Json::array({write(field[0]), write(field[1])}); }
+
   static Json write(VectorInTime field) {
     if (field.keys.empty()) return write(field.value);
     Json object = Json::object();

@@ -159,6 +159,8 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("self_collision", cloth.self_collision);
   walk("pins", cloth.pins);
   walk("cuts", cloth.cuts);
+  walk("sewing", cloth.sewing);
+  walk("seams", cloth.seams);
 }
 
 template <class Walk>

@@ -62,6 +62,11 @@ class FieldReader {
       for (std::size_t k = 0; k < 2; ++k) read(value[k], field[k]);
   }
 
+  static void read(const Json& value, Seam& field) {
+    if (value.is_array() && value.size() == 2)
+      for (std::size_t k = 0; k < 2; ++k) read(value[k], field[k]);
+  }
+
   template <class T>
   static void read(const Json& value, std::optional<T>& field) {
     read(value, field.emplace());

@@ -14,6 +14,7 @@
 #include "scene/mesh/animation.h"
 #include "scene/mesh/faces.h"
 #include "scene/mesh/refused.h"
+#include "scene/mesh/seams.h"
 #include "scene/pins.h"
 #include "scene/vectors.h"
 #include "weft/mesh.h"
@@ -104,12 +105,14 @@ class Together {
       if (const auto wrong = fault_of_rest(cloth.mesh, place + "/mesh"))
         return fault(wrong->place, wrong->what, wrong->allowed);
     check_mesh(scene_, cloth, place, result_);
+    check_seams(cloth, place, result_);
     if (cloth.mesh.shape)
       self_collision(cloth, place, mean_edge(cloth.mesh), "mean edge of the mesh");
     check_pins(scene_, cloth, place + "/pins", result_);
   }
 
   void sheet(const Cloth& cloth, const std::string& place) {
+    check_seams(cloth, place, result_);
     if (sound({place + "/grid"}) && grid(cloth.grid, place + "/grid")) {
       masses(cloth, place);
       self_collision(cloth, place, std::min(spacing_u(cloth.grid), spacing_v(cloth.grid)),

@@ -53,6 +53,11 @@ std::string write_obj(const TriangleMesh& mesh);
 // The mean length of the edges of a mesh, which is read, as the scene places it [m]; inner edges count twice.
 double mean_edge(const MeshSource& mesh);
 
+// What seams make one: groups of two vertices or more of a cloth's mesh, which is read. Its pairs join them,
+// and with `sewing` its loose edges; vertices of no face pass a seam on, but are in no group. Groups come in
+// the order of their least vertices, each ascending.
+std::vector<std::vector<int>> sewn_vertices(const Cloth& cloth);
+
 // Calls visit(mesh, place in the scene) for every mesh of a scene, of cloths, of their shapes at rest, and of
 // bodies.
 template <class AnyScene, class Visit>

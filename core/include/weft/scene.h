@@ -94,6 +94,7 @@ struct Bending {
 // A line over a flat sheet, from point to point [column, row] of the grid, whole numbers being particles. It
 // may leave the sheet: a cut from border to border begins and ends beside it.
 using CutLine = std::vector<std::array<double, 2>>;
+using Seam = std::array<int, 2>;  // vertices of a mesh that become one
 
 enum class SelfCollisionMode { off, particles, surface };
 
@@ -161,6 +162,8 @@ struct Cloth {
   std::vector<Pin> pins;
   // Along these lines the sheet is cut from the start: no constraint that crosses one is there.
   std::vector<CutLine> cuts;
+  bool sewing = false;      // edges of a mesh file that belong to no face are seams
+  std::vector<Seam> seams;  // of a mesh, besides those
   friend bool operator==(const Cloth&, const Cloth&) = default;
 };
 

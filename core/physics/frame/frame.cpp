@@ -86,7 +86,7 @@ FrameRun Simulation::State::frame_run() {
                .finite = true,
                .energy = {},
                .limit = limit_,
-               .driven = driven(),
+               .driven = was_driven_,
                .alone = nothing_else_acts(),
                .replaceable = !only_explicit()};
   for (std::size_t c = 0; c < cloths.size(); ++c) {
@@ -123,6 +123,22 @@ void Simulation::State::tell_of_limits() {
                          std::to_string(o.frame) + " (" + number(o.strain) +
                          "); more substeps hold it better");
   }
+  tell_of_seams();
+}
+
+// In place of what was told of them before.
+void Simulation::State::tell_of_seams() {
+  for (const std::string& old : told_of_seams_) std::erase(plan.notes, old);
+  told_of_seams_.clear();
+  for (std::size_t c = 0; frame > 0 && c < cloths.size(); ++c) {
+    const OpenSeams seams = cloths[c]->model().open_seams();
+    if (seams.open == 0) continue;
+    told_of_seams_.push_back("cloth " + std::to_string(c) + ": " + std::to_string(seams.open) +
+                             " of " + std::to_string(seams.all) + " seams are open after frame " +
+                             std::to_string(frame) + ", their ends up to " + number(seams.widest) +
+                             " m from the middle");
+  }
+  plan.notes.insert(plan.notes.end(), told_of_seams_.begin(), told_of_seams_.end());
 }
 
 // A frame ends with a run of contact, so that what was put back to a frame's start, or set, begins anew.
@@ -190,7 +206,8 @@ void Simulation::State::note_left_strain() {
 
 // Surfaces begin with what does not cross; what does comes apart first.
 void Simulation::State::begin_contact() {
-  if (self_collision->surfaces() && (untangle->due() || self_collision->forced())) {
+  const bool drawn = self_collision->surfaces() && untangle->look_at_seams();
+  if (self_collision->surfaces() && (untangle->due() || self_collision->forced() || drawn)) {
     untangle->pull_apart();
     self_collision->leave_out(untangle->passing());
     self_collision->restart();

@@ -77,8 +77,12 @@ void add_strain(const Simulation::State& s, Report& r) {
 void add_self_contact(const Simulation::State& s, Report& r) {
   std::vector<Vec3> x;
   std::vector<Face> faces;
-  for (const ClothModel* model : models_of(s.cloths)) add_surface(*model, x, faces);
-  r.penetration.crossings = count_crossings(x, faces);
+  std::vector<std::int32_t> sewn;
+  for (const ClothModel* model : models_of(s.cloths)) {
+    add_surface(*model, x, faces);
+    add_sewn(*model, sewn);
+  }
+  r.penetration.crossings = count_crossings(x, faces, sewn);
   if (!s.self_collision) return;
   // By a search of its own: the one that runs must not notice.
   const SelfContact::Overlaps overlaps =

@@ -46,8 +46,8 @@ struct Simulation::State {
   // A collider has been put where cloths may be.
   void meet(std::size_t collider);
   std::size_t record_bytes() const;
-  // Adds the notes of strain limits that did not hold. Frames only keep what these say: they allocate
-  // nothing.
+  // Adds the notes of strain limits that did not hold, and of seams that are open now. Frames only keep
+  // what the first say: they allocate nothing.
   void tell_of_limits();
   void accelerations_now(std::size_t cloth, double behind, std::vector<Vec3>& a) const;
 
@@ -101,7 +101,8 @@ struct Simulation::State {
     double strain = 0;
     bool told = false;
   };
-  std::vector<Overlong> overlong_;    // of each cloth
+  std::vector<Overlong> overlong_;  // of each cloth
+  std::vector<std::string> told_of_seams_;
   std::vector<std::size_t> apart_;    // cloths that take a thread each
   std::vector<std::int64_t> busy_;    // of each thread, with so many particles
   std::vector<std::uint8_t> asleep_;  // each cloth as a whole, in this frame
@@ -138,6 +139,7 @@ struct Simulation::State {
   void follow_stretch(double limit);
   bool carried() const;
   bool driven() const;
+  bool sews() const;
   void open_guard();
   bool blown() const { return scene.wind.drag > 0 || scene.wind.lift > 0; }
   int projection_substeps() const;
@@ -157,6 +159,7 @@ struct Simulation::State {
   bool asleep(std::size_t cloth) const { return sleeping && sleeping->rows(cloth).empty(); }
   void run_frame();
   void check_strain_limits();
+  void tell_of_seams();
   void run_with_contact();
   physics::ContactInterval contact_interval(int end, int count) const;
   void begin_contact();

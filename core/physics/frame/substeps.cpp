@@ -229,7 +229,7 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
 
 // Whether nothing but gravity and paths of pins can do work.
 bool Simulation::State::nothing_else_acts() const {
-  return !(grab_ || carried() || self_collision || blown() || !scene.colliders.empty() ||
+  return !(grab_ || carried() || self_collision || blown() || sews() || !scene.colliders.empty() ||
            !scene.gravity_keys.empty());
 }
 
@@ -244,11 +244,17 @@ bool Simulation::State::carried() const {
   return std::any_of(carried_.begin(), carried_.end(), [](const Carry* c) { return c; });
 }
 
+// Whether seams draw their ends together.
+bool Simulation::State::sews() const {
+  return std::any_of(cloths.begin(), cloths.end(),
+                     [](const auto& step) { return step->model().open_seams().open > 0; });
+}
+
 bool Simulation::State::driven() const {
   const auto moves = [](const Collider& c) { return !c.keys.empty() || !c.animation.empty(); };
   const auto pulls = [](const Pin& pin) { return pin.moves(); };
   return grab_ || carried() || self_collision || !scene.gravity_keys.empty() || sleeping ||
-         blown() || std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
+         blown() || sews() || std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
          std::any_of(scene.cloths.begin(), scene.cloths.end(), [&](const Cloth& c) {
            return std::any_of(c.pins.begin(), c.pins.end(), pulls);
          });

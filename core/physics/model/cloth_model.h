@@ -52,6 +52,12 @@ struct Strain {
   std::int64_t constraints = 0;
 };
 
+// Seams whose ends are apart, of so many, and how far an end is from the middle of its seam at most [m].
+struct OpenSeams {
+  int open = 0, all = 0;
+  double widest = 0;
+};
+
 class ClothModel {
  public:
   virtual ~ClothModel() = default;
@@ -109,6 +115,12 @@ class ClothModel {
 
   // What the cloth is not as the scene asks, by the method that runs: a sentence each.
   virtual std::vector<std::string> notes() const { return {}; }
+
+  virtual OpenSeams open_seams() const { return {}; }
+  // Marks the particles, by number, of seams that have an end farther than so much from their middle [m].
+  virtual void mark_open_seams(double beyond, std::span<std::uint8_t> marks) const {
+    (void)beyond, (void)marks;
+  }
 
   // Null while the cloth cannot tear; after allow_tearing() it can, where the model knows how, and its
   // stages are to be chosen anew. And the constraints that come within a distance [m] of a segment from a

@@ -12,6 +12,7 @@ namespace weft::physics {
 struct SurfaceMesh {
   std::vector<std::array<int, 3>> triangles;  // corners by particle number
   std::uint64_t version = 0;                  // rises when they change
+  std::vector<std::vector<int>> sewn;         // groups of particles that seams make one
 };
 
 // The same by lanes of the component arrays, for views: where each particle is, the triangles' corners, and

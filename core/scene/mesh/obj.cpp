@@ -208,8 +208,14 @@ class Reader {
   void loose_edges(Words& words) {
     std::vector<Corner> all;
     if (!corners(words, all)) return;
-    for (std::size_t k = 1; k < all.size(); ++k)
+    for (std::size_t k = 1; k < all.size(); ++k) {
+      if (mesh().edges.size() == 4 * kMaxVertices) {
+        fault("the mesh has more loose edges", "at most 16777216");
+        text_ = text_.substr(0, 0);
+        return;
+      }
       mesh().edges.push_back({all[k - 1].vertex, all[k].vertex});
+    }
   }
 
   // A new object ends the group, too.

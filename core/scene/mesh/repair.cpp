@@ -55,6 +55,7 @@ class Repair {
     find_crowded();
     if (!raw_.file.faults.empty()) return;
     turn_over();
+    keep_loose();
     tell_of_loose();
   }
 
@@ -175,6 +176,17 @@ class Repair {
     if (!mesh_.uv.empty()) std::swap(mesh_.uv[std::size_t(t)][1], mesh_.uv[std::size_t(t)][2]);
   }
 
+  // Of the lines that the file draws, those that are no side of a face.
+  void keep_loose() {
+    const std::vector<Side> sides = sides_of(mesh_);
+    std::erase_if(mesh_.edges, [&](const std::array<int, 2>& edge) {
+      const Side one{std::min(edge[0], edge[1]), std::max(edge[0], edge[1]), 0, true};
+      return std::binary_search(sides.begin(), sides.end(), one, [](const Side& a, const Side& b) {
+        return std::tie(a.low, a.high) < std::tie(b.low, b.high);
+      });
+    });
+  }
+
   void tell_of_loose() {
     std::vector<bool> used(mesh_.vertices.size());
     for (const auto& t : mesh_.triangles)
@@ -185,9 +197,6 @@ class Repair {
                 " to no face, first vertex " +
                 std::to_string(std::find(used.begin(), used.end(), false) - used.begin() + 1) +
                 "; what has no face has no mass and stays where it is");
-    if (!mesh_.edges.empty())
-      raw_.note(times_words(int(mesh_.edges.size()), "edge belongs", "edges belong") +
-                " to no face; the ends are not sewn together");
   }
 
   const Vec3& at(int vertex) const { return mesh_.vertices[std::size_t(vertex)]; }

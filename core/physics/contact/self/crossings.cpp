@@ -87,6 +87,14 @@ void add_surface(const ClothModel& cloth, std::vector<Vec3>& x, std::vector<Face
   x.insert(x.end(), of_cloth.begin(), of_cloth.end());
 }
 
+void add_sewn(const ClothModel& cloth, std::vector<std::int32_t>& sewn) {
+  const std::size_t first = sewn.size();
+  for (int p = 0; p < cloth.particles().count(); ++p) sewn.push_back(std::int32_t(sewn.size()));
+  for (const std::vector<int>& group : cloth.surface().sewn)
+    for (const int p : group)
+      sewn[first + std::size_t(p)] = std::int32_t(first + std::size_t(group[0]));
+}
+
 namespace {
 
 // In how many cells faces lie, all in all.
@@ -120,7 +128,9 @@ double cell_size(const std::vector<Vec3>& x, const std::vector<Face>& faces,
 }  // namespace
 
 std::vector<Crossing> find_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces,
-                                     const std::vector<Edge>& edges) {
+                                     const std::vector<Edge>& edges,
+                                     const std::vector<std::int32_t>& sewn) {
+  const auto stands_for = [&](std::int32_t p) { return sewn.empty() ? p : sewn[std::size_t(p)]; };
   const double size = cell_size(x, faces, edges);
   std::vector<Entry> entries;
   for (std::size_t f = 0; f < faces.size(); ++f)
@@ -131,6 +141,7 @@ std::vector<Crossing> find_crossings(const std::vector<Vec3>& x, const std::vect
   std::vector<Crossing> crossings;
   std::vector<std::int32_t> near;
   for (const Edge& e : edges) {
+    const std::int32_t a = stands_for(e[0]), b = stands_for(e[1]);
     near.clear();
     for_each_cell(box_of(x, e), size, [&](const auto& cell) {
       for (auto at = std::lower_bound(entries.begin(), entries.end(), Entry{cell, 0});
@@ -141,7 +152,8 @@ std::vector<Crossing> find_crossings(const std::vector<Vec3>& x, const std::vect
     near.erase(std::unique(near.begin(), near.end()), near.end());
     for (const std::int32_t f : near) {
       const Face& t = faces[std::size_t(f)];
-      if (std::any_of(t.begin(), t.end(), [&](auto c) { return c == e[0] || c == e[1]; })) continue;
+      const auto shared = [&](std::int32_t c) { return stands_for(c) == a || stands_for(c) == b; };
+      if (std::any_of(t.begin(), t.end(), shared)) continue;
       if (passes(x[std::size_t(e[0])], x[std::size_t(e[1])], x[std::size_t(t[0])],
                  x[std::size_t(t[1])], x[std::size_t(t[2])]))
         crossings.push_back({e, f});
@@ -150,8 +162,9 @@ std::vector<Crossing> find_crossings(const std::vector<Vec3>& x, const std::vect
   return crossings;
 }
 
-std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces) {
-  return std::int64_t(find_crossings(x, faces, edges_of(faces)).size());
+std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces,
+                             const std::vector<std::int32_t>& sewn) {
+  return std::int64_t(find_crossings(x, faces, edges_of(faces), sewn).size());
 }
 
 }  // namespace weft::physics

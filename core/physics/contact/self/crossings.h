@@ -1,5 +1,6 @@
 // An independent look at where triangles of cloth pass through each other. It knows nothing of how
-// contact is resolved: every edge against every triangle that shares no corner with it, in double.
+// contact is resolved: every edge against every triangle that shares no corner with it, in double. Corners that
+// seams make one are shared.
 #pragma once
 
 #include <array>
@@ -23,11 +24,16 @@ struct Crossing {
 
 // In the order of the edges, each of which is named once.
 std::vector<Edge> edges_of(const std::vector<Face>& faces);
+// `sewn`: of every particle, one that stands for all that seams make one with it; empty: each for itself.
 std::vector<Crossing> find_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces,
-                                     const std::vector<Edge>& edges);
-std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces);
+                                     const std::vector<Edge>& edges,
+                                     const std::vector<std::int32_t>& sewn = {});
+std::int64_t count_crossings(const std::vector<Vec3>& x, const std::vector<Face>& faces,
+                             const std::vector<std::int32_t>& sewn = {});
 
 // The particles of a cloth as they are now, and its triangles, as torn as it is.
 void add_surface(const ClothModel& cloth, std::vector<Vec3>& x, std::vector<Face>& faces);
+// Of the same particles, who stands for them.
+void add_sewn(const ClothModel& cloth, std::vector<std::int32_t>& sewn);
 
 }  // namespace weft::physics

@@ -20,6 +20,12 @@ std::size_t patch_size(std::size_t vertices) {
   return vertices <= 25000 ? 128 : vertices <= 400000 ? 512 : 2048;
 }
 
+// Whether a way by edges and seams is shorter than the straight one, and so leads over a seam.
+bool shorter(double way, double straight) {
+  constexpr double kRounding = 1e-9;
+  return way == 0 || way < straight * (1 - kRounding);
+}
+
 double apart(const Vec3& a, const Vec3& b) {
   const Vec3 d = minus(a, b);
   return std::sqrt(dot(d, d));
@@ -79,20 +85,23 @@ void MeshPatches::copy(Threads& threads) {
   });
 }
 
-std::vector<std::vector<int>> MeshPatches::neighbours(double range) const {
-  std::vector<std::vector<int>> joined(rest_.size()), near(rest_.size());
+// The shortest ways from each vertex (Dijkstra 1959), as far as they matter.
+template <class Visit>
+void MeshPatches::for_each_way(double most, const Visit& visit) const {
+  std::vector<std::vector<int>> joined(rest_.size()), sewn(rest_.size());
   for (const auto& t : surface_.triangles)
     for (std::size_t k = 0; k < 3; ++k)
       for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3})
         joined[std::size_t(t[k])].push_back(t[other]);
-  // The shortest ways from each vertex (Dijkstra 1959), as far as they matter.
+  for (const std::vector<int>& group : surface_.sewn)
+    for (const int vertex : group) sewn[std::size_t(vertex)] = group;
   using Reached = std::pair<double, int>;
   std::vector<double> way(rest_.size(), std::numeric_limits<double>::infinity());
   for (std::size_t v = 0; v < rest_.size(); ++v) {
     std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
     std::vector<int> reached;
     const auto reach = [&](int vertex, double length) {
-      if (length > kDetour * range || length >= way[std::size_t(vertex)]) return;
+      if (length > most || length >= way[std::size_t(vertex)]) return;
       if (std::isinf(way[std::size_t(vertex)])) reached.push_back(vertex);
       way[std::size_t(vertex)] = length;
       next.push({length, vertex});
@@ -104,14 +113,30 @@ std::vector<std::vector<int>> MeshPatches::neighbours(double range) const {
       if (length > way[std::size_t(from)]) continue;
       for (const int to : joined[std::size_t(from)])
         reach(to, length + apart(rest_[std::size_t(from)], rest_[std::size_t(to)]));
+      for (const int to : sewn[std::size_t(from)]) reach(to, length);
     }
+    std::sort(reached.begin(), reached.end());
     for (const int vertex : reached) {
+      if (vertex != int(v)) visit(v, vertex, way[std::size_t(vertex)]);
       way[std::size_t(vertex)] = std::numeric_limits<double>::infinity();
-      if (vertex != int(v) && apart(rest_[v], rest_[std::size_t(vertex)]) < range)
-        near[v].push_back(vertex);
     }
-    std::sort(near[v].begin(), near[v].end());
   }
+}
+
+std::vector<std::vector<int>> MeshPatches::neighbours(double range) const {
+  std::vector<std::vector<int>> near(rest_.size());
+  for_each_way(kDetour * range, [&](std::size_t v, int other, double way) {
+    const double straight = apart(rest_[v], rest_[std::size_t(other)]);
+    if (straight < range || shorter(way, straight)) near[v].push_back(other);
+  });
+  return near;
+}
+
+std::vector<std::vector<int>> MeshPatches::sewn_neighbours(double range) const {
+  std::vector<std::vector<int>> near(rest_.size());
+  for_each_way(range, [&](std::size_t v, int other, double way) {
+    if (shorter(way, apart(rest_[v], rest_[std::size_t(other)]))) near[v].push_back(other);
+  });
   return near;
 }
 

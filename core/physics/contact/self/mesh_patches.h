@@ -38,11 +38,19 @@ class MeshPatches {
   }
 
   // Vertices that are less than `range` apart at rest, straight, and by the mesh's edges no more than twice
-  // that: neighbours on the surface, by their numbers. Two layers that lie on each other at rest are none.
+  // that: neighbours on the surface, by their numbers. Two layers that lie on each other at rest are none. Seams
+  // are edges of no length, and what is nearer by them than straight is neighbours.
   std::vector<std::vector<int>> neighbours(double range) const;
+  // Those that are no more than `range` apart by edges and seams, and nearer so than straight; ascending.
+  std::vector<std::vector<int>> sewn_neighbours(double range) const;
+  bool sewn() const { return !surface_.sewn.empty(); }
   std::size_t bytes() const;
 
  private:
+  // visit(vertex, other, m between them by edges and seams) for all that are no more than `most` apart so.
+  template <class Visit>
+  void for_each_way(double most, const Visit& visit) const;
+
   const Particles& particles_;
   const SurfaceMesh& surface_;
   const std::vector<Vec3> rest_;

@@ -40,6 +40,7 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<Nam
       named_(named),
       kernels_(kernels),
       squares_(rest.size()),
+      seams_(sheets, named, rest.size()),
       beside_(sheets, named, squares_),
       search_(count_squares(sheets_), {}, kernels) {
   const std::size_t bodies = rest.size();
@@ -313,7 +314,7 @@ void NearSquares::find_in(std::size_t chunk) {
   for (std::size_t i = 0; i < found.count; ++i) {
     const auto [p, q] =
         std::minmax(sorted_[std::size_t(found.owner[i])], sorted_[std::size_t(found.neighbour[i])]);
-    if (beside(p, q)) continue;
+    if (beside(p, q) || seams_.join(squares_[std::size_t(p)], squares_[std::size_t(q)])) continue;
     found.owner[kept] = p;
     found.neighbour[kept++] = q;
   }
@@ -375,7 +376,7 @@ std::size_t NearSquares::bytes() const {
   bytes += all_squares_ * (sizeof(LeftOut) + 8) + 4 * begin_.size();
   bytes += listed_.bytes() + within_.bytes() + still_.bytes();
   for (const SquarePairs& p : found_) bytes += p.bytes();
-  return bytes + beside_.bytes();
+  return bytes + beside_.bytes() + seams_.bytes();
 }
 
 }  // namespace weft::physics

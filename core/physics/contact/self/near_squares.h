@@ -5,7 +5,8 @@
 // search as particles (pair_search.h), for those squares alone that have moved far; for all where these
 // are many. Motion that is common to all is left out of account.
 //
-// Those that share a corner are looked at apart (beside_squares.h; of meshes beside_triangles.h).
+// Those that share a corner are looked at apart (beside_squares.h; of meshes beside_triangles.h). Triangles
+// that seams bring beside each other are no pairs (over_seams.h).
 #pragma once
 
 #include <memory>
@@ -14,6 +15,7 @@
 #include "physics/contact/self/beside_squares.h"
 #include "physics/contact/self/beside_triangles.h"
 #include "physics/contact/self/mesh_squares.h"
+#include "physics/contact/self/over_seams.h"
 #include "physics/contact/self/pair_search.h"
 
 namespace weft::physics {
@@ -95,6 +97,7 @@ class NearSquares {
   std::vector<std::uint8_t> owned_;
   std::vector<float> most_squared_;  // m², of every square, as LeftOut::most_squared
   std::vector<std::unique_ptr<Part>> parts_;
+  const OverSeams seams_;
   BesideSquares beside_;
   const Place* now_ = nullptr;
   std::vector<Origin> origins_;

@@ -83,6 +83,8 @@ Untangle::Untangle(const Scene& scene, const std::vector<ClothModel*>& cloths) {
     count += particles;
   }
   passing_.resize(count);
+  open_.resize(count);
+  opened_.resize(count);
   due_ = may_cross(scene);
 }
 
@@ -121,14 +123,38 @@ bool Untangle::passes(std::int32_t particle, std::int32_t line) const {
 std::size_t Untangle::crossings() {
   x_.clear();
   faces_.clear();
-  for (const Sheet& s : sheets_) add_surface(*s.cloth, x_, faces_);
+  sewn_.clear();
+  for (const Sheet& s : sheets_) {
+    add_surface(*s.cloth, x_, faces_);
+    add_sewn(*s.cloth, sewn_);
+  }
+  std::erase_if(faces_, [&](const Face& f) {
+    return std::any_of(f.begin(), f.end(), [&](auto c) { return open_[std::size_t(c)] != 0; });
+  });
   edges_ = edges_of(faces_);
-  crossings_ = find_crossings(x_, faces_, edges_);
+  crossings_ = find_crossings(x_, faces_, edges_, sewn_);
   return crossings_.size();
 }
 
+bool Untangle::look_at_seams() {
+  std::fill(opened_.begin(), opened_.end(), std::uint8_t{0});
+  for (const Sheet& s : sheets_)
+    s.cloth->mark_open_seams(
+        0.5 * s.thickness,
+        std::span(opened_).subspan(s.first, std::size_t(s.cloth->particles().count())));
+  if (opened_ == open_) return false;
+  std::swap(opened_, open_);
+  clear_passing();
+  look();
+  return true;
+}
+
+void Untangle::clear_passing() {
+  std::copy(open_.begin(), open_.end(), passing_.begin());
+}
+
 void Untangle::pull_apart() {
-  std::fill(passing_.begin(), passing_.end(), std::uint8_t{0});
+  clear_passing();
   since_ = crossings() > 0 ? since_ + 1 : 0;
   due_ = since_ > 0 && since_ <= kMostFrames;
   if (!due_) came_apart_ = false;
@@ -139,11 +165,10 @@ void Untangle::pull_apart() {
   for (int row = 0; row < rows && !crossings_.empty(); ++row) {
     choose_parts();
     move_ends();
-    crossings_ = find_crossings(x_, faces_, edges_);
+    crossings_ = find_crossings(x_, faces_, edges_, sewn_);
   }
   // What has come apart may settle for a frame; where it crosses again, contact keeps it apart at once.
-  if (crossings_.empty() && std::exchange(came_apart_, true))
-    std::fill(passing_.begin(), passing_.end(), std::uint8_t{0});
+  if (crossings_.empty() && std::exchange(came_apart_, true)) clear_passing();
   put_back();
 }
 

@@ -29,6 +29,10 @@ class Untangle {
 
   // Edges that pass through triangles now.
   std::size_t crossings();
+  // Takes note of the ends of seams that are open by more than half of the thickness: triangles with one of
+  // them are drawn through others, and are left alone. Returns whether they are others than before; what has
+  // closed may cross.
+  bool look_at_seams();
 
   // Something may have crossed.
   void look() {
@@ -43,7 +47,8 @@ class Untangle {
   // Taking through stretches sheets, which would fly apart: while anything is due, velocities within each
   // that crosses anything go to their mean, within some milliseconds. Its momentum is kept.
   void calm(double seconds);
-  // Particles that have to pass, by their numbers, sheet after sheet: contact leaves them out.
+  // Particles that have to pass, ends of open seams among them, by their numbers, sheet after sheet:
+  // contact leaves them out.
   const std::vector<std::uint8_t>& passing() const { return passing_; }
 
  private:
@@ -78,6 +83,7 @@ class Untangle {
 
   bool may_cross(const Scene& scene) const;
   void mark_what_crosses();
+  void clear_passing();
   void find_lines();
   void list_ends();
   std::size_t first_end(std::int32_t particle) const;
@@ -101,10 +107,13 @@ class Untangle {
   int since_ = 0;            // frames in which something crossed, without a break
   bool came_apart_ = false;  // in one of them all of it did
   std::vector<std::uint8_t> passing_;
+  std::vector<std::uint8_t> open_,
+      opened_;  // ends of open seams, in this frame and in the one before
 
   // As found last.
   std::vector<Vec3> x_;  // m
   std::vector<Face> faces_;
+  std::vector<std::int32_t> sewn_;  // who stands for each particle
   std::vector<Edge> edges_;
   std::vector<Crossing> crossings_;
   std::vector<std::int32_t> line_;  // of every crossing

@@ -32,17 +32,18 @@ MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t
     : mesh_(*scene.cloths[std::size_t(index)].mesh.shape),
       method_(method),
       seed_(seed),
+      surface_{mesh_.triangles, 0, sewn_vertices(scene.cloths[std::size_t(index)])},
       start_(placed_vertices(scene.cloths[std::size_t(index)].mesh)),
       rest_(rest_places(scene.cloths[std::size_t(index)].mesh)),
       triangles_(rest_triangles(mesh_, rest_, scene.cloths[std::size_t(index)].bending)),
       material_(material_of(scene.cloths[std::size_t(index)], method == Method::spring_friction)),
-      order_(order_of(mesh_)),
+      order_(order_of(mesh_, surface_.sewn)),
       particles_(order_.counts, false, order_.vertices),
+      seams_(surface_.sewn, particles_),
       parts_{scene, scene.cloths[std::size_t(index)], method_, particles_, kernels, *this},
       edges_(edges_of(mesh_, rest_.x)) {
   if (rest_.uv_scale > 0) take_lengths(triangles_, edges_);
   for (const Collider& c : scene.colliders) first_moves_.push_back(displacement(c, 0));
-  surface_.triangles = mesh_.triangles;
   const auto lane = [&](int p) { return std::uint32_t(particles_.lane(p)); };
   for (int p = 0; p < particles_.count(); ++p) drawn_.lanes.push_back(lane(p));
   for (const auto& [a, b, c] : mesh_.triangles)
@@ -83,6 +84,7 @@ void MeshModel::append_motion(Method method, StageList& list) {
   material_ = material_of(parts_.cloth, method == Method::spring_friction);
   history_.reset();
   is_explicit(method) ? append_forces(list) : append_projections(list);
+  list.choose("sewing", make_sewing(parts_, seams_, history_.get()), "no seams in the scene");
 }
 
 void MeshModel::append_forces(StageList& list) {
@@ -150,7 +152,7 @@ double MeshModel::attachment_energy(const Rows& at, double dt) const {
 
 MeshSweeps& MeshModel::sweeps() {
   if (!sweeps_) {
-    sweeps_ = std::make_unique<MeshSweeps>(parts_, order_);
+    sweeps_ = std::make_unique<MeshSweeps>(parts_, order_, seams_);
     sweeps_->make_edges(edges_, material_.stiffness);
     if (material_.bends) sweeps_->make_hinges(triangles_);
   }
@@ -163,6 +165,9 @@ void MeshModel::append_limits(StageList& list) {
     sweeps().append_limit(parts_.cloth.strain_limit, list);
   else
     list.skip("strain_limit", "strain_limit is 0");
+  const bool moved = parts_.cloth.strain_limit > 0 || !parts_.scene.colliders.empty();
+  if (moved && seams_.count() > 0)
+    list.stages.push_back(make_seam_hold(parts_, seams_, history_.get()));
 }
 
 ConstraintCounts MeshModel::constraints() const {
@@ -191,6 +196,7 @@ void MeshModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) const {
     Vec3& own = a[std::size_t(particles_.number(j, i))];
     own = particles_.w(j, i) > 0 ? plus(times(own, particles_.w(j, i)), gravity) : Vec3{};
   });
+  seams_.share(particles_, a);
 }
 
 double MeshModel::elastic_energy() const {
@@ -321,6 +327,13 @@ std::vector<std::string> MeshModel::notes() const {
   std::vector<std::string> notes;
   if (!is_explicit(method_) && material_.bend_damping > 0)
     notes.push_back("bending runs without its damping, which explicit methods alone have");
+  const std::size_t loose = mesh_.edges.size();
+  if (loose > 0 && !parts_.cloth.sewing)
+    notes.push_back(std::to_string(loose) +
+                    (loose == 1 ? " edge of the mesh belongs" : " edges of the mesh belong") +
+                    " to no face; their ends are not sewn together (sewing is off)");
+  if (loose == 0 && parts_.cloth.sewing)
+    notes.push_back("sewing is on, but the mesh has no edge that belongs to no face");
   const Bending& bending = parts_.cloth.bending;
   const double rigidity = std::max({bending.warp, bending.weft, bending.twist});
   MeshMaterial bends = material_;
@@ -363,7 +376,7 @@ std::size_t MeshModel::bytes() const {
   return particles_.bytes() + triangles_.size() * sizeof(RestTriangle) +
          edges_.ends.size() * (sizeof(Joined) + sizeof(double)) +
          start_.size() * (sizeof(Vec3) + sizeof(double)) + (sweeps_ ? sweeps_->bytes() : 0) +
-         (history_ ? history_->bytes() : 0);
+         (history_ ? history_->bytes() : 0) + seams_.bytes();
 }
 
 }  // namespace weft::physics

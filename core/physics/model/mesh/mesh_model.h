@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/model/mesh/mesh_sweeps.h"
+#include "physics/model/mesh/seams.h"
 #include "physics/model/mesh/triangle_stage.h"
 #include "physics/model/projected_motion.h"
 #include "physics/model/tethers.h"
@@ -38,6 +39,10 @@ class MeshModel final : public ClothModel {
   double stiffening(double stretch) const override;
   bool folds_freely() const override;
   std::vector<std::string> notes() const override;
+  OpenSeams open_seams() const override { return seams_.open(particles_); }
+  void mark_open_seams(double beyond, std::span<std::uint8_t> marks) const override {
+    seams_.mark_open(particles_, beyond, marks);
+  }
   std::vector<Joined> constraints_near(const Vec3& a, const Vec3& way,
                                        double distance) const override;
   std::size_t bytes() const override;
@@ -55,12 +60,14 @@ class MeshModel final : public ClothModel {
   const TriangleMesh& mesh_;
   Method method_;
   std::uint64_t seed_;
+  SurfaceMesh surface_;
   std::vector<Vec3> start_;  // of every particle [m]
   RestPlaces rest_;
   std::vector<RestTriangle> triangles_;
   MeshMaterial material_;
   MeshOrder order_;
   Particles particles_;
+  Seams seams_;
   ClothParts parts_;
   std::vector<double> masses_;     // kg, of every particle
   std::vector<Vec3> first_moves_;  // of colliders
@@ -68,7 +75,6 @@ class MeshModel final : public ClothModel {
   std::unique_ptr<MeshSweeps> sweeps_;
   std::unique_ptr<History> history_;
   std::vector<std::vector<Tether>> tethers_;  // none: the scene has them off
-  SurfaceMesh surface_;
   DrawnMesh drawn_;
 };
 

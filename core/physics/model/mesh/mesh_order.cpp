@@ -9,13 +9,18 @@ namespace {
 // Vertices: from so many on, batches of triangles that share none of six corners are mostly full.
 constexpr int kLeastRow = 256;
 
-// The vertices that share an edge with each, ascending.
-std::vector<std::vector<int>> neighbours_of(const TriangleMesh& mesh) {
+// The vertices that share an edge with each, or are sewn to it, ascending.
+std::vector<std::vector<int>> neighbours_of(const TriangleMesh& mesh,
+                                            const std::vector<std::vector<int>>& sewn) {
   std::vector<std::vector<int>> near(mesh.vertices.size());
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k)
       for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3})
         near[std::size_t(t[k])].push_back(t[other]);
+  for (const std::vector<int>& group : sewn)
+    for (const int a : group)
+      for (const int b : group)
+        if (a != b) near[std::size_t(a)].push_back(b);
   for (std::vector<int>& list : near) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -55,8 +60,8 @@ class Search {
 
 }  // namespace
 
-MeshOrder order_of(const TriangleMesh& mesh) {
-  const auto near = neighbours_of(mesh);
+MeshOrder order_of(const TriangleMesh& mesh, const std::vector<std::vector<int>>& sewn) {
+  const auto near = neighbours_of(mesh, sewn);
   const int count = int(near.size());
   Search search(near);
   MeshOrder order;

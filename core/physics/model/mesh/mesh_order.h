@@ -1,6 +1,6 @@
 // The vertices of a mesh as rows: breadth-first levels (Cuthill, McKee 1969, "Reducing the bandwidth of
 // sparse symmetric matrices"), thin ones merged. What is joined by an edge lies in one row or in two that
-// follow each other; a triangle with its neighbours spans three at most.
+// follow each other, and so does what seams make one; a triangle with its neighbours spans three at most.
 #pragma once
 
 #include "weft/mesh.h"
@@ -14,6 +14,7 @@ struct MeshOrder {
   std::vector<int> lanes;     // of every vertex in its row
 };
 
-MeshOrder order_of(const TriangleMesh& mesh);
+// `sewn`: groups of vertices that seams make one.
+MeshOrder order_of(const TriangleMesh& mesh, const std::vector<std::vector<int>>& sewn = {});
 
 }  // namespace weft::physics

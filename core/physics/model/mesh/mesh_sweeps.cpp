@@ -165,9 +165,10 @@ class SweepHinges final : public RowStage {
 
 }  // namespace
 
-MeshSweeps::MeshSweeps(const ClothParts& parts, const MeshOrder& order)
+MeshSweeps::MeshSweeps(const ClothParts& parts, const MeshOrder& order, const Seams& seams)
     : parts_(parts),
       order_(order),
+      seams_(seams),
       records_(std::size_t(kRecord) * std::size_t(parts.particles.rows) *
                std::size_t(parts.particles.stride)) {}
 
@@ -226,9 +227,14 @@ void MeshSweeps::make_hinges(const std::vector<RestTriangle>& triangles) {
   }
 }
 
+void MeshSweeps::append_seams(StageList& list) {
+  if (auto seams = make_seam_sweep(parts_, seams_, records_))
+    list.stages.push_back(std::move(seams));
+}
+
 void MeshSweeps::append_edges(int iterations, StageList& list) {
   list.stages.push_back(std::make_unique<LoadRecords>(parts_, records_, 1));
-  for (int n = 0; n < iterations; ++n)
+  for (int n = 0; n < iterations; ++n) {
     for (int c = 0; c < int(edges_.size()); ++c) {
       EdgeColour& colour = edges_[std::size_t(c)];
       if (iterations > 1 && colour.lambda.size() == 0)
@@ -236,6 +242,8 @@ void MeshSweeps::append_edges(int iterations, StageList& list) {
       list.stages.push_back(
           std::make_unique<SweepEdges>(parts_, colour, records_, EdgeOptions{c, n == 0, 0}));
     }
+    append_seams(list);
+  }
   list.stages.push_back(std::make_unique<StoreRecords>(parts_, records_, false));
 }
 
@@ -244,6 +252,7 @@ void MeshSweeps::append_hinges(StageList& list) {
   for (int c = 0; c < int(hinges_.size()); ++c)
     list.stages.push_back(
         std::make_unique<SweepHinges>(parts_, hinges_[std::size_t(c)], *triangles_, records_, c));
+  append_seams(list);
   list.stages.push_back(std::make_unique<StoreRecords>(parts_, records_, false));
 }
 
@@ -252,6 +261,7 @@ void MeshSweeps::append_limit(double strain, StageList& list) {
   for (int c = 0; c < int(edges_.size()); ++c)
     list.stages.push_back(std::make_unique<SweepEdges>(parts_, edges_[std::size_t(c)], records_,
                                                        EdgeOptions{c, true, 1 + strain}));
+  append_seams(list);
   list.stages.push_back(std::make_unique<StoreRecords>(parts_, records_, true));
 }
 

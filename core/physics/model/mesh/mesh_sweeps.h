@@ -8,6 +8,7 @@
 #include "physics/kernels/mesh_sweep.h"
 #include "physics/model/mesh/batches.h"
 #include "physics/model/mesh/mesh_edges.h"
+#include "physics/model/mesh/seams.h"
 
 namespace weft::physics {
 
@@ -28,7 +29,7 @@ struct HingeColour {
 // What is made once for the sweeps of one mesh.
 class MeshSweeps {
  public:
-  MeshSweeps(const ClothParts& parts, const MeshOrder& order);
+  MeshSweeps(const ClothParts& parts, const MeshOrder& order, const Seams& seams);
 
   // `stiffness`: of an edge from each of its triangles [N/m].
   void make_edges(const MeshEdges& edges, double stiffness);
@@ -45,8 +46,11 @@ class MeshSweeps {
   std::size_t bytes() const;
 
  private:
+  void append_seams(StageList& list);
+
   const ClothParts& parts_;
   const MeshOrder& order_;
+  const Seams& seams_;
   AlignedArray<float> records_;
   std::vector<EdgeColour> edges_;
   const std::vector<RestTriangle>* triangles_ = nullptr;
