@@ -119,6 +119,30 @@ TEST_F(MeshPins, FaultsAreNamed) {
   EXPECT_NE(fault(R"([{"box": [[0, 0, 0], [1, 1, "x"]]}])"), "");
 }
 
+// What would take hours to look up, or all memory to hold, is refused.
+TEST_F(MeshPins, HoldAndNameSoMuch) {
+  Scene scene;
+  Cloth& cloth = scene.cloths.emplace_back();
+  cloth.grid = {1024, 1024, {}, {1, 0, 0}, {0, 0, 1}, 0};
+  Pin corner;
+  corner.box = BoxCorners{Vec3{}, Vec3{}};
+  cloth.pins.assign(1025, corner);
+  std::vector<Fault> faults = validate(scene);
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].what, "the pins' boxes and groups are 1074790400 to be looked up");
+  cloth.pins.assign(1, corner);
+  EXPECT_TRUE(validate(scene).empty());
+  cloth.pins[0].box = BoxCorners{Vec3{}, Vec3{1, 0, 1}};
+  cloth.pins[0].keys = {{0, {}}, {1, {}}, {2, {}}, {3, {}}};
+  EXPECT_TRUE(validate(scene).empty());
+  cloth.pins[0].keys.push_back({4, {}});
+  faults = validate(scene);
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].what,
+            "with this pin, pins of several hold particles by 5242880 keys, each counted for each "
+            "particle");
+}
+
 TEST_F(MeshPins, AreWrittenAsTheyAreRead) {
   const SceneFile file = read(
       R"([1, {"vertices": [3]}, {"group": "tip", "keys": [[0, 0, 0, 0]]}, {"box": [[0, 0, 0], [0, 0, 0]], "follow": 0}])");

@@ -83,7 +83,8 @@ std::vector<Pin> single_pins(const Cloth& cloth) {
 namespace text {
 namespace {
 
-constexpr std::size_t kMaxHeldKeys = std::size_t{1} << 22;  // of the particles of one pin
+constexpr std::size_t kMaxHeldKeys = std::size_t{1} << 22;  // of the particles of pins of several
+constexpr std::size_t kMaxSearch = std::size_t{1} << 30;  // particles and groups that are looked at
 
 std::string names_of(const std::vector<TriangleMesh::Group>& groups) {
   constexpr std::size_t kNamed = 20;
@@ -105,6 +106,20 @@ class Pins {
       : scene_(scene), cloth_(cloth), result_(result), count_(particle_count(cloth)) {
     const auto boxes = [](const Pin& pin) { return pin.box.has_value(); };
     if (std::any_of(cloth.pins.begin(), cloth.pins.end(), boxes)) starts_ = starts_of(cloth);
+  }
+
+  // Whether what pins name is found in time: every box is held against all particles, every name against all
+  // groups.
+  bool are_few(const std::string& place) {
+    std::size_t search = 0;
+    for (const Pin& pin : cloth_.pins) {
+      if (pin.box) search += starts_.size();
+      if (pin.group && cloth_.mesh.shape) search += cloth_.mesh.shape->groups.size();
+    }
+    if (search <= kMaxSearch) return true;
+    fault(place, "the pins' boxes and groups are " + std::to_string(search) + " to be looked up",
+          "at most 1073741824: boxes times particles and names times groups");
+    return false;
   }
 
   void check(const Pin& pin, const std::string& here) {
@@ -168,11 +183,12 @@ class Pins {
     if (pin.box && held.empty() && known())
       return fault(here + "/box", "no particle starts in the box",
                    "corners of a box, in m, with at least one in it");
-    if (held.size() * (pin.keys.size() + pin.rotate.keys.size()) > kMaxHeldKeys)
-      fault(here,
-            "the pin holds " + std::to_string(held.size()) + " particles by " +
-                std::to_string(pin.keys.size() + pin.rotate.keys.size()) + " keys each",
-            "at most 4194304 keys in all");
+    if (pin.of_several()) held_keys_ += held.size() * (pin.keys.size() + pin.rotate.keys.size());
+    if (held_keys_ > kMaxHeldKeys)
+      return fault(here,
+                   "with this pin, pins of several hold particles by " +
+                       std::to_string(held_keys_) + " keys, each counted for each particle",
+                   "at most 4194304 in all");
     for (const int p : held) {
       const auto [before, fresh] = held_.try_emplace(p, here);
       if (fresh) continue;
@@ -203,6 +219,7 @@ class Pins {
   Check& result_;
   const int count_;
   std::vector<Vec3> starts_;
+  std::size_t held_keys_ = 0;
   std::map<int, std::string> held_;  // and by which pin
 };
 
@@ -210,6 +227,7 @@ class Pins {
 
 void check_pins(const Scene& scene, const Cloth& cloth, const std::string& place, Check& result) {
   Pins pins(scene, cloth, result);
+  if (!pins.are_few(place)) return;
   for (std::size_t k = 0; k < cloth.pins.size() && !result.full(); ++k)
     pins.check(cloth.pins[k], place + "/" + std::to_string(k));
 }
