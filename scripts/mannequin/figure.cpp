@@ -106,12 +106,6 @@ double Figure::sleeves(Vec p) const {
   return d;
 }
 
-double Figure::hips(Vec p) const {
-  double d = of(p, {at(Bone::pelvis), at(Bone::waist), at(Bone::chest)}, kTrunk);
-  for (const int side : {-1, 1}) d = blended(d, of(p, {at(Bone::thigh, side)}, kLimb), 0.03);
-  return d;
-}
-
 double Figure::body(Vec p) const {
   double d = blended(trunk(p), of(p, {at(Bone::head)}, 0.05), 0.02);
   for (const int side : {-1, 1}) {

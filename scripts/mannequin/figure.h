@@ -44,10 +44,9 @@ class Figure {
   Figure();
   const std::vector<Cone>& cones() const { return cones_; }
   const Joints& joints() const { return joints_; }
-  // m; of the whole body; of what a shirt covers, and a skirt.
+  // m; of the whole body; of what a shirt covers.
   double body(Vec p) const;
   double sleeves(Vec p) const;
-  double hips(Vec p) const;
 
  private:
   using Group = std::span<const Cone>;

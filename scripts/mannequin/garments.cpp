@@ -1,28 +1,12 @@
 #include "garments.h"
 
-#include <numbers>
-
 namespace mannequin {
 namespace {
 
-constexpr double kShirtCell = 0.0125;               // m, of its triangles
-constexpr double kNeck = 0.098, kHem = 0.84;        // m; radius about the neck, height of the hem
-constexpr double kStraight = 0.96;                  // m; below it the shirt falls straight
-constexpr double kSleeve = 0.7;                     // of the upper arm
-constexpr int kAround = 132, kAlong = 64;           // squares of the skirt
-constexpr double kWaist = 1.075, kSkirtHem = 0.55;  // m
-constexpr double kOff = 0.004, kFlare = 0.3;        // m; m of radius for each m down
-
-// The farthest that a shape reaches from the middle line at a height, in a direction [m].
-double reach(const Field& shape, Vec out, double y) {
-  double r = 0.4;
-  for (int n = 0; n < 60 && r > 0.02; ++n) {
-    const double d = shape({out.x * r, y, out.z * r});
-    if (d < 1e-4) break;
-    r -= d;
-  }
-  return r;
-}
+constexpr double kShirtCell = 0.0125;         // m, of its triangles
+constexpr double kNeck = 0.098, kHem = 0.84;  // m; radius about the neck, height of the hem
+constexpr double kStraight = 0.96;            // m; below it the shirt falls straight
+constexpr double kSleeve = 0.7;               // of the upper arm
 
 }  // namespace
 
@@ -44,37 +28,6 @@ Mesh make_shirt(const Figure& figure) {
     return std::max({neck, hem, cuff});
   };
   return cut(surface_of(off, {-0.6, 0.6, -0.3}, {0.6, 1.62, 0.35}, kShirtCell), off, kept);
-}
-
-Mesh make_skirt(const Figure& figure) {
-  const Field hips = [&](Vec p) { return figure.hips(p); };
-  Mesh mesh;
-  std::vector<double> radius(kAround, 0);
-  for (int row = 0; row <= kAlong; ++row) {
-    const double down = (kWaist - kSkirtHem) * row / kAlong, y = kWaist - down;
-    for (int n = 0; n < kAround; ++n) {
-      const double turn = 2 * std::numbers::pi * (n + 0.5 * (row % 2)) / kAround;
-      const Vec out{std::sin(turn), 0, std::cos(turn)};
-      double& r = radius[std::size_t(n)];
-      const double step = row == 0 ? 0 : kFlare * (kWaist - kSkirtHem) / kAlong;
-      r = std::max(r + step * smooth(0, 0.12, down), reach(hips, out, y) + kOff);
-      mesh.vertices.push_back({out.x * r, y, out.z * r});
-    }
-  }
-  const auto number = [](int row, int n) { return row * kAround + n % kAround; };
-  for (int row = 0; row < kAlong; ++row)
-    for (int n = 0; n < kAround; ++n) {
-      const int a = number(row, n), b = number(row, n + 1), c = number(row + 1, n),
-                d = number(row + 1, n + 1);
-      if (row % 2 == 0) {
-        mesh.triangles.push_back({a, c, b});
-        mesh.triangles.push_back({b, c, d});
-      } else {
-        mesh.triangles.push_back({a, c, d});
-        mesh.triangles.push_back({a, d, b});
-      }
-    }
-  return mesh;
 }
 
 }  // namespace mannequin

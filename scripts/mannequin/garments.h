@@ -1,4 +1,4 @@
-// Clothes that lie about the figure as it stands, not sewn: one piece each.
+// Clothes that lie about the figure as it stands, in one piece.
 #pragma once
 
 #include "figure.h"
@@ -8,8 +8,5 @@ namespace mannequin {
 
 // A shirt with short sleeves: the surface so far off trunk and arms, without what is beyond neck, hem and cuffs.
 Mesh make_shirt(const Figure& figure);
-
-// A skirt that widens from the waist on.
-Mesh make_skirt(const Figure& figure);
 
 }  // namespace mannequin

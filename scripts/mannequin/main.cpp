@@ -1,6 +1,6 @@
 // Makes a figure that walks, and clothes for it, into a folder:
 //   mannequin.obj, walk.pc2   the body, and where its vertices are over time
-//   shirt.obj, skirt.obj      clothes that lie about it as it stands
+//   shirt.obj                 a shirt that lies about it as it stands
 #include <bit>
 #include <cstdint>
 #include <cstdio>
@@ -46,13 +46,12 @@ void make(const std::string& folder) {
   const Figure figure;
   const Mesh body = surface_of([&](Vec p) { return figure.body(p); }, {-0.75, -0.05, -0.25},
                                {0.75, 1.8, 0.3}, kCell);
-  const Mesh shirt = make_shirt(figure), skirt = make_skirt(figure);
+  const Mesh shirt = make_shirt(figure);
   write_obj(body, folder + "/mannequin.obj", "mannequin");
   write_obj(shirt, folder + "/shirt.obj", "shirt");
-  write_obj(skirt, folder + "/skirt.obj", "skirt");
   write_walk(Skin(figure, body), body.vertices.size(), folder + "/walk.pc2");
-  std::printf("mannequin: %zu triangles, shirt: %zu vertices, skirt: %zu vertices\n",
-              body.triangles.size(), shirt.vertices.size(), skirt.vertices.size());
+  std::printf("mannequin: %zu triangles, shirt: %zu vertices\n", body.triangles.size(),
+              shirt.vertices.size());
 }
 
 }  // namespace
@@ -60,8 +59,7 @@ void make(const std::string& folder) {
 
 int main(int count, char** words) {
   if (count != 2) {
-    std::fprintf(stderr,
-                 "mannequin FOLDER: makes mannequin.obj, walk.pc2, shirt.obj and skirt.obj\n");
+    std::fprintf(stderr, "mannequin FOLDER: makes mannequin.obj, walk.pc2 and shirt.obj\n");
     return 2;
   }
   try {
