@@ -142,7 +142,7 @@ constexpr Broken kBroken[] = {
     {R"({"weft": 1, "cloths": [{"pins": [[0, 2]]}]})",
      "/cloths/0/pins/0: the pin [0, 2] is outside of the grid ([0, 0] to [1, 1])"},
     {R"({"weft": 1, "cloths": [{"pins": [[0, 0], [0, 0]]}]})",
-     "/cloths/0/pins/1: the particle [0, 0] is pinned twice (once)"},
+     "/cloths/0/pins/1: the particle [0, 0] is pinned twice (once; it is held by /cloths/0/pins/0)"},
     {R"({"weft": 1, "cloths": [{"pins": [3]}]})",
      "/cloths/0/pins/0: the pin [3, 0] is outside of the grid ([0, 0] to [1, 1])"},
     {R"({"weft": 1, "cloths": [{"pins": [[0, 0, 0]]}]})",

@@ -24,7 +24,7 @@ TEST(Pins, LetSomeGo) {
   const Json box = Json::parse(R"({"box": [[0, 0, 0], [1, 1, 1]], "keys": [[0, 0, 0, 0]]})");
   EXPECT_EQ(remaining_pin_json(box, {3, 4, 7}, {1, 2}), box);
   EXPECT_EQ(remaining_pin_json(box, {3, 4, 7}, {4}),
-            Json::parse(R"({"vertices": [3, 7], "keys": [[0, 0, 0, 0]]})"));
+            Json::parse(R"({"keys": [[0, 0, 0, 0]], "vertices": [3, 7]})"));
   EXPECT_TRUE(remaining_pin_json(box, {3, 4}, {3, 4, 5}).is_null());
   EXPECT_EQ(remaining_pin_json(Json::parse(R"({"group": "hem"})"), {1, 2}, {2}),
             Json::parse(R"({"vertices": [1]})"));

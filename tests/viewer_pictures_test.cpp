@@ -176,6 +176,7 @@ TEST(Pictures, EveryShippedSceneIsShown) {
   const fs::path docs = WEFT_SOURCE_DIR "/docs";
   const std::string page = bytes_of(docs / "viewer.md");
   for (const auto& entry : fs::directory_iterator(WEFT_SOURCE_DIR "/scenes")) {
+    if (!entry.is_regular_file()) continue;
     const std::string picture = "pictures/scene-" + entry.path().stem().string() + ".png";
     EXPECT_NE(page.find("](" + picture + ")"), std::string::npos) << picture;
     EXPECT_TRUE(fs::exists(docs / picture)) << picture;

@@ -47,7 +47,8 @@ void add_options(CLI::App& app, Settings& s, Wanted& w) {
   app.add_option("--first", s.first, "seed of the first scene")->capture_default_str();
   app.add_option("--count", s.count, "scenes")->capture_default_str();
   app.add_option("--seconds", s.seconds, "starts no scene after so many seconds");
-  app.add_option("--limit", s.limit, "seconds of processor time that one scene may take")->capture_default_str();
+  app.add_option("--limit", s.limit, "seconds of processor time that one scene may take")
+      ->capture_default_str();
   app.add_option("--jobs", s.jobs, "scenes at once")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();

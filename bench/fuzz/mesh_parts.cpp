@@ -90,7 +90,7 @@ std::vector<Pin> Parts::vertex_pins(const Cloth& c, const Time& time) {
 void Parts::gather_pins(Scene& scene) {
   for (Cloth& c : scene.cloths) {
     if (!draw_.chance(0.2)) continue;
-    Pin all{-1, 0, {}};
+    Pin all;
     for (const Pin& pin : c.pins)
       if (!pin.moves()) all.vertices.push_back(particle_number(c, pin));
     std::erase_if(c.pins, [](const Pin& pin) { return !pin.moves(); });
