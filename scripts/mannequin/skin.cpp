@@ -1,6 +1,9 @@
 #include "skin.h"
 
+#include <algorithm>
+#include <cmath>
 #include <set>
+#include <stdexcept>
 
 namespace mannequin {
 namespace {
@@ -12,8 +15,13 @@ constexpr int kRounds = 14;      // of smoothing over the mesh
 
 Skin::Skin(const Figure& figure, const Mesh& mesh) : figure_(figure), mesh_(mesh) {
   for (const auto& [bone, pose] : pose_at(figure.joints(), 0).bones) bones_.push_back(bone);
+  // Shoulders are cones of either side, of a bone in the middle.
   const auto number = [&](BoneOf bone) {
-    return std::size_t(std::find(bones_.begin(), bones_.end(), bone) - bones_.begin());
+    const auto own = std::find(bones_.begin(), bones_.end(), bone);
+    const auto found =
+        own != bones_.end() ? own : std::find(bones_.begin(), bones_.end(), BoneOf{bone.bone, 0});
+    if (found == bones_.end()) throw std::logic_error("a cone of the figure has no bone");
+    return std::size_t(found - bones_.begin());
   };
   for (const Vec& p : mesh.vertices) {
     Weights distances(bones_.size(), 1.0), weights;
