@@ -199,5 +199,24 @@ TEST(Estimate, FreeMemoryIsThatOfTheMachine) {
   EXPECT_LT(free_memory(), 1e15);
 }
 
+// A membrane that pins draw out stiffens as it does so.
+TEST(Estimate, CountsWhatPinsStretch) {
+  for (const double longer : {3.0, 10.0}) {
+    Scene scene;
+    Cloth& cloth = scene.cloths.emplace_back();
+    cloth.grid.nx = cloth.grid.ny = 9;
+    cloth.membrane = {.warp = 2000, .weft = 2000, .coupling = 100, .shear = 100};
+    cloth.pins = {{0, 0, {}}, {1, 0, {}}};
+    cloth.pins[1].keys = {{0, {0.125, 0, 0}}, {0.5, {0.125 * longer, 0, 0}}};
+    scene.time.seconds = 0.6;
+    Simulation simulation(scene);
+    while (simulation.time() < scene.time.seconds - 1e-9) simulation.advance_frame();
+    const double taken = simulation.substeps();
+    EXPECT_GT(taken, 1.5 * longer);
+    EXPECT_LT(estimate(scene).substeps, 1.5 * taken) << longer;
+    EXPECT_GT(estimate(scene).substeps, taken / 1.5) << longer;
+  }
+}
+
 }  // namespace
 }  // namespace weft

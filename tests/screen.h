@@ -110,6 +110,16 @@ class Screen {
     }
     type("click 1");
   }
+  // Once the eye stands still.
+  nlohmann::json settled() const {
+    nlohmann::json before, state = now();
+    do {
+      before = state;
+      std::this_thread::sleep_for(std::chrono::milliseconds(400));
+      state = now();
+    } while (state["eye"] != before["eye"] && runs());
+    return state;
+  }
   // Presses at the first point, goes on to the others, and lets go once the window is as expected.
   void drag(const std::vector<std::pair<int, int>>& points, const std::string& what,
             const Condition& condition) const {

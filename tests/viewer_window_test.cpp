@@ -120,7 +120,7 @@ TEST_F(Window, OrbitAndZoomAreAboutWhatIsUnderThePointer) {
       "colliders": [{"sphere": {"center": [0.3, -0.2, 0.5], "radius": 0.03}}]})");
   Screen screen(folder);
   screen.open("ball.json --paused");
-  const Json start = screen.now(), ball = start["bodies"][0];
+  const Json start = screen.settled(), ball = start["bodies"][0];
   int x = 0, y = 0;
   double nearest = 1e9;
   for (int i = 500; i < 1280; i += 4)
@@ -129,8 +129,8 @@ TEST_F(Window, OrbitAndZoomAreAboutWhatIsUnderThePointer) {
   ASSERT_LT(nearest, 0.01);
   ASSERT_GT(std::hypot(x - 808, y - 400), 80);
   const std::string at = std::to_string(x) + " " + std::to_string(y);
-  screen.type("mousemove " + at + " sleep 0.5 mousedown 2 sleep 0.5 mousemove " +
-              std::to_string(x - 200) + " " + std::to_string(y + 60) + " sleep 0.5 mouseup 2");
+  screen.type("mousemove " + at + " sleep 1 mousedown 2 sleep 1 mousemove " +
+              std::to_string(x - 200) + " " + std::to_string(y + 60) + " sleep 1 mouseup 2");
   const Json turned = screen.wait("a turn", [&](const Json& now) {
     return apart(now["eye"], start["eye"]) > 0.5 * apart(start["eye"], start["target"]);
   });

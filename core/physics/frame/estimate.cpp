@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
+#include <set>
 
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/moving_collider.h"
 #include "physics/model/lattice/stability.h"
 #include "physics/model/lattice/stencil.h"
+#include "physics/model/path.h"
+#include "physics/model/spectrum.h"
 #include "weft/mesh.h"
 #include "weft/simulation.h"
 
@@ -106,6 +110,71 @@ struct Way {
   int substeps;
 };
 
+// Calls visit(a, b) for particles that an edge joins.
+template <class Visit>
+void for_each_edge(const Cloth& cloth, const Visit& visit) {
+  if (cloth.mesh.given()) {
+    for (const auto& [a, b, c] : cloth.mesh.shape->triangles) visit(a, b), visit(b, c), visit(c, a);
+    return;
+  }
+  const Grid& grid = cloth.grid;
+  for (int j = 0; j < grid.ny; ++j)
+    for (int i = 0; i < grid.nx; ++i) {
+      const int p = particle_number(grid, i, j);
+      if (i + 1 < grid.nx) visit(p, p + 1);
+      if (j + 1 < grid.ny) visit(p, p + grid.nx);
+    }
+}
+
+std::vector<Vec3> starts_of(const Cloth& cloth) {
+  if (cloth.mesh.given()) return placed_vertices(cloth.mesh);
+  std::vector<Vec3> starts;
+  for (int j = 0; j < cloth.grid.ny; ++j)
+    for (int i = 0; i < cloth.grid.nx; ++i) starts.push_back(place_on(cloth.grid, i, j));
+  return starts;
+}
+
+// How far pins draw the ends of an edge apart within some seconds, in lengths at the start: looked at at keys and
+// at times in between. What they follow moves both.
+double stretch_between_pins(const Cloth& cloth, double seconds) {
+  constexpr int kLooks = 64;
+  std::map<int, Pin> pins;
+  std::set<double> times{0};
+  for (const Pin& pin : single_pins(cloth)) {
+    for (const Key& key : pin.keys) times.insert(key.time);
+    for (const Angle& key : pin.rotate.keys) times.insert(key.time);
+    pins.emplace(particle_number(cloth, pin), pin);
+  }
+  if (times.size() == 1 && times.contains(0)) return 1;
+  for (int n = 1; n <= kLooks; ++n) times.insert(seconds * n / kLooks);
+  times.erase(times.upper_bound(seconds), times.end());
+  const std::vector<Vec3> starts = starts_of(cloth);
+  double most = 1;
+  for_each_edge(cloth, [&](int a, int b) {
+    const auto one = pins.find(a), other = pins.find(b);
+    if (one == pins.end() || other == pins.end()) return;
+    if (!one->second.moves() && !other->second.moves()) return;
+    const Vec3 &p = starts[std::size_t(a)], &q = starts[std::size_t(b)];
+    const Vec3 rest = minus(q, p);
+    for (const double time : times) {
+      const Vec3 edge =
+          minus(pin_alone_at(other->second, q, time), pin_alone_at(one->second, p, time));
+      most = std::max(most, std::sqrt(dot(edge, edge) / dot(rest, rest)));
+    }
+  });
+  return most;
+}
+
+// Of membranes that pins stretch, which takes shorter substeps.
+double more_substeps(const Scene& scene) {
+  double most = 1;
+  for (const Cloth& cloth : scene.cloths)
+    if (cloth.membrane.given())
+      most = std::max(
+          most, std::sqrt(stiffening_of_membrane(stretch_between_pins(cloth, scene.time.seconds))));
+  return most;
+}
+
 // How the scene will be solved.
 Way way_of(const Scene& scene) {
   const Simulation piece(cutting(scene), {.threads = 1});
@@ -114,6 +183,8 @@ Way way_of(const Scene& scene) {
   if (!is_spring(way.solver.method) && scene.time.substeps == kAutoSubsteps)
     way.substeps =
         int(std::clamp(std::round(scene.time.frame / projection_substep(scene)), 1.0, 1e5));
+  else if (scene.time.substeps == kAutoSubsteps)
+    way.substeps = int(std::clamp(way.substeps * more_substeps(scene), 1.0, 1e5));
   return way;
 }
 
