@@ -1,4 +1,5 @@
 // Bodies that are mesh files, as scenes name them.
+#include "body_scenes.h"
 #include "contact_scenes.h"
 #include "folder.h"
 #include "made_up_bodies.h"
@@ -7,16 +8,6 @@
 
 namespace weft {
 namespace {
-
-std::string scene_with(const std::string& collider) {
-  return R"({"weft": 1, "cloths": [{"grid": {"points": [8, 8], "origin": [-0.5, 0.5, -0.5]}}],
-             "colliders": [)" +
-         collider + "]}";
-}
-
-std::string first_fault(const SceneFile& file) {
-  return file.faults.empty() ? "" : file.faults[0].place + ": " + file.faults[0].what;
-}
 
 TEST(MeshBodyFile, IsBesideTheScene) {
   const Folder folder;

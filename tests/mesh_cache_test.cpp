@@ -4,6 +4,7 @@
 #include <limits>
 #include <random>
 
+#include "body_scenes.h"
 #include "contact_scenes.h"
 #include "folder.h"
 #include "made_up_bodies.h"
@@ -102,16 +103,6 @@ TEST(MeshCache, AnyBytesAreReadOrRefused) {
               std::size_t(file.cache->points) * std::size_t(file.cache->samples()));
   }
   EXPECT_GT(read, 1000);
-}
-
-std::string scene_with(const std::string& collider) {
-  return R"({"weft": 1, "cloths": [{"grid": {"points": [8, 8], "origin": [-0.5, 0.5, -0.5]}}],
-             "colliders": [)" +
-         collider + "]}";
-}
-
-std::string first_fault(const SceneFile& file) {
-  return file.faults.empty() ? "" : file.faults[0].place + ": " + file.faults[0].what;
 }
 
 TEST(MeshCache, ScenesNameThem) {

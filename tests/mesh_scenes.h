@@ -2,6 +2,7 @@
 #pragma once
 
 #include "made_up_mesh.h"
+#include "physics/model/mesh/rest_triangles.h"
 #include "weft/simulation.h"
 
 namespace weft {
@@ -38,6 +39,19 @@ inline const Material kMaterials[] = {
      }},
     {"springs that bend", [](Scene& s) { s.cloths[0].bending = 1e-4; }},
 };
+
+// The force on one coordinate of a vertex as the slope of the energy, by differences.
+inline double energy_slope(const std::vector<physics::RestTriangle>& triangles,
+                           const physics::MeshMaterial& material, std::vector<Vec3>& x,
+                           std::size_t vertex, std::size_t k) {
+  const double h = 1e-6, at = x[vertex][k];
+  x[vertex][k] = at + h;
+  const double more = physics::mesh_energy(triangles, material, x);
+  x[vertex][k] = at - h;
+  const double less = physics::mesh_energy(triangles, material, x);
+  x[vertex][k] = at;
+  return (less - more) / (2 * h);
+}
 
 inline std::vector<Vec3> positions_of(const Simulation& run) {
   const std::vector<double> all = run.positions();

@@ -91,8 +91,8 @@ struct Report {
   struct {
     std::int64_t contacts = 0;  // that were solved the last time, among cloths
     double energy_taken = 0;    // J; of motion, by impulses (friction and blows)
-    double greatest_clamp =
-        0;  // m; by how much a particle's way was cut at most so that nothing passes
+    // m; by how much a particle's way was cut at most so that nothing passes.
+    double greatest_clamp = 0;
     double least_distance = 1;  // of two that touched, in distances at which they are held
   } contact;
   std::int64_t torn = 0;

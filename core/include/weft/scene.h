@@ -72,9 +72,9 @@ struct Kinds {
 struct Membrane {
   double warp = 0;  // N/m, C11
   double weft = 0;  // N/m, C22
-  double coupling =
-      0;             // N/m, C12; |C12| is at most the root of C11 C22: the energy stays above zero
-  double shear = 0;  // N/m, C66
+  // N/m, C12; |C12| is at most the root of C11 C22: the energy stays above zero.
+  double coupling = 0;
+  double shear = 0;    // N/m, C66
   double damping = 0;  // s
   bool given() const { return warp > 0 || weft > 0 || shear > 0; }
   friend bool operator==(const Membrane&, const Membrane&) = default;

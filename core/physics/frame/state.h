@@ -128,6 +128,7 @@ struct Simulation::State {
   } began_;
 
   void choose_method_and_substeps();
+  void estimate_spectra();
   void note_starts(std::vector<std::string>& notes) const;
   void build_cloths();
   void make_self_contact();

@@ -43,6 +43,13 @@ StableSubsteps stable_substeps(const Cloths& cloths, std::span<const Spectrum> s
 
 }  // namespace
 
+void Simulation::State::estimate_spectra() {
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    spectra.push_back(cloths[c]->model().spectrum(masses(c).span()));
+    spectra.back().drag = scene.cloths[c].drag;
+  }
+}
+
 // Explicit springs: the substep from the stability limit, or the user's if it is inside; beyond it,
 // the compliant method in their place, which is stable at any substep.
 void Simulation::State::choose_method_and_substeps() {
@@ -60,17 +67,16 @@ void Simulation::State::choose_method_and_substeps() {
                     ", which does nothing here: springs have no iterations (iterate_springs adds "
                     "their forces so many times)");
   if (is_explicit(method)) {
-    for (std::size_t c = 0; c < cloths.size(); ++c) {
-      spectra.push_back(cloths[c]->model().spectrum(masses(c).span()));
-      spectra.back().drag = scene.cloths[c].drag;
-    }
+    estimate_spectra();
     const StableSubsteps stable = stable_substeps(cloths, spectra);
     limit = stable.largest;
     const double needed = std::ceil(scene.time.frame / (kLimitShare * stable.safe));
     const bool resolved = needed <= kMostSubsteps && kLimitShare * stable.safe >= kLeastSubstep;
     if (count == kAutoSubsteps && resolved) {
       count = clamp_to_int(needed, 1, kMostSubsteps);
-      notes.push_back("substeps from the stability limit of " + number(limit) + " s");
+      notes.push_back(std::isfinite(limit)
+                          ? "substeps from the stability limit of " + number(limit) + " s"
+                          : "one substep a frame, since nothing is free to vibrate");
     } else if (only_explicit() && (!resolved || scene.time.frame / count > limit)) {
       if (!resolved)
         throw SceneError({{"/cloths/" + std::to_string(stable.stiffest),
