@@ -22,14 +22,16 @@ struct Output {
   const char* option;
   const char* name;
 };
-constexpr std::array<Output, 8> kOutputs{{{"--export", "a.pc2"},
+constexpr std::array<Output, 9> kOutputs{{{"--export", "a.pc2"},
                                           {"--export", "b.mdd"},
                                           {"--export", "c.obj"},
                                           {"--export", "d.gltf"},
                                           {"--export", "e.glb"},
+                                          {"--export", "i.usda"},
                                           {"--dump", "f.f64"},
                                           {"--report", "g.json"},
                                           {"--record", "h.rec"}}};
+constexpr std::size_t kAnimations = 6;  // the first of them, of which a run writes one
 constexpr std::array<int, 6> kSignals{SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGKILL};
 
 class Kills : public testing::Test {
@@ -49,7 +51,7 @@ class Kills : public testing::Test {
     return all;
   }
   Truth truth_of(bool fresh) const {
-    EXPECT_EQ(wait_for(start_weft(folder, words(fresh, {kOutputs[0], kOutputs[7]}))), 0);
+    EXPECT_EQ(wait_for(start_weft(folder, words(fresh, {kOutputs[0], kOutputs.back()}))), 0);
     return {folder.read("a.pc2"), folder.read("h.rec")};
   }
   std::set<std::string> names() const {
@@ -73,6 +75,8 @@ class Kills : public testing::Test {
       case 'd':
       case 'e':
         return judge.gltf(output.name);
+      case 'i':
+        return judge.usda(output.name);
       case 'f':
         return judge.dump(output.name);
       case 'g':
@@ -104,10 +108,10 @@ TEST_F(Kills, LeaveOldOrNewFilesAndNothingElse) {
   for (int kill = 0; kill < kills; ++kill) {
     for (const std::string& name : names())
       if (name != "scene.json") std::filesystem::remove_all(folder / name);
-    std::vector<Output> outputs{kOutputs[static_cast<std::size_t>(kill) % 5]};
-    for (std::size_t n = 5; n < kOutputs.size(); ++n)
+    std::vector<Output> outputs{kOutputs[static_cast<std::size_t>(kill) % kAnimations]};
+    for (std::size_t n = kAnimations; n < kOutputs.size(); ++n)
       if (below(2) == 0) outputs.push_back(kOutputs[n]);
-    const int signal = kSignals[static_cast<std::size_t>(kill / 5) % kSignals.size()];
+    const int signal = kSignals[static_cast<std::size_t>(kill) / kAnimations % kSignals.size()];
     SCOPED_TRACE("kill " + std::to_string(kill) + ", signal " + std::to_string(signal) + ", " +
                  outputs[0].name);
 

@@ -153,6 +153,26 @@ class Judge {
     }
     return positions == truth_.samples[sample] && faces == kFaces;
   }
+  bool usda(const std::string& name) const {
+    const std::string text = folder_.read(name);
+    std::istringstream in(text);
+    std::vector<float> positions;
+    std::size_t samples = 0;
+    std::string line;
+    while (std::getline(in, line) && !line.ends_with("points.timeSamples = {")) {
+    }
+    for (; std::getline(in, line) && line.ends_with("],"); ++samples) {
+      std::ranges::replace_if(
+          line, [](char c) { return c == '[' || c == '(' || c == ',' || c == ')'; }, ' ');
+      char* at = line.data() + line.find(':') + 1;
+      for (char* end = at;; at = end) {
+        const float value = std::strtof(at, &end);
+        if (end == at) break;
+        positions.push_back(value);
+      }
+    }
+    return line == "        }" && text.ends_with("\n}\n") && same_samples(positions, samples);
+  }
   // A .glb, or a .gltf with the buffer that it refers to.
   bool gltf(const std::string& name) const {
     std::string text = folder_.read(name), buffer;

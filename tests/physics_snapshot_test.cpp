@@ -314,6 +314,50 @@ TEST(Hand, WhatIsHeldIsCarriedAndRests) {
   }
 }
 
+// No hand is a part of a snapshot: the same follows as in a simulation that none has touched, and it may be
+// faster than any scene.
+TEST(Hand, LetsGoWhenASnapshotIsPutBack) {
+  for (const Method method : {Method::spring, Method::positional, Method::compliant})
+    for (const double speed : {0.6, -1e7}) {
+      Scene scene = curtain();
+      scene.solver.method = method;
+      Simulation touched(scene), fresh(scene);
+      run(touched, 2);
+      const Snapshot snapshot = touched.snapshot();
+      touched.carry(0, {0, speed, 0});
+      touched.grab(0, 50, {0, -1, 0});
+      run(touched, 2);
+      for (Simulation* s : {&touched, &fresh}) {
+        s->restore(snapshot);
+        run(*s, 5);
+        EXPECT_TRUE(s->status().ok) << speed;
+      }
+      EXPECT_EQ(touched.positions(), fresh.positions()) << speed;
+      EXPECT_EQ(touched.velocities(), fresh.velocities()) << speed;
+      EXPECT_EQ(touched.plan().notes, fresh.plan().notes) << speed;
+    }
+}
+
+TEST(Hand, CarriesOnFromAStateThatIsSet) {
+  Simulation simulation(curtain());
+  simulation.carry(0, {0, 0, 0.6});
+  run(simulation, 10);
+  std::vector<double> x = simulation.positions();
+  const std::vector<double> v = simulation.velocities();
+  for (std::size_t n = 0; n < x.size(); n += 3) x[n] += 0.25;
+  simulation.set_state(x, v);
+  run(simulation, 10);
+  const std::vector<double> now = simulation.positions();
+  EXPECT_NEAR(now[0] - x[0], 0, 1e-6);
+  EXPECT_NEAR(now[2] - x[2], 10 * 0.6 * simulation.scene().time.frame, 1e-6);
+}
+
+TEST(Hand, IsNotFasterThanTheWorldIsWide) {
+  Simulation simulation(curtain());
+  for (const double speed : {1.1e7, -1e38, 1e300, double(NAN), double(INFINITY)})
+    EXPECT_THROW(simulation.carry(0, {0, speed, 0}), std::invalid_argument) << speed;
+}
+
 TEST(Report, WithoutContactsTheRestIsTheSame) {
   Simulation simulation(curtain());
   run(simulation, 10);

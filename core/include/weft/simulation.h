@@ -117,8 +117,8 @@ class Simulation {
   // Holds a particle where it is; lets a held one go, be it held by the scene or by pin().
   void pin(int cloth, int particle);
   void unpin(int cloth, int particle);
-  // Moves all held particles of a cloth that have no keys at a velocity [m/s], until told another;
-  // zero lets them rest.
+  // Moves all held particles of a cloth that have no keys at a velocity [m/s], up to 1e7 each way, until told
+  // another; zero lets them rest. set_state() moves on from the positions that it sets.
   void carry(int cloth, const Vec3& velocity);
   // Cuts every constraint of any cloth that comes within `width` [m] of the segment from a to b, and
   // returns how many. A sheet that could not tear so far can from then on. Meshes cannot be cut: where one
@@ -130,7 +130,8 @@ class Simulation {
   // These throw std::out_of_range for a particle or collider that is not there.
 
   // The state as it is now, and back to one: positions, velocities, time (to the nearest frame),
-  // what is held and torn, paths of the colliders. restore() throws std::invalid_argument for a
+  // what is held and torn, paths of the colliders. What is grabbed or carried is let go: no hand is a part of a
+  // snapshot. restore() throws std::invalid_argument for a
   // snapshot of other cloths; what it has no room for (constraints that the scene does not have) is left
   // out.
   Snapshot snapshot() const;

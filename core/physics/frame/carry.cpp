@@ -9,8 +9,12 @@ namespace weft::physics {
 
 void Carry::begin(double time, const Vec3& velocity) {
   if (!by_row_.empty() && velocity == velocity_) return;
-  time_ = time;
   velocity_ = velocity;
+  begin_anew(time);
+}
+
+void Carry::begin_anew(double time) {
+  time_ = time;
   const Particles& p = parts_.particles;
   by_row_.assign(std::size_t(p.rows), {});
   p.for_each([&](int j, int i) {

@@ -13,6 +13,8 @@ class Carry final : public RowStage {
         parts_(parts) {}
   // From `time` [s] on all that is held now moves at `velocity` [m/s].
   void begin(double time, const Vec3& velocity);
+  // From where the particles are at `time` [s], in place of where they would have come to.
+  void begin_anew(double time);
   double speed() const;  // m/s
   void run(int j, const Substep& s) override;
 

@@ -1,6 +1,7 @@
 // What a hand does to a running simulation: grabbing, pinning, letting go.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "physics/contact/colliders/shapes.h"
 #include "physics/contact/start_inside.h"
@@ -77,10 +78,19 @@ void Simulation::State::release() {
   plan_changed();
 }
 
+// Before a snapshot, of which no hand is a part, is put back.
+void Simulation::State::let_go() {
+  if (grab_) cloths[std::size_t(grabbed_)]->remove_stage(grab_);
+  grab_ = nullptr;
+  for (std::size_t c = 0; c < cloths.size(); ++c)
+    if (carried_[c]) cloths[c]->remove_stage(std::exchange(carried_[c], nullptr));
+}
+
 void Simulation::State::carry(int cloth, const Vec3& velocity) {
   ClothStep& step = step_with(cloth, 0);
-  if (!std::all_of(velocity.begin(), velocity.end(), [](double u) { return std::isfinite(u); }))
-    throw std::invalid_argument("held particles are carried at a finite velocity");
+  if (!std::all_of(velocity.begin(), velocity.end(),
+                   [](double u) { return std::abs(u) <= kFarAway; }))
+    throw std::invalid_argument("held particles are carried at up to 1e7 m/s each way");
   touch(cloth);
   Carry*& stage = carried_[std::size_t(cloth)];
   const bool rests = velocity == Vec3{};

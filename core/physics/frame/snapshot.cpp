@@ -226,7 +226,10 @@ Snapshot Simulation::snapshot() const {
 // About the snapshot's origin, wherever the scene would have its own: cloths stay as fine as they were.
 void Simulation::restore(const Snapshot& snapshot) {
   state_->check(snapshot);
-  if (snapshot.origin == state_->origin) return state_->restore(snapshot);
+  if (snapshot.origin == state_->origin) {
+    state_->let_go();
+    return state_->restore(snapshot);
+  }
   auto next = std::make_unique<State>(scene(), state_->options, snapshot.origin);
   next->restore(snapshot);
   next->changes += state_->changes;

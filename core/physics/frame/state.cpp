@@ -302,6 +302,8 @@ void Simulation::State::set(std::span<const double> positions, const Vec3& from,
       }
     });
   }
+  for (Carry* carry : carried_)
+    if (carry) carry->begin_anew(double(frame) * scene.time.frame);
   restart_stages();
   if (untangle) untangle->look();
   if (is_explicit(method)) {

@@ -29,6 +29,7 @@ struct Simulation::State {
   void grab(int cloth, int particle, const Vec3& target, double stiffness);
   void release();
   void carry(int cloth, const Vec3& velocity);
+  void let_go();
   void hold(int cloth, int particle, bool held);
   int cut(const Vec3& a, const Vec3& b, double width);
   // Adds a note to the plan that it does not have yet.
