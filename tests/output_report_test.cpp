@@ -21,18 +21,19 @@ using Names = std::vector<std::string>;
 
 TEST(Report, HasTheContractsKeysInTheContractsOrder) {
   const Json json = Json::parse(to_json(Report{}));
-  EXPECT_EQ(keys(json),
-            (Names{"scene",    "version",          "build",   "particles",   "constraints",
-                   "frames",   "substeps",         "dt",      "sim_seconds", "threads",
-                   "wall_ms",  "stages",           "skipped", "hash",        "energy",
-                   "momentum", "angular_momentum", "strain",  "penetration", "contact", "torn",
-                   "asleep",   "finite",           "status"}));
+  EXPECT_EQ(keys(json), (Names{"scene",           "version",        "build",    "particles",
+                               "constraints",     "frames",         "substeps", "dt",
+                               "sim_seconds",     "threads",        "wall_ms",  "stages",
+                               "skipped",         "notes",          "hash",     "energy",
+                               "membrane_energy", "bending_energy", "momentum", "angular_momentum",
+                               "strain",          "penetration",    "contact",  "torn",
+                               "asleep",          "finite",         "status"}));
   EXPECT_EQ(keys(json["build"]), (Names{"compiler", "simd"}));
   EXPECT_EQ(keys(json["constraints"]), (Names{"structural", "shear", "bend"}));
   EXPECT_EQ(keys(json["wall_ms"]),
             (Names{"total", "frame_min", "frame_median", "frame_p99", "frame_max"}));
   EXPECT_EQ(keys(json["energy"]), (Names{"kinetic", "elastic", "gravity", "total"}));
-  EXPECT_EQ(keys(json["strain"]), (Names{"max", "mean"}));
+  EXPECT_EQ(keys(json["strain"]), (Names{"max", "mean", "max_of_frames"}));
   EXPECT_EQ(keys(json["penetration"]),
             (Names{"collider_max", "self_pairs", "self_max", "crossings"}));
 }
@@ -48,9 +49,18 @@ TEST(Report, CarriesItsValues) {
   report.hash = 0x00ab;
   report.momentum = {1, 2, 3};
   report.torn = 7;
+  report.notes = {"a note"};
+  report.membrane_energy = 2;
+  report.bending_energy = 3;
   const Json json = Json::parse(to_json(report));
   EXPECT_EQ(json["scene"], "swing");
   EXPECT_EQ(json["particles"], 1024);
+  EXPECT_EQ(json["notes"], Json({"a note"}));
+  EXPECT_EQ(json["membrane_energy"], 2);
+  EXPECT_EQ(json["bending_energy"], 3);
+  EXPECT_TRUE(json["strain"]["max_of_frames"].is_null());
+  report.strain.max_of_frames = 0.5;
+  EXPECT_EQ(Json::parse(to_json(report))["strain"]["max_of_frames"], 0.5);
   EXPECT_EQ(json["constraints"]["shear"], 1922);
   EXPECT_EQ(json["dt"], 8.333e-4);
   EXPECT_EQ(keys(json["stages"][0]), (Names{"name", "ms", "calls"}));

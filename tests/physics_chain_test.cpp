@@ -102,7 +102,7 @@ class Bundle final : public ClothModel {
   void accelerations(const Vec3& gravity, std::vector<Vec3>& a) const override {
     a.assign(std::size_t(particles_.count()), gravity);
   }
-  double elastic_energy() const override { return 0; }
+  ElasticEnergy elastic_energy() const override { return {}; }
   Strain strain() const override {
     Strain strain;
     const Particles& p = particles_;

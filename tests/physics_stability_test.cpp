@@ -145,7 +145,7 @@ double growth(const Case& c, double share, double drag = 0) {
   for (int j = 0; j < l.rows; ++j)
     for (int i = 0; i < l.columns; ++i)
       for (int k = 0; k < 3; k += 2) l.x.at(k, j, i) += float(1e-4 * random.symmetric());
-  const auto energy = [&] { return step.model().elastic_energy(); };
+  const auto energy = [&] { return step.model().elastic_energy().sum(); };
   const double before = energy();
   Threads one(1);
   double most = 0;

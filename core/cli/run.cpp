@@ -150,9 +150,9 @@ LoadedScene scene_to_run(const RunArguments& arguments, const std::optional<Reco
   std::_Exit(code);
 }
 
-// All frames, or those until a signal; then the files.
+// All frames, or those until a signal; then the files. `read_with`: notes from before the run.
 Report advance(Simulation& simulation, std::int64_t frames, Recordings& recordings, Files& files,
-               Takeover& takeover) {
+               Takeover& takeover, const std::vector<std::string>& read_with) {
   std::int64_t done = 0;
   takeover.on_interrupt([&] { end_within_frame(files, done, frames); });
   const struct Stop {
@@ -172,6 +172,7 @@ Report advance(Simulation& simulation, std::int64_t frames, Recordings& recordin
     progress.update(++done);
   }
   Report report = simulation.report();
+  report.notes.insert(report.notes.begin(), read_with.begin(), read_with.end());
   if (simulation.status().ok && done < frames) {
     report.status.ok = false;
     report.status.text = "interrupted after frame " + std::to_string(simulation.frame());
@@ -191,7 +192,7 @@ int run(const RunArguments& arguments) {
   options.threads = arguments.threads;
   options.simd = parse_simd(arguments.simd);
   options.seed = replayed ? replayed->seed : arguments.seed.value_or(options.seed);
-  options.profile = !arguments.files.report.empty();
+  options.profile = options.follow_strain = !arguments.files.report.empty();
   if (arguments.tolerance && replayed)
     throw Failure{kBadCommandLine,
                   {{"--tolerance", "a recording carries its own solver", "not with --replay"}}};
@@ -201,11 +202,10 @@ int run(const RunArguments& arguments) {
   Takeover takeover;
   Simulation simulation = simulate(loaded, options);
   Files files(arguments.files, simulation, frames, recordings);
-  const Report report = advance(simulation, frames, recordings, files, takeover);
   std::vector<std::string> notes;
   for (const std::string& note : loaded.notes) notes.push_back(printable(note));
-  notes.insert(notes.end(), simulation.plan().notes.begin(), simulation.plan().notes.end());
-  std::cout << summary(report, notes, files.written());
+  const Report report = advance(simulation, frames, recordings, files, takeover, notes);
+  std::cout << summary(report, report.notes, files.written());
   if (!simulation.status().ok) {
     const std::string why = "the simulation stopped itself: " + simulation.status().text;
     throw Failure{kStopped, {{loaded.path, why, ""}}};

@@ -108,7 +108,7 @@ Choice choose_solver(const Scene& scene, double tolerance, double seconds, const
   const int frames = std::max(1, int(std::lround(std::min(kTrial, seconds) / frame)));
   choice.seconds = frames * frame;
   Options quiet = options;
-  quiet.profile = false;
+  quiet.profile = quiet.follow_strain = false;
   const double work_each = double(constraints_of(scene));
   double least = std::numeric_limits<double>::infinity();
   for (const Way& way : ways(scene)) {

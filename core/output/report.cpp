@@ -48,6 +48,7 @@ void add_run(Json& json, const Report& report) {
                      {"frame_max", report.wall_ms.frame_max}};
   json["stages"] = stages_json(report.stages);
   json["skipped"] = skipped_json(report.skipped);
+  json["notes"] = report.notes;
 }
 
 // What came of it.
@@ -57,9 +58,14 @@ void add_outcome(Json& json, const Report& report) {
                     {"elastic", report.energy.elastic},
                     {"gravity", report.energy.gravity},
                     {"total", report.energy.total}};
+  json["membrane_energy"] = report.membrane_energy;
+  json["bending_energy"] = report.bending_energy;
   json["momentum"] = report.momentum;
   json["angular_momentum"] = report.angular_momentum;
-  json["strain"] = {{"max", report.strain.max}, {"mean", report.strain.mean}};
+  const std::optional<double>& of_frames = report.strain.max_of_frames;
+  json["strain"] = {{"max", report.strain.max},
+                    {"mean", report.strain.mean},
+                    {"max_of_frames", of_frames ? Json(*of_frames) : Json(nullptr)}};
   json["penetration"] = {{"collider_max", report.penetration.collider_max},
                          {"self_pairs", report.penetration.self_pairs},
                          {"self_max", report.penetration.self_max},

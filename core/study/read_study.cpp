@@ -30,6 +30,13 @@ constexpr double kMostRuns = 1e7;
 constexpr std::size_t kMostParameters = 100, kMostSamples = 100'000, kChunkBytes = 1u << 20;
 constexpr std::size_t kMostTextBytes = 200;
 
+// With all that a run may measure.
+Json empty_report() {
+  Report report;
+  report.strain.max_of_frames = 0;
+  return Json::parse(to_json(report));
+}
+
 std::string fault_lines(const std::vector<Fault>& faults) {
   std::string lines;
   for (const Fault& f : faults)
@@ -240,7 +247,7 @@ struct Study::Reader {
 
   void read_measures() {
     const Json* const list = member(document, "measures");
-    const Json report = Json::parse(to_json(Report{}));
+    const Json report = empty_report();
     if (list != nullptr && !list->is_array())
       return fault("/measures", "the value is " + text::brief(*list), "a list of JSON pointers");
     for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) {
@@ -373,7 +380,7 @@ void Study::add_columns() {
     for (const Json& v : p.values) bytes = std::max(bytes, v.dump().size());
     p.text ? add(p.name, Kind::text, bytes) : add(p.name, Kind::number);
   }
-  const Json report = Json::parse(to_json(Report{}));
+  const Json report = empty_report();
   for (const std::string& measure : measures_) {
     const Json& value = report.at(Json::json_pointer(measure));
     value.is_string() ? add(name_of_pointer(measure), Kind::text, kMeasureBytes)

@@ -107,7 +107,8 @@ std::string Study::simulate(const std::vector<Json>& values, int threads,
     const Fault& f = file.faults[0];
     return f.place + ": " + f.what + (f.allowed.empty() ? "" : " (" + f.allowed + ")");
   }
-  Simulation simulation(file.scene, {.threads = threads, .seed = seed_});
+  const bool follows = std::ranges::count(measures_, "/strain/max_of_frames") > 0;
+  Simulation simulation(file.scene, {.threads = threads, .seed = seed_, .follow_strain = follows});
   record.particles = std::uint64_t(particle_count(simulation.view()));
   Sampler sampler(chunks_, record.particles, record);
   sampler.frame(simulation);

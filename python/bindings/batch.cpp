@@ -21,7 +21,7 @@ class Batch {
     const std::vector<std::uint64_t> seed = seeds_of(seeds, list.size());
     const int each = threads_for_each(threads_, list.size());
     for (std::size_t k = 0; k < list.size(); ++k) {
-      all_.push_back(build(list[k], py::dict(), each, seed[k], "best"));
+      all_.push_back(build(list[k], py::dict(), each, seed[k], "best", false));
       require_equal(k);
     }
   }

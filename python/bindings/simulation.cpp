@@ -204,7 +204,8 @@ void register_measures(Class& type) {
   type.def("report", &report, py::arg("contacts") = true,
            R"(Everything measured so far, as the dict that `weft run --report` writes.
 
-contacts=False leaves out penetration and crossings, which take the longest.)");
+contacts=False leaves out penetration and crossings, which take the longest.
+["strain"]["max_of_frames"] is None unless the simulation was made with follow_strain=True.)");
   type.def_property_readonly(
       "hash", [](Shared& s) { return s.call([](const Simulation& x) { return x.hash(); }); },
       "A 64-bit hash of the bits of all positions: equal runs have equal hashes.");
@@ -285,9 +286,10 @@ then nothing has changed.)");
 }  // namespace
 
 std::shared_ptr<Shared> build(const py::object& scene, const py::dict& values, int threads,
-                              std::uint64_t seed, const std::string& simd) {
+                              std::uint64_t seed, const std::string& simd, bool follow_strain) {
   SceneFile file = read(scene, values);
-  const Options options{.threads = threads, .simd = simd_of(simd), .seed = seed};
+  const Options options{
+      .threads = threads, .simd = simd_of(simd), .seed = seed, .follow_strain = follow_strain};
   const py::gil_scoped_release free;
   return std::make_shared<Shared>(std::move(file.scene), options, std::move(file.notes));
 }
@@ -323,6 +325,7 @@ values:  replaces single values of it, {"/solver/iterations": 20}
 threads: worker threads, 0 = all cores; the result is the same bits for any number
 seed:    of every random choice
 simd:    "best", "scalar", "sse2", "avx2" or "avx512"; the same bits for each
+follow_strain: measure the strain after every frame, for report()["strain"]["max_of_frames"]
 
     sim = weft.Simulation("hello")
     sim.advance(60)
@@ -332,7 +335,8 @@ simd:    "best", "scalar", "sse2", "avx2" or "avx512"; the same bits for each
 Stepping releases the interpreter's lock. Threads may share a simulation: calls wait for each other.
 Raises SceneError with every fault of the scene.)");
   type.def(py::init(&build), py::arg("scene"), py::arg("values") = py::dict(), py::kw_only(),
-           py::arg("threads") = 0, py::arg("seed") = 1, py::arg("simd") = "best");
+           py::arg("threads") = 0, py::arg("seed") = 1, py::arg("simd") = "best",
+           py::arg("follow_strain") = false);
   type.def("advance", &advance, py::arg("frames") = 1,
            "Advances so many frames. Raises SimulationError when it stops itself.");
   register_arrays(type);

@@ -51,7 +51,7 @@ class Shared {
 
 // Reads the scene and builds it. `threads` and `seed` as Options have them, `simd` by its name.
 std::shared_ptr<Shared> build(const py::object& scene, const py::dict& values, int threads,
-                              std::uint64_t seed, const std::string& simd);
+                              std::uint64_t seed, const std::string& simd, bool follow_strain);
 
 // Why it stopped itself: "frame 12, ...".
 std::string reason(const Status& status);

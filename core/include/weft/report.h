@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -68,17 +69,22 @@ struct Report {
   } wall_ms;
   std::vector<StageTime> stages;  // sums to wall_ms.total; one entry "step" unless profiled
   std::vector<SkippedStage> skipped;
-  std::uint64_t hash = 0;  // of the final positions' bits
+  std::vector<std::string> notes;  // of the plan, as `weft run` prints them
+  std::uint64_t hash = 0;          // of the final positions' bits
   // Kinetic energy and momenta are of half a substep before `sim_seconds` with springs that have a strain
   // limit (what the springs alone would add since, the limit takes back) and with methods that project,
   // where the solver is of the first order.
   struct {
     double kinetic = 0, elastic = 0, gravity = 0, total = 0;  // J
   } energy;
+  // J; what of the elastic energy stretches membranes, and what bends: the rest stretches springs.
+  double membrane_energy = 0, bending_energy = 0;
   Vec3 momentum{};          // kg m/s
   Vec3 angular_momentum{};  // kg m²/s about the origin
   struct {
     double max = 0, mean = 0;
+    // The greatest at the end of any frame so far; none unless it was followed (Options::follow_strain).
+    std::optional<double> max_of_frames;
   } strain;  // structural, length/rest - 1
   struct {
     double collider_max =

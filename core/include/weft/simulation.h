@@ -34,6 +34,8 @@ struct Options {
   Simd simd = Simd::best;  // never changes the result
   std::uint64_t seed = 1;  // seeds every random choice (jitter, turbulence)
   bool profile = false;    // measure each stage (costs a few percent)
+  bool follow_strain =
+      false;  // measure the strain after every frame (costs about as much as a sweep)
 };
 
 // Thrown by the constructor for a scene that validate() faults.

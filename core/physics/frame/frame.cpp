@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "physics/frame/measure.h"
 #include "physics/frame/state.h"
 #include "physics/model/path.h"
 #include "physics/model/vector.h"
@@ -54,6 +55,8 @@ void Simulation::State::advance_frame() {
   note_clamps();
   note_stretch();
   note_left_strain();
+  if (options.follow_strain)
+    greatest_strain = std::max(greatest_strain.value_or(-1), strain_of(cloths).max);
 
   if (sleeping) sleeping->end_frame([&](std::size_t c) -> const Rows& { return records_[c].x(); });
   if (is_explicit(method) && !(sleeping && sleeping->all_asleep())) follow_stretch(limit_);

@@ -25,7 +25,10 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   // A strain limit takes back much of what springs alone would add in the half substep to now.
   const std::vector<Vec3> v =
       step.cloth().strain_limit > 0 ? particles.gather(particles.v) : velocities_now(s, index);
-  r.energy.elastic += step.model().elastic_energy();
+  const ElasticEnergy elastic = step.model().elastic_energy();
+  r.energy.elastic += elastic.sum();
+  r.membrane_energy += elastic.membrane;
+  r.bending_energy += elastic.bending;
   for (std::size_t p = 0; p < x.size(); ++p) {
     if (masses[particles.lane(int(p))] == 0) continue;
     const double m = step.model().mass(int(p));
@@ -56,22 +59,6 @@ void add_penetration(const Simulation::State& s, const ClothStep& step, Report& 
       r.penetration.collider_max =
           std::max(r.penetration.collider_max,
                    deepest_in(step.cloth(), c, time, x, step.model().surface().triangles));
-}
-
-// Strain over all cloths: the largest, and the mean weighted by constraints.
-void add_strain(const Simulation::State& s, Report& r) {
-  double sum = 0, count = 0, largest = 0;
-  bool any = false;
-  for (const auto& step : s.cloths) {
-    const Strain strain = step->model().strain();
-    if (strain.constraints == 0) continue;
-    largest = any ? std::max(largest, strain.max) : strain.max;
-    any = true;
-    sum += strain.mean * double(strain.constraints);
-    count += double(strain.constraints);
-  }
-  r.strain.max = largest;
-  r.strain.mean = count > 0 ? sum / count : 0;
 }
 
 void add_self_contact(const Simulation::State& s, Report& r) {
@@ -178,6 +165,19 @@ void add_stages(const Simulation::State& s, Report& r) {
 
 }  // namespace
 
+Strain strain_of(const Cloths& cloths) {
+  Strain all{0, 0, 0};
+  for (const auto& step : cloths) {
+    const Strain strain = step->model().strain();
+    if (strain.constraints == 0) continue;
+    all.max = all.constraints > 0 ? std::max(all.max, strain.max) : strain.max;
+    all.mean += strain.mean * double(strain.constraints);
+    all.constraints += strain.constraints;
+  }
+  if (all.constraints > 0) all.mean /= double(all.constraints);
+  return all;
+}
+
 std::vector<Vec3> velocities_now(const Simulation::State& s, std::size_t index) {
   const ClothStep& step = *s.cloths[index];
   std::vector<Vec3> v = step.particles().gather(step.particles().v);
@@ -220,6 +220,7 @@ Report measure(const Simulation::State& s, bool contacts) {
   r.sim_seconds = double(s.frame) * s.scene.time.frame;
   r.threads = s.threads.count();
   r.skipped = s.plan.skipped;
+  r.notes = s.plan.notes;
   r.status = s.status;
   r.finite = s.status.ok;
   for (std::size_t c = 0; c < s.cloths.size(); ++c) {
@@ -231,7 +232,9 @@ Report measure(const Simulation::State& s, bool contacts) {
     if (contacts) add_penetration(s, step, r);
   }
   r.energy.total = r.energy.kinetic + r.energy.elastic + r.energy.gravity;
-  add_strain(s, r);
+  const Strain strain = strain_of(s.cloths);
+  r.strain = {strain.max, strain.mean, s.greatest_strain};
+  if (s.options.follow_strain && s.frame == 0) r.strain.max_of_frames = strain.max;
   if (contacts && s.status.ok) add_self_contact(s, r);
   if (s.sleeping) r.asleep = s.sleeping->asleep();
   add_idle(s, r);

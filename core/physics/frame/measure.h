@@ -12,4 +12,7 @@ std::uint64_t state_hash(const Simulation::State& state);
 // Velocities of one cloth at the frame's time [m/s].
 std::vector<Vec3> velocities_now(const Simulation::State& state, std::size_t cloth);
 
+// Over all cloths: the largest, and the mean weighted by constraints.
+Strain strain_of(const Cloths& cloths);
+
 }  // namespace weft::physics

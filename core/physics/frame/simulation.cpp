@@ -166,6 +166,7 @@ int Simulation::cut(const Vec3& a, const Vec3& b, double width) {
 }
 
 Report Simulation::report(bool contacts) const {
+  state_->tell_of_limits();
   return measure(*state_, contacts);
 }
 std::uint64_t Simulation::hash() const {

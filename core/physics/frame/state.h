@@ -87,6 +87,9 @@ struct Simulation::State {
   // Constraints that the scene's cuts take, of every cloth, pairs of particles.
   std::vector<std::vector<physics::Joined>> cut_from_start;
 
+  // At the end of any frame; none unless it is followed.
+  std::optional<double> greatest_strain;
+
   // Wall time of every frame [ms]; reserved ahead for the scene's own length.
   std::vector<float> frame_ms;
   double total_ms = 0;

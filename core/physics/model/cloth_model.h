@@ -15,6 +15,11 @@
 
 namespace weft::physics {
 
+struct ElasticEnergy {
+  double springs = 0, membrane = 0, bending = 0;  // J
+  double sum() const { return springs + membrane + bending; }
+};
+
 class ClothModel;
 struct LatticeParts;
 struct History;
@@ -87,7 +92,7 @@ class ClothModel {
   // Of the cloth as it lies now, in double precision: accelerations [m/s²] by gravity and all inner
   // forces, zero for held particles; energy [J] of stretching and bending; strain.
   virtual void accelerations(const Vec3& gravity, std::vector<Vec3>& a) const = 0;
-  virtual double elastic_energy() const = 0;
+  virtual ElasticEnergy elastic_energy() const = 0;
   virtual Strain strain() const = 0;
 
   // The greatest strain of the constraints that the strain limit holds.

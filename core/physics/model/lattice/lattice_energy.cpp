@@ -83,12 +83,14 @@ void LatticeModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) cons
   physics::accelerations(gravity, parts_.cloth, lattice_, bend_links(), add_stretch, a);
 }
 
-double LatticeModel::elastic_energy() const {
+ElasticEnergy LatticeModel::elastic_energy() const {
   const std::vector<Vec3> x = lattice_.gather(lattice_.x);
-  const double stretch = is_membrane() || solves_membrane()
-                             ? membrane().energy(x)
-                             : physics::elastic_energy(parts_.cloth, stencils_, x);
-  return stretch + bending_energy(parts_.cloth, x, bend_links());
+  ElasticEnergy energy{.bending = bending_energy(parts_.cloth, x, bend_links())};
+  if (is_membrane() || solves_membrane())
+    energy.membrane = membrane().energy(x);
+  else
+    energy.springs = physics::elastic_energy(parts_.cloth, stencils_, x);
+  return energy;
 }
 
 Strain LatticeModel::strain() const {

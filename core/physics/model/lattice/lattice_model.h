@@ -26,7 +26,7 @@ class LatticeModel final : public ClothModel {
   ConstraintCounts constraints() const override;
   Pull pull() const override;
   void accelerations(const Vec3& gravity, std::vector<Vec3>& a) const override;
-  double elastic_energy() const override;
+  ElasticEnergy elastic_energy() const override;
   Strain strain() const override;
   double limited_strain() const override;
   Vec3 pin_position(const Pin& pin, double time) const override;

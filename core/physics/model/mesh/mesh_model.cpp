@@ -199,8 +199,14 @@ void MeshModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) const {
   seams_.share(particles_, a);
 }
 
-double MeshModel::elastic_energy() const {
-  return mesh_energy(triangles_, material_, particles_.gather(particles_.x));
+ElasticEnergy MeshModel::elastic_energy() const {
+  const std::vector<Vec3> x = particles_.gather(particles_.x);
+  MeshMaterial stretches = material_;
+  stretches.bends = false;
+  ElasticEnergy energy;
+  (material_.membrane ? energy.membrane : energy.springs) = mesh_energy(triangles_, stretches, x);
+  if (material_.bends) energy.bending = mesh_energy(triangles_, bending_alone(material_), x);
+  return energy;
 }
 
 Strain MeshModel::strain() const {
@@ -243,10 +249,7 @@ double MeshModel::projected_energy(const Rows& at, double dt) const {
         std::abs(distance(x[std::size_t(a)], x[std::size_t(b)]) - edges_.rest[n]) + slack;
     sum += 0.5 * k * over * over;
   }
-  MeshMaterial bending = material_;
-  bending.membrane = false;
-  bending.stiffness = 0;
-  return sum + (bending.bends ? mesh_energy(triangles_, bending, x) : 0);
+  return sum + (material_.bends ? mesh_energy(triangles_, bending_alone(material_), x) : 0);
 }
 
 // Every fourth edge is looked at.
@@ -336,10 +339,7 @@ std::vector<std::string> MeshModel::notes() const {
     notes.push_back("sewing is on, but the mesh has no edge that belongs to no face");
   const Bending& bending = parts_.cloth.bending;
   const double rigidity = std::max({bending.warp, bending.weft, bending.twist});
-  MeshMaterial bends = material_;
-  bends.membrane = false;
-  bends.stiffness = 0;
-  const double held = mesh_energy(triangles_, bends, start_);
+  const double held = mesh_energy(triangles_, bending_alone(material_), start_);
   const MeshRest rest = parts_.cloth.mesh.rest;
   if (rest != MeshRest::shape && rigidity > 0 && held > kCurved * rigidity)
     notes.push_back("bending draws the mesh to its shape at rest: as it starts, it holds " +

@@ -307,6 +307,12 @@ MeshMaterial material_of(const Cloth& cloth, bool damped_springs) {
   return m;
 }
 
+MeshMaterial bending_alone(MeshMaterial material) {
+  material.membrane = false;
+  material.stiffness = 0;
+  return material;
+}
+
 double mesh_energy(const std::vector<RestTriangle>& triangles, const MeshMaterial& material,
                    const std::vector<Vec3>& x) {
   double sum = 0;

@@ -56,6 +56,8 @@ struct MeshMaterial {
 };
 // `damped_springs`: method spring_friction.
 MeshMaterial material_of(const Cloth& cloth, bool damped_springs);
+// What of a material resists bending.
+MeshMaterial bending_alone(MeshMaterial material);
 
 // J.
 double mesh_energy(const std::vector<RestTriangle>& triangles, const MeshMaterial& material,
