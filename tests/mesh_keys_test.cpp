@@ -208,5 +208,21 @@ TEST_F(MeshKeys, NoneIsIgnored) {
   }
 }
 
+// By method compliant, too.
+TEST_F(MeshKeys, NoneOfAMembraneIsIgnoredBySweeps) {
+  for (const char* sweep : {"gauss_seidel", "line"})
+    for (const auto& [place, key] : kKeys) {
+      if (!place.starts_with("/cloths/0/membrane")) continue;
+      Json without = Json::parse(kFabric);
+      without["weft"] = 1;
+      without["solver"] = {{"method", "compliant"}, {"sweep", sweep}};
+      Json with = without;
+      with[Json::json_pointer(place)] = Json::parse(key.value);
+      const Outcome a = run(without), b = run(with);
+      EXPECT_EQ(a.refused + b.refused, "") << place;
+      EXPECT_NE(a.hash, b.hash) << place << " does nothing with " << sweep;
+    }
+}
+
 }  // namespace
 }  // namespace weft

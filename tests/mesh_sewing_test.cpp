@@ -18,6 +18,7 @@ using physics::minus;
 struct Way {
   const char* name;
   Solver solver;
+  Membrane membrane{};
 };
 Solver projected(int order, Sweep sweep, int iterations) {
   Solver s;
@@ -36,7 +37,9 @@ const Way kWays[] = {{"spring", by(Method::spring)},
                      {"spring_friction", by(Method::spring_friction)},
                      {"compliant", projected(1, Sweep::gauss_seidel, 4)},
                      {"second order", projected(2, Sweep::gauss_seidel, 2)},
-                     {"strands", projected(1, Sweep::line, 2)}};
+                     {"strands", projected(1, Sweep::line, 2)},
+                     {"membrane", projected(1, Sweep::gauss_seidel, 2), kCanvas},
+                     {"membrane by strands", projected(2, Sweep::line, 1), kCanvas}};
 
 double distance(const Vec3& a, const Vec3& b) {
   const Vec3 e = minus(a, b);
@@ -101,6 +104,7 @@ TEST(MeshSewing, KeepsMomentumAndClosesInTime) {
     std::vector<Seam> seams;
     Scene scene = two_panels(seams);
     scene.solver = way.solver;
+    scene.cloths[0].membrane = way.membrane;
     scene.time.substeps =
         200;  // what is told swings with the substep, and sweeps lose some spin by it
     Simulation run(scene, {.threads = 1});
@@ -129,6 +133,7 @@ TEST(MeshSewing, IsAsTheSheetInOnePiece) {
     const auto hang = [&](std::shared_ptr<const TriangleMesh> mesh, bool sewn) {
       Scene scene = scene_of(std::move(mesh));
       scene.solver = way.solver;
+      scene.cloths[0].membrane = way.membrane;
       if (way.solver.method == Method::compliant) scene.time.substeps = 30;
       scene.cloths[0].drag = 3;
       scene.cloths[0].pins = {{0, 0, {}}, {16, 0, {}}};
@@ -226,6 +231,7 @@ TEST(MeshSewing, HasOneHash) {
     Scene scene = two_panels(seams);
     scene.gravity = {0, -9.81, 0};
     scene.solver = way.solver;
+    scene.cloths[0].membrane = way.membrane;
     scene.wind = {{2, 1, 0}, 0.4, 0.2, 0, {}};
     scene.colliders.emplace_back().shape = Plane{{0, -0.2, 0}, {0, 1, 0}};
     scene.cloths[0].self_collision = {SelfCollisionMode::surface, 0.01};
@@ -265,6 +271,7 @@ TEST(MeshSewing, KeepsMirrorImages) {
     std::vector<Seam> seams;
     Scene scene = two_panels(seams);
     scene.solver = way.solver;
+    scene.cloths[0].membrane = way.membrane;
     scene.cloths[0].velocity = scene.cloths[0].spin = {};
     Scene image = scene;
     auto mesh = std::make_shared<TriangleMesh>(*scene.cloths[0].mesh.shape);

@@ -26,8 +26,7 @@ struct LoadedScene {
 // Reads and validates; throws a Failure that lists every fault.
 LoadedScene load(const SceneArgument& argument);
 
-// What it needs to run. Throws Failure where no simulation takes it, as a membrane that no substep is short
-// enough for.
+// What it needs to run. Throws Failure where a simulation refuses the scene.
 Estimate needs_of(const LoadedScene& loaded);
 
 // Builds the simulation; faults of the scene or of the options, and too little memory, become a

@@ -73,8 +73,8 @@ struct Snapshot {
 
 class Simulation {
  public:
-  // Builds the state and the step plan. Throws SceneError when validate(scene) is not empty, and where the
-  // membrane of a mesh needs more than 100000 substeps a frame or shorter ones than 1e-6 s;
+  // Builds the state and the step plan; where substeps of the scene's method would have to be too short, with
+  // another method (Plan::fallback). Throws SceneError when validate(scene) is not empty;
   // std::invalid_argument when options ask for an instruction set this machine lacks.
   explicit Simulation(Scene scene, Options options = {});
   ~Simulation();

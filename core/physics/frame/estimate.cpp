@@ -49,6 +49,7 @@ constexpr double kGaussSeidel = 1.0, kJacobi = 0.6, kLine = 1.3;    // and sweep
 constexpr double kMembrane = 1.6, kSpringBend = 2, kSweepBend = 5;  // from here on: a particle
 constexpr double kVertex = 9, kBentVertex = 18;                     // of a mesh
 constexpr double kEdge = 1.6, kStrandEdge = 5, kBentSweep = 25;     // and of its sweeps
+constexpr double kTriangle = 20, kStrandStress = 60;  // of a membrane's; of its edges in strands
 constexpr double kProjection = 1.2, kTethers = 1.5;
 constexpr double kStrainLimit = 1.2, kHeldLimit = 12, kTearing = 0.6, kWind = 0.8;
 constexpr double kCollider = 0.5, kBox = 20;       // and collider; a box meets whole triangles
@@ -188,8 +189,10 @@ Way way_of(const Scene& scene) {
   return way;
 }
 
+constexpr double kEdgesOfTriangle = 1.5;  // of a mesh, about
+
 double constraints_of(const Cloth& cloth) {
-  if (cloth.mesh.given()) return 1.5 * double(cloth.mesh.shape->triangles.size());
+  if (cloth.mesh.given()) return kEdgesOfTriangle * double(cloth.mesh.shape->triangles.size());
   double count = 0;
   for (const Stencil& f : stencils_of(cloth))
     count += double(std::max(0, f.per_row(cloth.grid.nx))) * std::max(0, cloth.grid.ny - f.dj);
@@ -220,7 +223,11 @@ double constraint_cost(const Cloth& cloth, const Solver& solver) {
   if (cloth.mesh.given()) {
     if (is_spring(solver.method))
       return particles * (bends > 0 ? cost::kBentVertex : cost::kVertex);
-    const double edge = solver.sweep == Sweep::line ? cost::kStrandEdge : cost::kEdge;
+    const bool strands = solver.sweep == Sweep::line;
+    const double edge = cloth.membrane.given() ? cost::kTriangle / kEdgesOfTriangle +
+                                                     (strands ? cost::kStrandStress : 0)
+                        : strands ? cost::kStrandEdge
+                                  : cost::kEdge;
     const double tethered = solver.tethers ? cost::kTethers : 0;
     return solver.iterations * count * edge + bends * cost::kBentSweep +
            particles * (cost::kProjection + tethered);

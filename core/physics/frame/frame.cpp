@@ -90,8 +90,7 @@ FrameRun Simulation::State::frame_run() {
                .energy = {},
                .limit = limit_,
                .driven = was_driven_,
-               .alone = nothing_else_acts(),
-               .replaceable = !only_explicit()};
+               .alone = nothing_else_acts()};
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     asleep_[c] = asleep(c);
     if (asleep_[c]) continue;

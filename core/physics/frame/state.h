@@ -149,7 +149,6 @@ struct Simulation::State {
   bool blown() const { return scene.wind.drag > 0 || scene.wind.lift > 0; }
   int projection_substeps() const;
   // Whether a cloth can be moved by no method that projects.
-  bool only_explicit() const;
   physics::FrameRun frame_run();
   bool carry_out(physics::Verdict verdict);
   void change_method(const std::string& which, int count);

@@ -34,7 +34,7 @@ Verdict StepGuard::judge(const FrameRun& run) {
   if (!failed) return Verdict::accept;
   const bool unresolved = beyond_limit && kLimitShare * run.limit < kLeastSubstep;
   const bool hopeless = unresolved || (!beyond_limit && finest);
-  if (!(springs || lines) || (hopeless && (!run.replaceable || flies_away(run)))) {
+  if (!(springs || lines) || (hopeless && flies_away(run))) {
     if (!run.finite) return Verdict::stop;
     if (!energy_.holds()) return Verdict::clamp;
     return beyond_limit ? Verdict::unstable : Verdict::accept;

@@ -35,7 +35,6 @@ struct FrameRun {
   double limit;                            // s; the stability limit at its end (springs)
   bool driven;                             // something but gravity did work in it
   bool alone;                              // nothing but gravity and paths of pins can do work
-  bool replaceable;                        // another method can run in the place of this one
 };
 
 enum class Verdict {

@@ -25,8 +25,7 @@ constexpr double kFolded = 2;
 
 struct StableSubsteps {
   double largest = std::numeric_limits<double>::infinity();  // s, of all cloths as they lie
-  double safe = largest;     // s; also where cloth that resists no pressing folds
-  std::size_t stiffest = 0;  // the cloth that asks for the latter
+  double safe = largest;  // s; also where cloth that resists no pressing folds
 };
 StableSubsteps stable_substeps(const Cloths& cloths, std::span<const Spectrum> spectra) {
   StableSubsteps stable;
@@ -34,9 +33,7 @@ StableSubsteps stable_substeps(const Cloths& cloths, std::span<const Spectrum> s
     stable.largest = std::min(stable.largest, spectra[c].largest_substep());
     Spectrum folded = spectra[c];
     if (cloths[c]->model().folds_freely()) folded.omega_squared *= kFolded;
-    if (folded.largest_substep() >= stable.safe) continue;
-    stable.safe = folded.largest_substep();
-    stable.stiffest = c;
+    stable.safe = std::min(stable.safe, folded.largest_substep());
   }
   return stable;
 }
@@ -77,15 +74,6 @@ void Simulation::State::choose_method_and_substeps() {
       notes.push_back(std::isfinite(limit)
                           ? "substeps from the stability limit of " + number(limit) + " s"
                           : "one substep a frame, since nothing is free to vibrate");
-    } else if (only_explicit() && (!resolved || scene.time.frame / count > limit)) {
-      if (!resolved)
-        throw SceneError({{"/cloths/" + std::to_string(stable.stiffest),
-                           "the cloth needs " + number(needed) +
-                               " substeps a frame, and the membrane of a mesh has no other method",
-                           "softer or heavier cloth, larger triangles or shorter frames"}});
-      count = clamp_to_int(needed, 1, kMostSubsteps);
-      notes.push_back("the mesh needs substeps below " + number(limit) + " s; " +
-                      std::to_string(count) + " a frame run");
     } else if (!resolved || scene.time.frame / count > limit) {
       notes.push_back("springs need substeps below " + number(limit) + " s, " + number(needed) +
                       " a frame at " + number(kLimitShare) +
@@ -112,11 +100,6 @@ void Simulation::State::choose_method_and_substeps() {
     if (!scene.solver.full_first_kick) stagger(lag);
   }
   open_guard();
-}
-
-bool Simulation::State::only_explicit() const {
-  return std::any_of(cloths.begin(), cloths.end(),
-                     [](const auto& step) { return step->model().only_explicit(); });
 }
 
 void Simulation::State::take_substeps(int count) {

@@ -328,6 +328,7 @@ struct MeshForces;
 struct RecordRow;  // kernels/mesh_sweep.h
 struct EdgeSweep;
 struct HingeSweep;
+struct StrainSweep;
 struct TransposeRows;
 struct SecondOrderRow;  // kernels/second_order.h
 struct TetherRow;
@@ -346,13 +347,11 @@ struct KernelTable {
   void (*velocity)(const AdvanceRow&);               // v <- v + (x - predicted)/dt
   void (*project)(const Projection&);                // Gauss-Seidel, in place
   void (*jacobi_rows)(const JacobiRows&);
-  // Jacobi: the corrections of one row's constraints, by unit inverse mass, added to the sums of rows
-  // j and j+dj
+  // Jacobi: corrections of one row's constraints, by unit inverse mass, added to rows j and j+dj
   void (*jacobi_stencil)(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
-  // x += w f, v += w f/dt if inverse_dt > 0, f <- 0 (w null: 1)
-  void (*apply_corrections)(const AdvanceRow&);
-  void (*line_batch)(const LineBatch&);              // a batch of lines, each solved as a whole
-  void (*membrane_line_batch)(const LineBatch&);     // of squared lengths
+  void (*apply_corrections)(const AdvanceRow&);   // x += w f, v += w f inverse_dt, f <- 0 (no w: 1)
+  void (*line_batch)(const LineBatch&);           // a batch of lines, each solved as a whole
+  void (*membrane_line_batch)(const LineBatch&);  // of squared lengths
   void (*membrane_squares)(const MembraneSquares&);  // which these are to have
   void (*rows_to_lanes)(const TransposeRows&);
   void (*lanes_to_rows)(const TransposeRows&);
@@ -392,6 +391,7 @@ struct KernelTable {
   void (*store_records)(const RecordRow&);  // positions, and velocities, gain the corrections
   void (*sweep_edges)(const EdgeSweep&);
   void (*sweep_hinges)(const HingeSweep&);
+  void (*sweep_strains)(const StrainSweep&);
 };
 
 // The kernels built for one instruction set (`best` is resolved by the caller).

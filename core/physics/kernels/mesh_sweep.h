@@ -8,6 +8,7 @@
 namespace weft::physics {
 
 inline constexpr int kRecord = 8;  // floats
+inline constexpr int kStrains = 3;
 
 // One row of vertices and its records.
 struct RecordRow {
@@ -34,6 +35,27 @@ struct EdgeSweep {
   float* lambda;      // multipliers of the batches; null: a single sweep [kg·m]
   bool fresh;         // the multipliers are still zero, whatever the memory says
   float longest;      // > 0: nothing but what is so many times its length is shortened to that
+};
+
+// 16 triangles, no two of which share a vertex; corners are told by where their records begin. Those of no
+// triangle are of no vertex.
+struct alignas(64) StrainBatch {
+  std::int32_t corner[3][kBatch];
+  float du[2][kBatch], dv[2][kBatch];  // 1/m; as of MeshBatch
+  float area[kBatch];                  // m²
+};
+
+// Green's strains of triangles, told along warp, along weft, and as the sine between them.
+struct StrainSweep {
+  const StrainBatch* batches;
+  int count;
+  float* records;
+  const float* before;  // records of where vertices were before the substep; null: no damping
+  float give[4];        // m/N; the inverse of C: 11 22 12 66
+  float dt2;            // s²
+  float rate;           // damping over dt
+  float* stress;  // multipliers of the batches, each three times 16 [N/m]; null: a single sweep
+  bool fresh;     // they are still zero, whatever the memory says
 };
 
 // Triangles in batches; corners are told by where their records begin, and moments are those of their constraints:

@@ -141,6 +141,7 @@ void load_records(const physics::RecordRow&);
 void store_records(const physics::RecordRow&);
 void sweep_edges(const physics::EdgeSweep&);
 void sweep_hinges(const physics::HingeSweep&);
+void sweep_strains(const physics::StrainSweep&);
 void wind(const physics::WindRow&);
 void mesh_wind(const physics::MeshWind&);
 void push(const physics::PushRow&);

@@ -61,6 +61,7 @@ const physics::KernelTable& table() {
       .store_records = store_records,
       .sweep_edges = sweep_edges,
       .sweep_hinges = sweep_hinges,
+      .sweep_strains = sweep_strains,
   };
   return table;
 }

@@ -72,8 +72,6 @@ class ClothModel {
   // The grid behind the cloth, for stages that use its implicit structure; null where there is none.
   virtual LatticeParts* lattice() { return nullptr; }
 
-  // Whether no method that projects can move it.
-  virtual bool only_explicit() const { return false; }
   // What substeps of the second order keep from one to the next; null: they are of the first.
   virtual History* history() { return nullptr; }
   // Appends the stages that move the particles by this method and the scene's solver, up to contact;

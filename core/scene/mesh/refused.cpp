@@ -46,9 +46,6 @@ void check_method(const Solver& solver, const Cloth& cloth, const std::string& p
   if (solver.tethers && cloth.mesh.rest == MeshRest::uv)
     result.fault("/solver/tethers", "tethers are on, and a mesh rests as its texture coordinates",
                  "off, or rest shape, flat or a second mesh file");
-  if (cloth.membrane.given())
-    result.fault(place + "/membrane", "a membrane of a mesh is to be projected",
-                 "springs, or method spring or spring_friction, with a mesh");
   if (solver.sweep == Sweep::jacobi && result.sound("/solver/sweep"))
     result.fault(place + "/mesh", "a mesh is to be projected by means of its constraints",
                  "sweep gauss_seidel or line, with a mesh");

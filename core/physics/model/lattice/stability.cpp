@@ -234,7 +234,9 @@ Fineness fineness_of(const Cloth& c, const Solver& solver) {
   }
   const double scale = c.mesh.scale;
   const double square = scale * scale * 2 * area / double(c.mesh.shape->triangles.size());
-  return {scale * longest / square, c.density * square, c.stiffness.structural};
+  const Membrane& m = c.membrane;
+  const double stiffness = m.given() ? std::max({m.warp, m.weft, m.shear}) : c.stiffness.structural;
+  return {scale * longest / square, c.density * square, stiffness};
 }
 
 }  // namespace

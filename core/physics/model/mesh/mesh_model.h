@@ -17,7 +17,6 @@ class MeshModel final : public ClothModel {
             const KernelTable& kernels);
 
   const ClothParts& parts() const override { return parts_; }
-  bool only_explicit() const override { return material_.membrane; }
   History* history() override { return history_.get(); }
   void append_motion(Method method, StageList& list) override;
   void append_limits(StageList& list) override;
@@ -52,7 +51,10 @@ class MeshModel final : public ClothModel {
   void place();
   void append_forces(StageList& list);
   void append_projections(StageList& list);
-  MeshSweeps& sweeps();
+  void append_membrane(StageList& list);
+  MeshSweeps& sweeps();  // of bending, where there is any
+  MeshSweeps& edge_sweeps();
+  StrainSweeps& strain_sweeps();
   std::vector<std::vector<Tether>> attachments() const;
   double projected_energy(const Rows& x, double dt) const;
   double start_strain() const;  // the greatest of all edges

@@ -2,77 +2,12 @@
 
 #include <algorithm>
 
+#include "physics/model/mesh/mesh_records.h"
 #include "physics/model/mesh/triangle_constraint.h"
 #include "physics/model/push.h"
 
 namespace weft::physics {
 namespace {
-
-float* record_row(AlignedArray<float>& records, const Particles& p, int j) {
-  return records.data() + std::size_t(kRecord) * std::size_t(j) * std::size_t(p.stride);
-}
-
-// Where the record of a vertex begins.
-std::int32_t offset_of(const Particles& p, int vertex) {
-  return std::int32_t(kRecord * p.lane(vertex));
-}
-
-RecordRow record_row_of(const ClothParts& parts, AlignedArray<float>& records, int j,
-                        float inverse_dt) {
-  Particles& p = parts.particles;
-  return {p.count(j), p.x.row(j), p.v.row(j), p.w(j), record_row(records, p, j), inverse_dt};
-}
-
-// Row j and those that its constraints reach are there after its turn, and stay until they are stored.
-class LoadRecords final : public RowStage {
- public:
-  LoadRecords(const ClothParts& parts, AlignedArray<float>& records, int reach)
-      : RowStage("load", "vertices into records", reach, parts.particles.count(), "particles"),
-        parts_(parts),
-        records_(records) {}
-  Velocities velocities(double) const override { return Velocities::left_alone; }
-  void start(const Substep& s) override { loaded_[std::size_t(s.slot)] = 0; }
-  void run(int j, const Substep& s) override {
-    int& loaded = loaded_[std::size_t(s.slot)];
-    if (j == 0) loaded = 0;
-    const int end = std::min(j + reach + 1, parts_.particles.rows);
-    for (loaded = std::max(loaded, j); loaded < end; ++loaded)
-      parts_.kernels.load_records(record_row_of(parts_, records_, loaded, 0));
-  }
-
- protected:
-  void reserve_slots(int slots) override { loaded_.assign(std::size_t(slots), 0); }
-
- private:
-  ClothParts parts_;
-  AlignedArray<float>& records_;
-  std::vector<int> loaded_;  // the next row to come into the records, of each slot
-};
-
-class StoreRecords final : public RowStage {
- public:
-  // `limit`: corrections are of a substep's end, and change velocities at once.
-  StoreRecords(const ClothParts& parts, AlignedArray<float>& records, bool limit)
-      : RowStage("store", "positions and velocities gain the corrections", 0,
-                 parts.particles.count(), "particles"),
-        parts_(parts),
-        records_(records),
-        limit_(limit) {}
-  Velocities velocities(double dt) const override {
-    return gain(dt) > 0 ? Velocities::used : Velocities::left_alone;
-  }
-  void run(int j, const Substep& s) override {
-    parts_.kernels.store_records(record_row_of(parts_, records_, j, gain(s.dt)));
-  }
-
- private:
-  float gain(double dt) const {
-    return limit_ ? float(1 / dt) : velocity_gain(parts_.scene.solver, true, dt);
-  }
-  ClothParts parts_;
-  AlignedArray<float>& records_;
-  bool limit_;
-};
 
 struct EdgeOptions {
   int colour;
@@ -166,13 +101,8 @@ class SweepHinges final : public RowStage {
 }  // namespace
 
 MeshSweeps::MeshSweeps(const ClothParts& parts, const MeshOrder& order, const Seams& seams)
-    : parts_(parts),
-      order_(order),
-      seams_(seams),
-      records_(std::size_t(kRecord) * std::size_t(parts.particles.rows) *
-               std::size_t(parts.particles.stride)) {}
+    : parts_(parts), order_(order), seams_(seams), records_(records_of(parts.particles)) {}
 
-// Places of no edge are told the padding behind their own row, a lane each.
 void MeshSweeps::make_edges(const MeshEdges& edges, double stiffness) {
   const Particles& p = parts_.particles;
   std::vector<Corners> elements;
@@ -184,7 +114,7 @@ void MeshSweeps::make_edges(const MeshEdges& edges, double stiffness) {
       for (int n = all.first[std::size_t(j)]; n < all.first[std::size_t(j) + 1]; ++n) {
         EdgeBatch& b = colour.batches.emplace_back();
         for (int k = 0; k < kBatch; ++k) {
-          b.near[k] = b.far[k] = kRecord * (j * p.stride + p.count(j) + k);
+          b.near[k] = b.far[k] = offset_of_nobody(p, j, k);
           b.give[k] = 1;
         }
         const std::vector<int>& chosen = all.elements[std::size_t(n)];
@@ -215,7 +145,7 @@ void MeshSweeps::make_hinges(const std::vector<RestTriangle>& triangles) {
         for (std::size_t k = 0; k < kBatch; ++k) {
           colour.triangles.push_back(k < chosen.size() ? chosen[k] : -1);
           for (std::size_t c = 0; c < kMeshCorners; ++c)
-            b.corner[c][k] = kRecord * (j * p.stride + p.count(j) + int(k));
+            b.corner[c][k] = offset_of_nobody(p, j, int(k));
           if (k >= chosen.size()) continue;
           const RestTriangle& r = triangles[std::size_t(chosen[k])];
           set_triangle(b, k, r);
@@ -233,7 +163,7 @@ void MeshSweeps::append_seams(StageList& list) {
 }
 
 void MeshSweeps::append_edges(int iterations, StageList& list) {
-  list.stages.push_back(std::make_unique<LoadRecords>(parts_, records_, 1));
+  list.stages.push_back(make_load_records(parts_, records_, 1));
   for (int n = 0; n < iterations; ++n) {
     for (int c = 0; c < int(edges_.size()); ++c) {
       EdgeColour& colour = edges_[std::size_t(c)];
@@ -244,29 +174,42 @@ void MeshSweeps::append_edges(int iterations, StageList& list) {
     }
     append_seams(list);
   }
-  list.stages.push_back(std::make_unique<StoreRecords>(parts_, records_, false));
+  list.stages.push_back(make_store_records(parts_, records_, false));
+}
+
+void MeshSweeps::make_strains(const std::vector<RestTriangle>& triangles, bool keeps_stress) {
+  strains_ = std::make_unique<StrainSweeps>(parts_, order_, triangles, records_, keeps_stress);
+}
+
+void MeshSweeps::append_strains(int iterations, bool fresh, StageList& list) {
+  list.stages.push_back(make_load_records(parts_, records_, 1));
+  for (int n = 0; n < iterations; ++n) {
+    strains_->append(iterations, fresh && n == 0, list);
+    append_seams(list);
+  }
+  list.stages.push_back(make_store_records(parts_, records_, false));
 }
 
 void MeshSweeps::append_hinges(StageList& list) {
-  list.stages.push_back(std::make_unique<LoadRecords>(parts_, records_, 2));
+  list.stages.push_back(make_load_records(parts_, records_, 2));
   for (int c = 0; c < int(hinges_.size()); ++c)
     list.stages.push_back(
         std::make_unique<SweepHinges>(parts_, hinges_[std::size_t(c)], *triangles_, records_, c));
   append_seams(list);
-  list.stages.push_back(std::make_unique<StoreRecords>(parts_, records_, false));
+  list.stages.push_back(make_store_records(parts_, records_, false));
 }
 
 void MeshSweeps::append_limit(double strain, StageList& list) {
-  list.stages.push_back(std::make_unique<LoadRecords>(parts_, records_, 1));
+  list.stages.push_back(make_load_records(parts_, records_, 1));
   for (int c = 0; c < int(edges_.size()); ++c)
     list.stages.push_back(std::make_unique<SweepEdges>(parts_, edges_[std::size_t(c)], records_,
                                                        EdgeOptions{c, true, 1 + strain}));
   append_seams(list);
-  list.stages.push_back(std::make_unique<StoreRecords>(parts_, records_, true));
+  list.stages.push_back(make_store_records(parts_, records_, true));
 }
 
 std::size_t MeshSweeps::bytes() const {
-  std::size_t bytes = records_.size() * sizeof(float);
+  std::size_t bytes = records_.size() * sizeof(float) + (strains_ ? strains_->bytes() : 0);
   for (const EdgeColour& c : edges_)
     bytes += c.batches.size() * sizeof(EdgeBatch) + c.lambda.size() * sizeof(float);
   for (const HingeColour& c : hinges_)

@@ -9,6 +9,7 @@
 #include "physics/model/mesh/batches.h"
 #include "physics/model/mesh/mesh_edges.h"
 #include "physics/model/mesh/seams.h"
+#include "physics/model/mesh/strain_sweep.h"
 
 namespace weft::physics {
 
@@ -34,15 +35,19 @@ class MeshSweeps {
   // `stiffness`: of an edge from each of its triangles [N/m].
   void make_edges(const MeshEdges& edges, double stiffness);
   void make_hinges(const std::vector<RestTriangle>& triangles);
+  void make_strains(const std::vector<RestTriangle>& triangles, bool keeps_stress);
 
   // Edges as compliant constraints, so many times one after the other; positions and velocities gain the
   // corrections at the end.
   void append_edges(int iterations, StageList& list);
   void append_hinges(StageList& list);
+  // The membrane of triangles, likewise; `fresh`: from no stress.
+  void append_strains(int iterations, bool fresh, StageList& list);
   // Nothing is longer than 1 + strain times its length.
   void append_limit(double strain, StageList& list);
 
-  int colours() const { return int(edges_.size()); }
+  bool knows_edges() const { return !edges_.empty(); }
+  StrainSweeps* strains() { return strains_.get(); }  // null: not made yet
   std::size_t bytes() const;
 
  private:
@@ -55,6 +60,7 @@ class MeshSweeps {
   std::vector<EdgeColour> edges_;
   const std::vector<RestTriangle>* triangles_ = nullptr;
   std::vector<HingeColour> hinges_;
+  std::unique_ptr<StrainSweeps> strains_;
 };
 
 }  // namespace weft::physics

@@ -18,29 +18,35 @@ constexpr double kSharedNanoseconds = 40000;  // the least work worth sharing ou
 
 // As of a grid's lines (line_sweep.cpp).
 constexpr double kLeastCompliance = 1e-5;
+constexpr int kSteps = 2;  // of Newton's, of a membrane
 
 // Lanes of strands side by side: [place in the strand][kBatchLines].
 struct StrandBatch {
   int particles = 0;  // of the longest
   std::vector<int>
       lanes;  // where each vertex lies in the component arrays; -1: the strand has ended
-  AlignedArray<float> rest;          // m
-  AlignedArray<float> give;          // m/N; one over the stiffness
-  AlignedArray<float> compliance;    // 1/kg
+  std::vector<int> edges;            // of a membrane; -1: none
+  AlignedArray<float> rest;          // m; of a membrane the square that is wanted [m²]
+  AlignedArray<float> give;          // one over the stiffness [m/N; of squares m³/N]
+  AlignedArray<float> compliance;    // 1/kg; of squares m²/kg
   AlignedArray<float> lambda;        // none: a single sweep
   AlignedArray<std::int32_t> alive;  // -1 where there is a constraint
 };
 
-class StrandSweep final : public WholeStage {
+}  // namespace
+
+class StrandSweeps::Solver {
  public:
-  StrandSweep(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-              const std::vector<Strand>& strands, const std::vector<std::vector<int>>& colours)
-      : WholeStage("line",
-                   std::to_string(strands.size()) + " strands in " +
-                       std::to_string(colours.size()) + " colours, each solved as a whole",
-                   std::int64_t(edges.ends.size()) * parts.scene.solver.iterations, "constraints"),
-        parts_(parts),
-        iterations_(parts.scene.solver.iterations) {
+  Solver(const ClothParts& parts, const MeshEdges& edges, double stiffness,
+         std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x)
+      : parts_(parts),
+        membrane_(std::move(membrane)),
+        remembers_(membrane_ || parts.scene.solver.iterations > 1) {
+    const std::vector<Strand> strands = strands_of(edges, x);
+    const std::vector<std::vector<int>> colours = coloured_strands(strands, int(x.size()));
+    words_ = std::to_string(strands.size()) + " strands in " + std::to_string(colours.size()) +
+             " colours, each solved as a whole";
+    count_ = std::int64_t(edges.ends.size());
     first_.push_back(0);
     for (const std::vector<int>& colour : colours) {
       for (std::size_t n = 0; n < colour.size(); n += kBatchLines)
@@ -51,32 +57,39 @@ class StrandSweep final : public WholeStage {
     for (const float w : parts.particles.inverse_mass.span())
       least_ = std::max(least_, kLeastCompliance * double(w));
     for (const StrandBatch& b : batches_) longest_ = std::max(longest_, b.particles);
+    if (membrane_)
+      for (const double rest : edges.rest) squares_.push_back(rest * rest);
   }
 
-  std::size_t bytes() const override {
-    std::size_t bytes = 0;
+  const std::string& words() const { return words_; }
+  std::int64_t count() const { return count_; }
+  const ClothParts& parts() const { return parts_; }
+  float gain(double dt) const { return velocity_gain(parts_.scene.solver, true, dt); }
+  std::size_t bytes() const {
+    std::size_t bytes = membrane_ ? membrane_->bytes() : 0;
     for (const StrandBatch& b : batches_)
-      bytes +=
-          b.lanes.size() * sizeof(int) * 2 + sizeof(float) * (3 * b.rest.size() + b.lambda.size());
+      bytes += (b.lanes.size() * 2 + b.edges.size()) * sizeof(int) +
+               sizeof(float) * (3 * b.rest.size() + b.lambda.size());
     for (const Memory& m : memory_)
       bytes += m.x.bytes() + m.moved.bytes() + (m.w.size() + m.scratch.size()) * sizeof(float);
     return bytes;
   }
-  Velocities velocities(double dt) const override {
-    return gain(dt) == 0 ? Velocities::left_alone : Velocities::used;
-  }
-  void prepare(double dt) override {
+  void prepare(double dt) {
     const double h = dt * implicit_share(parts_.scene.solver);
+    const double rate = membrane_ ? 1 + membrane_->rate(dt) : 1;
     for (StrandBatch& b : batches_)
-      for (std::size_t n = 0; n < b.give.size(); ++n)
-        b.compliance[n] = float(std::max(double(b.give[n]) / (h * h), least_));
+      for (std::size_t n = 0; n < b.give.size(); ++n) {
+        const double least =
+            membrane_ && b.edges[n] >= 0 ? least_ * squares_[std::size_t(b.edges[n])] : least_;
+        b.compliance[n] = float(std::max(double(b.give[n]) / (rate * h * h), least));
+      }
   }
 
-  void run(const Substep& s, Threads& threads) override {
+  void sweep(double dt, bool fresh, Threads& threads) {
     while (int(memory_.size()) < threads.count()) memory_.emplace_back(longest_);
-    for (int n = 0; n < iterations_; ++n)
-      for (std::size_t c = 0; c + 1 < first_.size(); ++c)
-        share_out(c, threads, [&](StrandBatch& b, Memory& m) { solve(b, m, s.dt, n == 0); });
+    if (membrane_ && fresh) membrane_->begin();
+    for (std::size_t c = 0; c + 1 < first_.size(); ++c)
+      share_out(c, threads, [&](StrandBatch& b, Memory& m) { solve(b, m, dt, fresh); });
   }
 
  private:
@@ -101,16 +114,20 @@ class StrandSweep final : public WholeStage {
     b.give = AlignedArray<float>(places);
     b.compliance = AlignedArray<float>(places);
     b.alive = AlignedArray<std::int32_t>(places);
-    if (iterations_ > 1) b.lambda = AlignedArray<float>(places);
+    if (remembers_) b.lambda = AlignedArray<float>(places);
+    if (membrane_) b.edges.assign(places, -1);
     for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
       const Strand& s = strands[std::size_t(chosen[lane])];
       for (std::size_t m = 0; m < s.vertices.size(); ++m)
         b.lanes[m * kBatchLines + lane] = int(parts_.particles.lane(s.vertices[m]));
       for (std::size_t m = 0; m < s.edges.size(); ++m) {
         const auto e = std::size_t(s.edges[m]);
-        b.rest[m * kBatchLines + lane] = float(edges.rest[e]);
-        b.give[m * kBatchLines + lane] = float(1 / std::max(stiffness * edges.triangles[e], 1e-12));
-        b.alive[m * kBatchLines + lane] = -1;
+        const std::size_t at = m * kBatchLines + lane;
+        const double k = membrane_ ? 1 / membrane_->give(int(e)) : stiffness * edges.triangles[e];
+        b.rest[at] = float(edges.rest[e]);
+        b.give[at] = float(1 / std::max(k, 1e-12));
+        b.alive[at] = -1;
+        if (membrane_) b.edges[at] = int(e);
       }
     }
   }
@@ -131,8 +148,6 @@ class StrandSweep final : public WholeStage {
     });
   }
 
-  float gain(double dt) const { return velocity_gain(parts_.scene.solver, true, dt); }
-
   void solve(StrandBatch& b, Memory& m, double dt, bool fresh) {
     gather(b, m);
     const float velocity = gain(dt);
@@ -142,7 +157,6 @@ class StrandSweep final : public WholeStage {
     p.step = kBatchLines;
     p.particles = b.particles;
     p.columns = kBatchLines;
-    p.rests = b.rest.data();
     p.share = 1;
     p.v = m.moved.row(0);
     p.inverse_dt = velocity > 0 ? 1.0f : 0.0f;
@@ -152,8 +166,27 @@ class StrandSweep final : public WholeStage {
     if (b.lambda.size() > 0) p.lambda = b.lambda.data();
     p.fresh = fresh;
     p.scratch = m.scratch.data();
-    parts_.kernels.line_batch(p);
+    membrane_ ? solve_membrane(b, p, dt) : solve_springs(b, p);
     put_back(b, m, velocity);
+  }
+
+  void solve_springs(const StrandBatch& b, LineBatch& p) const {
+    p.rests = b.rest.data();
+    parts_.kernels.line_batch(p);
+  }
+
+  // Every sweep goes on from what the triangles hold, with multipliers of its own.
+  void solve_membrane(StrandBatch& b, LineBatch& p, double dt) {
+    const double h = dt * implicit_share(parts_.scene.solver);
+    const auto rate = float(membrane_->rate(dt));
+    for (std::size_t n = 0; n < b.edges.size(); ++n)
+      if (b.edges[n] >= 0) b.rest[n] = membrane_->square(b.edges[n], rate);
+    p.squares = b.rest.data();
+    p.steps = kSteps;
+    p.fresh = true;
+    parts_.kernels.membrane_line_batch(p);
+    for (std::size_t n = 0; n < b.edges.size(); ++n)
+      if (b.edges[n] >= 0) membrane_->add(b.edges[n], b.lambda[n], float(1 / (h * h)));
   }
 
   // Beyond a strand's end lies nothing, without mass.
@@ -184,22 +217,54 @@ class StrandSweep final : public WholeStage {
     }
   }
 
-  ClothParts parts_;
-  const int iterations_;
+  const ClothParts& parts_;
+  std::unique_ptr<StrandMembrane> membrane_;  // null: springs
+  const bool remembers_;                      // multipliers
+  std::string words_;
+  std::int64_t count_ = 0;
   std::vector<StrandBatch> batches_;
   std::vector<std::size_t> first_;  // batch of each colour, and how many there are
+  std::vector<double> squares_;     // m²; of the membrane's edges at rest
   double least_ = 0;                // 1/kg
   int longest_ = 0;
   std::vector<Memory> memory_;  // of every thread
 };
 
-}  // namespace
+StrandSweeps::StrandSweeps(const ClothParts& parts, const MeshEdges& edges, double stiffness,
+                           const std::vector<Vec3>& x)
+    : solver_(std::make_shared<Solver>(parts, edges, stiffness, nullptr, x)) {}
 
-std::unique_ptr<Stage> make_strands(const ClothParts& parts, const MeshEdges& edges,
-                                    double stiffness, const std::vector<Vec3>& x) {
-  const std::vector<Strand> strands = strands_of(edges, x);
-  return std::make_unique<StrandSweep>(parts, edges, stiffness, strands,
-                                       coloured_strands(strands, int(x.size())));
+StrandSweeps::StrandSweeps(const ClothParts& parts, const MeshEdges& edges,
+                           std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x)
+    : solver_(std::make_shared<Solver>(parts, edges, 0, std::move(membrane), x)) {}
+
+// The first of a substep's tells the memory of all.
+class StrandSweeps::Sweep final : public WholeStage {
+ public:
+  Sweep(std::shared_ptr<Solver> solver, int iterations, bool fresh)
+      : WholeStage("line", solver->words(), solver->count() * iterations, "constraints"),
+        solver_(std::move(solver)),
+        iterations_(iterations),
+        fresh_(fresh) {}
+  std::size_t bytes() const override { return fresh_ ? solver_->bytes() : 0; }
+  Velocities velocities(double dt) const override {
+    return solver_->gain(dt) == 0 ? Velocities::left_alone : Velocities::used;
+  }
+  void prepare(double dt) override {
+    if (fresh_) solver_->prepare(dt);
+  }
+  void run(const Substep& s, Threads& threads) override {
+    for (int n = 0; n < iterations_; ++n) solver_->sweep(s.dt, fresh_ && n == 0, threads);
+  }
+
+ private:
+  std::shared_ptr<Solver> solver_;
+  int iterations_;
+  bool fresh_;
+};
+
+std::unique_ptr<Stage> StrandSweeps::stage(int iterations, bool fresh) {
+  return std::make_unique<Sweep>(solver_, iterations, fresh);
 }
 
 }  // namespace weft::physics

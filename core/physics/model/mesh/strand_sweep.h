@@ -1,13 +1,28 @@
 // Line sweeps over a mesh: strands in the place of lines.
 #pragma once
 
-#include "physics/model/cloth_model.h"
+#include "physics/model/mesh/strand_membrane.h"
 #include "physics/model/mesh/strands.h"
 
 namespace weft::physics {
 
-// `stiffness`: of an edge from each of its triangles [N/m]; `x`: of the vertices at rest [m].
-std::unique_ptr<Stage> make_strands(const ClothParts& parts, const MeshEdges& edges,
-                                    double stiffness, const std::vector<Vec3>& x);
+// What is made once for the strands of one mesh; stages share it.
+class StrandSweeps {
+ public:
+  // Of springs. `stiffness`: of an edge from each of its triangles [N/m]; `x`: of the vertices at rest [m].
+  StrandSweeps(const ClothParts& parts, const MeshEdges& edges, double stiffness,
+               const std::vector<Vec3>& x);
+  // Of a membrane.
+  StrandSweeps(const ClothParts& parts, const MeshEdges& edges,
+               std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x);
+
+  // So many sweeps one after the other; `fresh`: with the first of a substep.
+  std::unique_ptr<Stage> stage(int iterations, bool fresh);
+
+ private:
+  class Solver;
+  class Sweep;
+  std::shared_ptr<Solver> solver_;
+};
 
 }  // namespace weft::physics

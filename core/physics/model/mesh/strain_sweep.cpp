@@ -1,0 +1,125 @@
+#include "physics/model/mesh/strain_sweep.h"
+
+#include <algorithm>
+
+#include "physics/model/mesh/mesh_records.h"
+#include "physics/model/push.h"
+
+namespace weft::physics {
+namespace {
+
+class SweepStrains final : public RowStage {
+ public:
+  // `before`: null where nothing is damped.
+  SweepStrains(const ClothParts& parts, StrainColour& colour, AlignedArray<float>& records,
+               const float* before, int number, bool fresh)
+      : RowStage("gauss_seidel", "membrane of triangles of colour " + std::to_string(number), 1,
+                 colour.triangles, "triangles"),
+        parts_(parts),
+        colour_(colour),
+        records_(records),
+        before_(before),
+        fresh_(fresh) {}
+  Velocities velocities(double) const override { return Velocities::left_alone; }
+  void run(int begin, int end, const Substep& s) override {
+    const int first = colour_.first[std::size_t(begin)];
+    const Membrane& m = parts_.cloth.membrane;
+    const double h = s.dt * implicit_share(parts_.scene.solver);
+    const double determinant = m.warp * m.weft - m.coupling * m.coupling;
+    StrainSweep sweep{};
+    sweep.batches = colour_.batches.data() + first;
+    sweep.count = colour_.first[std::size_t(end)] - first;
+    sweep.records = records_.data();
+    sweep.before = before_;
+    sweep.give[0] = float(m.weft / determinant);
+    sweep.give[1] = float(m.warp / determinant);
+    sweep.give[2] = float(-m.coupling / determinant);
+    sweep.give[3] = float(1 / m.shear);
+    sweep.dt2 = float(h * h);
+    sweep.rate = float(m.damping / s.dt);
+    sweep.fresh = fresh_;
+    if (colour_.stress.size() > 0)
+      sweep.stress = colour_.stress.data() + std::ptrdiff_t(kStrains * kBatch) * first;
+    parts_.kernels.sweep_strains(sweep);
+  }
+
+ private:
+  ClothParts parts_;
+  StrainColour& colour_;
+  AlignedArray<float>& records_;
+  const float* before_;
+  bool fresh_;
+};
+
+StrainBatch batch_of(const std::vector<int>& chosen, int row, const Particles& p,
+                     const std::vector<RestTriangle>& triangles) {
+  StrainBatch b{};
+  for (std::size_t c = 0; c < 3; ++c)
+    for (int k = 0; k < kBatch; ++k) b.corner[c][k] = offset_of_nobody(p, row, k);
+  for (std::size_t n = 0; n < chosen.size(); ++n) {
+    const RestTriangle& r = triangles[std::size_t(chosen[n])];
+    for (std::size_t c = 0; c < 3; ++c) b.corner[c][n] = offset_of(p, r.corner[c]);
+    for (std::size_t k = 0; k < 2; ++k) b.du[k][n] = float(r.du[k]), b.dv[k][n] = float(r.dv[k]);
+    b.area[n] = float(r.area);
+  }
+  return b;
+}
+
+}  // namespace
+
+StrainSweeps::StrainSweeps(const ClothParts& parts, const MeshOrder& order,
+                           const std::vector<RestTriangle>& triangles, AlignedArray<float>& records,
+                           bool keeps_stress)
+    : parts_(parts), records_(records) {
+  const Particles& p = parts.particles;
+  if (damped()) before_ = records_of(p);
+  if (keeps_stress) places_.resize(triangles.size());
+  std::vector<Corners> elements;
+  for (const RestTriangle& r : triangles)
+    elements.push_back({r.corner[0], r.corner[1], r.corner[2], -1, -1, -1});
+  for (const Batches& all : coloured_batches(order, elements)) {
+    StrainColour& colour = colours_.emplace_back();
+    colour.first = all.first;
+    for (int j = 0; j < p.rows; ++j)
+      for (int n = all.first[std::size_t(j)]; n < all.first[std::size_t(j) + 1]; ++n) {
+        const std::vector<int>& chosen = all.elements[std::size_t(n)];
+        const std::size_t first = colour.batches.size() * kStrains * kBatch;
+        for (std::size_t k = 0; keeps_stress && k < chosen.size(); ++k)
+          places_[std::size_t(chosen[k])] = {colours_.size() - 1, first + k};
+        colour.batches.push_back(batch_of(chosen, j, p, triangles));
+        colour.triangles += std::int64_t(chosen.size());
+      }
+    if (keeps_stress) make_room(colour);
+  }
+}
+
+void StrainSweeps::make_room(StrainColour& colour) {
+  if (colour.stress.size() == 0)
+    colour.stress = AlignedArray<float>(colour.batches.size() * kStrains * kBatch);
+}
+
+void StrainSweeps::clear_stress() {
+  for (StrainColour& c : colours_) std::fill_n(c.stress.data(), c.stress.size(), 0.0f);
+}
+
+void StrainSweeps::append_places_before(StageList& list) {
+  if (damped()) list.stages.push_back(make_load_records(parts_, before_, 1));
+}
+
+void StrainSweeps::append(int iterations, bool fresh, StageList& list) {
+  for (int c = 0; c < int(colours_.size()); ++c) {
+    StrainColour& colour = colours_[std::size_t(c)];
+    if (iterations > 1) make_room(colour);
+    list.stages.push_back(std::make_unique<SweepStrains>(
+        parts_, colour, records_, damped() ? before_.data() : nullptr, c, fresh));
+  }
+}
+
+std::size_t StrainSweeps::bytes() const {
+  std::size_t bytes = before_.size() * sizeof(float) + places_.size() * sizeof(Place);
+  for (const StrainColour& c : colours_)
+    bytes += c.batches.size() * sizeof(StrainBatch) + c.stress.size() * sizeof(float);
+  return bytes;
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,57 @@
+// The membrane of a mesh as compliant constraints: Green's strains of its triangles (kernels/mesh_strains.cpp),
+// by colours, one row stage a colour, on the records of mesh_sweeps.h.
+#pragma once
+
+#include "physics/kernels/mesh_sweep.h"
+#include "physics/model/mesh/batches.h"
+
+namespace weft::physics {
+
+struct StrainColour {
+  std::vector<StrainBatch> batches;
+  std::vector<int> first;  // batch of each row, and how many there are
+  std::int64_t triangles = 0;
+  AlignedArray<float> stress;  // multipliers; none: a single sweep
+};
+
+class StrainSweeps {
+ public:
+  // `keeps_stress`: multipliers are there whatever the number of sweeps, and may be asked for and changed.
+  StrainSweeps(const ClothParts& parts, const MeshOrder& order,
+               const std::vector<RestTriangle>& triangles, AlignedArray<float>& records,
+               bool keeps_stress);
+
+  // Before anything is moved: keeps what damping compares with, if there is any.
+  void append_places_before(StageList& list);
+  // One sweep of so many; `fresh`: the first of a substep, and of stress.
+  void append(int iterations, bool fresh, StageList& list);
+
+  void clear_stress();
+  // Of a triangle; its components are kBatch apart [N/m].
+  float* stress(int triangle) {
+    const Place& at = places_[std::size_t(triangle)];
+    return colours_[at.colour].stress.data() + at.first;
+  }
+  // Of a lane of the component arrays, where something is damped [m].
+  Vec3 place_before(int lane) const {
+    const float* const at = before_.data() + std::ptrdiff_t(kRecord) * lane;
+    return {at[0], at[1], at[2]};
+  }
+  std::size_t bytes() const;
+
+ private:
+  // Of a triangle in the multipliers.
+  struct Place {
+    std::size_t colour, first;
+  };
+  static void make_room(StrainColour& colour);
+  bool damped() const { return parts_.cloth.membrane.damping > 0; }
+
+  const ClothParts& parts_;
+  AlignedArray<float>& records_;
+  AlignedArray<float> before_;  // none: nothing is damped
+  std::vector<StrainColour> colours_;
+  std::vector<Place> places_;  // none: stress is not asked for
+};
+
+}  // namespace weft::physics
