@@ -55,10 +55,7 @@ void choose_method(Scene& scene, Draw& draw) {
   }
   if (s.sweep == Sweep::jacobi) s.sweep = draw.of({Sweep::line, Sweep::gauss_seidel});
   for (Cloth& c : scene.cloths)
-    if (c.mesh.given()) {
-      c.membrane = {};
-      if (s.tethers && c.mesh.rest == MeshRest::uv) c.mesh.rest = MeshRest::flat;
-    }
+    if (c.mesh.given() && s.tethers && c.mesh.rest == MeshRest::uv) c.mesh.rest = MeshRest::flat;
 }
 
 }  // namespace
