@@ -51,6 +51,7 @@ MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t
   drawn_.uv = mesh_.uv;
   weigh();
   place();
+  if (parts_.cloth.pressure.given()) gas_ = std::make_unique<GasLoad>(parts_, seams_);
 }
 
 // A third of each triangle to each corner.
@@ -90,9 +91,15 @@ void MeshModel::append_motion(Method method, StageList& list) {
 void MeshModel::append_forces(StageList& list) {
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
   if (!material_.bends) list.skip("bending", "bending is 0");
+  append_gas(list);
   list.stages.push_back(make_triangles(parts_, order_, triangles_, material_));
   list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_), "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
+}
+
+void MeshModel::append_gas(StageList& list) {
+  list.choose("pressure", gas_ ? make_pressure(parts_, gas_->gas()) : nullptr,
+              "the cloth has no pressure");
 }
 
 // As those of a grid (lattice_model.cpp).
@@ -108,6 +115,7 @@ void MeshModel::append_projections(StageList& list) {
     list.skip("second order", "order is 1");
   list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, nullptr)
                                  : make_predict(parts_, nullptr, nullptr));
+  append_gas(list);
   list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_), "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
   if (solver.tethers && tethers_.empty()) tethers_ = attachments();
@@ -229,8 +237,9 @@ Vec3 MeshModel::pin_position(const Pin& pin, double time) const {
 }
 
 double MeshModel::held_energy(const Rows& x, double dt) const {
-  if (!is_explicit(method_)) return projected_energy(x, dt);
-  return mesh_energy(triangles_, material_, particles_.gather(x)) + rounding_gain();
+  const double load = gas_ ? gas_->greatest_energy(particles_.gather(x)) : 0;
+  if (!is_explicit(method_)) return projected_energy(x, dt) + load;
+  return mesh_energy(triangles_, material_, particles_.gather(x)) + rounding_gain() + load;
 }
 
 // A projected edge counts as a spring of at most the inertia of its ends over dt², all that a sweep makes
@@ -312,6 +321,7 @@ Spectrum MeshModel::spectrum(std::span<const float> inverse_masses) const {
   Spectrum spectrum;
   spectrum.omega_squared = largest_eigenvalue(3 * count, stiffness);
   if (material_.damped()) spectrum.damping = largest_eigenvalue(3 * count, damping);
+  if (gas_) spectrum.load = gas_->omega_squared();
   return spectrum;
 }
 
@@ -376,7 +386,7 @@ std::size_t MeshModel::bytes() const {
   return particles_.bytes() + triangles_.size() * sizeof(RestTriangle) +
          edges_.ends.size() * (sizeof(Joined) + sizeof(double)) +
          start_.size() * (sizeof(Vec3) + sizeof(double)) + (sweeps_ ? sweeps_->bytes() : 0) +
-         (history_ ? history_->bytes() : 0) + seams_.bytes();
+         (history_ ? history_->bytes() : 0) + seams_.bytes() + (gas_ ? gas_->bytes() : 0);
 }
 
 }  // namespace weft::physics
