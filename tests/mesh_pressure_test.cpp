@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "made_up_balloon.h"
 #include "made_up_mesh.h"
-#include "physics/model/mesh/gas.h"
-#include "physics/model/mesh/mesh_order.h"
 #include "physics/model/vector.h"
 #include "weft/estimate.h"
 #include "weft/simulation.h"
@@ -41,85 +38,6 @@ double mean_radius(const Simulation& run) {
   double sum = 0;
   for (std::size_t p = 0; p < x.size(); p += 3) sum += std::hypot(x[p], x[p + 1], x[p + 2]);
   return sum / (double(x.size()) / 3);
-}
-
-TEST(MeshPressure, LawsAreSlopesOfTheirEnergies) {
-  for (const Pressure& pressure :
-       {Pressure{.over = 300}, Pressure{.over = -50}, Pressure{.inflate = 1.3},
-        Pressure{.inflate = 0.5, .ambient = 700}}) {
-    const physics::GasLaw law(pressure, 0.03);
-    for (const double share : {1.0, 0.4, 2.0})
-      for (const double volume : {0.0001, 0.004, 0.02, 0.03, 0.09}) {
-        const double h = 1e-6 * volume;
-        const double slope =
-            (law.energy(share, volume + h) - law.energy(share, volume - h)) / (2 * h);
-        const double scale = 1e-6 * (std::abs(law.over(share, volume)) + pressure.ambient);
-        EXPECT_NEAR(law.over(share, volume), -slope, scale) << share << " " << volume;
-        const double stiffness =
-            (law.over(share, volume - h) - law.over(share, volume + h)) / (2 * h);
-        EXPECT_NEAR(law.stiffness(share, volume), stiffness, 1e-5 * stiffness + 1e-3);
-        for (const double growth : {0.0, 1e-9, 1e-6}) {
-          const double p = law.over_after(share, volume, growth);
-          if (volume + growth * p > 0.002) {
-            EXPECT_NEAR(p, law.over(share, volume + growth * p), scale);
-          }
-        }
-      }
-  }
-  const physics::GasLaw keyed(Pressure{.over = 10, .keys = {{1, 0}, {3, 2}}}, 1);
-  EXPECT_EQ(keyed.share(0), 0);
-  EXPECT_EQ(keyed.share(2), 1);
-  EXPECT_EQ(keyed.share(9), 2);
-  EXPECT_EQ(keyed.greatest_share(), 2);
-}
-
-// The gradient by differences; and what it adds up to, in any place and turned over.
-TEST(MeshPressure, GradientsAreThoseOfTheVolume) {
-  std::mt19937 random(3);
-  const auto draw = [&] { return 2 * (double(random()) / 4294967296.0) - 1; };
-  for (const bool inwards : {false, true})
-    for (const bool cushion : {false, true}) {
-      Cloth cloth;
-      auto mesh = cushion ? made_up_cushion(4, 0.1) : made_up_balloon(2, kRadius);
-      if (inwards)
-        for (auto& t : mesh->triangles) std::swap(t[1], t[2]);
-      for (Vec3& p : mesh->vertices)
-        for (double& value : p) value += 0.02 * draw();
-      cloth.mesh.shape = mesh;
-      cloth.mesh.translate = {50, 0, -20};
-      cloth.sewing = true;
-      cloth.pressure.over = 1;
-      const physics::MeshOrder order = physics::order_of(*mesh, sewn_vertices(cloth));
-      const physics::Particles particles(order.counts, false, order.vertices);
-      const physics::Gas gas(cloth, particles);
-      physics::Gas::Work work = gas.work();
-      std::vector<Vec3> x = placed_vertices(cloth.mesh), gradient(x.size());
-      const double volume = gas.look(x, work);
-      EXPECT_GT(volume, 0);
-      EXPECT_NEAR(volume, std::abs(enclosed_volume(cloth)), 1e-12);
-      Vec3 sum{}, moment{};
-      for (int p = 0; p < gas.points(); ++p)
-        for (const auto& member : gas.members(p)) {
-          const auto n = std::size_t(member.number);
-          gradient[n] = work.gradients[std::size_t(p)];
-          sum = physics::plus(sum, gradient[n]);
-          moment = physics::plus(moment, physics::cross(x[n], gradient[n]));
-        }
-      for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_NEAR(sum[k], 0, 1e-14);
-        EXPECT_NEAR(moment[k], 0, 1e-12);
-      }
-      for (std::size_t n = 0; n < x.size(); n += 7)
-        for (std::size_t k = 0; k < 3; ++k) {
-          const double at = x[n][k], h = 1e-5;
-          x[n][k] = at + h;
-          const double above = gas.look(x, work);
-          x[n][k] = at - h;
-          const double below = gas.look(x, work);
-          x[n][k] = at;
-          EXPECT_NEAR(gradient[n][k], (above - below) / (2 * h), 1e-9);
-        }
-    }
 }
 
 // A ball of membrane of stiffness C = C11 + C12: 2 T/r = p, which is C (λ² - 1) = p R λ.
@@ -227,7 +145,7 @@ TEST(MeshPressure, FreeBalloonsKeepTheirMomentum) {
       std::printf("%-16s %6g Pa, %g times: momentum %.1e, angular %.1e, %d substeps\n", way.name,
                   pressure.over, pressure.inflate, lost, turned, run.substeps());
       EXPECT_LT(lost, way.sweep == Sweep::line ? 1e-3 : 1e-5) << way.name;
-      // One sweep leaves edges that are not yet in balance with the gas, and these turn a body.
+      // Constraints in tension that are solved one after the other turn a body, by the square of the substep.
       EXPECT_LT(turned, way.method == Method::compliant ? 1 : 1e-5) << way.name;
     }
 }
@@ -302,7 +220,7 @@ TEST(MeshPressure, ContactCarriesTheWeight) {
       cloth.density = 3;
       cloth.drag = 12;
       cloth.mesh.translate = {0, kRadius + 0.001, 0};
-      cloth.pressure = ideal ? Pressure{.inflate = 1.02, .ambient = 30000} : Pressure{.over = 700};
+      cloth.pressure = ideal ? Pressure{.inflate = 1.06, .ambient = 30000} : Pressure{.over = 700};
       scene.colliders.push_back({Plane{}, {}, 0.001, {}, false});
       Simulation run(scene, {.threads = 1});
       for (int n = 0; n < 150; ++n) run.advance_frame();
@@ -321,7 +239,7 @@ TEST(MeshPressure, ContactCarriesTheWeight) {
       for (const double r : farthest) touching += M_PI * r * r / kSectors;
       const double volume = enclosed(x, mesh);
       const double over =
-          ideal ? 30000 * (1.02 * enclosed_volume(cloth) / volume - 1) : cloth.pressure.over;
+          ideal ? 30000 * (1.06 * enclosed_volume(cloth) / volume - 1) : cloth.pressure.over;
       double mass = 0;
       for (const auto& t : mesh.triangles) {
         const Vec3 n =
@@ -356,17 +274,22 @@ TEST(MeshPressure, MirrorsMirror) {
   }
 }
 
-TEST(MeshPressure, SnapshotsGoOnAsTheRunDid) {
-  Scene scene = free_balloon(kWays[0], {.inflate = 1.2, .keys = {{0, 1}, {0.2, 1.5}}});
-  scene.time.substeps = 100;
-  Simulation run(scene, {.threads = 1});
-  for (int n = 0; n < 5; ++n) run.advance_frame();
-  const auto moment = run.snapshot();
-  for (int n = 0; n < 5; ++n) run.advance_frame();
-  const std::uint64_t hash = run.hash();
-  run.restore(moment);
-  for (int n = 0; n < 5; ++n) run.advance_frame();
-  EXPECT_EQ(run.hash(), hash);
+TEST(MeshPressure, SnapshotsGoOnInOneWay) {
+  for (const Way& way : kWays) {
+    Scene scene = free_balloon(way, {.inflate = 1.2, .keys = {{0, 1}, {0.2, 1.5}}});
+    Simulation run(scene, {.threads = 1}), other(scene, {.threads = 2});
+    const auto go_on = [](Simulation& simulation) {
+      for (int n = 0; n < 5; ++n) simulation.advance_frame();
+    };
+    go_on(run);
+    const Snapshot moment = run.snapshot();
+    go_on(run);
+    run.restore(moment);
+    go_on(run);
+    other.restore(moment);
+    go_on(other);
+    EXPECT_EQ(run.hash(), other.hash()) << way.name;
+  }
 }
 
 // Two discs become a cushion: seams close, momentum is kept, and nothing is left open.
@@ -394,42 +317,6 @@ TEST(MeshPressure, SeamsCloseACushion) {
     EXPECT_GT(volume, 0.6 * 0.3 * 0.3 * 0.3) << way.name;
     EXPECT_LT(volume, 2.0 * 0.3 * 0.3 * 0.3) << way.name;
   }
-}
-
-TEST(MeshPressure, WhatIsNotClosedIsRefused) {
-  Scene scene = balloon(Fabric::springs, 1);
-  scene.cloths[0].pressure.over = 10;
-  EXPECT_TRUE(validate(scene).empty());
-  const auto told = [](const Scene& s) {
-    const auto faults = validate(s);
-    return faults.empty() ? "" : faults[0].place + ": " + faults[0].what;
-  };
-  auto open = std::make_shared<TriangleMesh>(*scene.cloths[0].mesh.shape);
-  open->triangles.erase(open->triangles.begin());
-  Scene other = scene;
-  other.cloths[0].mesh.shape = open;
-  EXPECT_EQ(told(other).substr(0, 55), "/cloths/0/pressure: the mesh is open at the edge of ver");
-  auto turned = std::make_shared<TriangleMesh>(*scene.cloths[0].mesh.shape);
-  std::swap(turned->triangles[3][0], turned->triangles[3][1]);
-  other.cloths[0].mesh.shape = turned;
-  EXPECT_EQ(told(other).substr(0, 37), "/cloths/0/pressure: the mesh is open ");
-  other = scene;
-  other.cloths[0].pressure.inflate = 1;
-  EXPECT_EQ(told(other), "/cloths/0/pressure: both over and inflate are given");
-  other = Scene{};
-  other.cloths.emplace_back().pressure.over = 10;
-  EXPECT_EQ(told(other), "/cloths/0/pressure: a grid encloses nothing");
-  other = scene;
-  other.cloths[0].mesh.shape = made_up_cushion(3, 0.1);
-  EXPECT_EQ(told(other).substr(0, 37), "/cloths/0/pressure: the mesh is open ");
-  other.cloths[0].sewing = true;
-  EXPECT_EQ(told(other), "");
-  other.cloths[0].mesh.shape = made_up_cushion(3, 1e-14);
-  other.cloths[0].pressure = {.inflate = 1};
-  EXPECT_EQ(told(other), "/cloths/0/pressure/inflate: the mesh encloses no volume as it starts");
-  other = scene;
-  other.cloths[0].pressure.keys = {{1, 1}, {1, 2}};
-  EXPECT_EQ(told(other), "/cloths/0/pressure/keys/1: time 1 comes after 1");
 }
 
 }  // namespace

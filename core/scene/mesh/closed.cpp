@@ -6,11 +6,13 @@
 
 #include "scene/mesh/faces.h"
 #include "scene/pins.h"
+#include "scene/vectors.h"
 #include "weft/mesh.h"
 
 namespace weft {
 
 double enclosed_volume(const Cloth& cloth) {
+  using text::cross, text::dot, text::minus;
   const std::vector<Vec3> x = placed_vertices(cloth.mesh);
   const EnclosingSurface surface = enclosing_surface(cloth);
   std::vector<Vec3> points(surface.members.size(), Vec3{});
@@ -19,17 +21,11 @@ double enclosed_volume(const Cloth& cloth) {
       for (std::size_t k = 0; k < 3; ++k)
         points[p][k] += x[std::size_t(vertex)][k] / double(surface.members[p].size());
   double volume = 0;
-  const Vec3& o = points[0];
   for (const auto& [i, j, k] : surface.triangles) {
-    Vec3 a, b, c;
-    for (std::size_t n = 0; n < 3; ++n) {
-      a[n] = points[std::size_t(i)][n] - o[n];
-      b[n] = points[std::size_t(j)][n] - o[n];
-      c[n] = points[std::size_t(k)][n] - o[n];
-    }
-    volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-               a[2] * (b[0] * c[1] - b[1] * c[0])) /
-              6;
+    const Vec3 a = minus(points[std::size_t(i)], points[0]);
+    const Vec3 b = minus(points[std::size_t(j)], points[0]);
+    const Vec3 c = minus(points[std::size_t(k)], points[0]);
+    volume += dot(a, cross(b, c)) / 6;
   }
   return volume;
 }
