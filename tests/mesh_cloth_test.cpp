@@ -202,7 +202,7 @@ TEST_F(MeshScene, IsReadBesideTheSceneAndPlaced) {
 
 TEST_F(MeshScene, NamesWhatIsWrong) {
   EXPECT_EQ(told(R"({"mesh": {"file": "none.obj"}})"),
-            "/cloths/0/mesh/file: none.obj: there is no such mesh file (a readable .obj file)\n");
+            "/cloths/0/mesh/file: none.obj: there is no such mesh file (a readable file)\n");
   write("bad.obj", "v 0 0 0\nv 1 0 0\nv x 0 0\nf 1 2 3\n");
   EXPECT_EQ(told(R"({"mesh": {"file": "bad.obj"}})"),
             "/cloths/0/mesh/file: bad.obj:3: \"x\" is no coordinate (numbers, -1e9 to 1e9)\n");

@@ -134,11 +134,13 @@ TEST(MeshFile, RefusesWhatIsNoClothAndNamesTheLine) {
        })
     EXPECT_EQ(told(read_obj(bad.text, "b.obj")), bad.told) << bad.text;
   EXPECT_EQ(told(weft::read_mesh("/no/such.obj")),
-            "/no/such.obj: there is no such mesh file (a readable .obj file)\n");
-  EXPECT_EQ(told(weft::read_mesh("a.txt")), "a.txt: the file is of no known kind (.obj)\n");
-  EXPECT_EQ(told(weft::read_mesh("obj")), "obj: the file is of no known kind (.obj)\n");
+            "/no/such.obj: there is no such mesh file (a readable file)\n");
+  EXPECT_EQ(told(weft::read_mesh("a.txt")),
+            "a.txt: the file is of no known kind (.obj, .ply, .glb, .gltf)\n");
+  EXPECT_EQ(told(weft::read_mesh("obj")),
+            "obj: the file is of no known kind (.obj, .ply, .glb, .gltf)\n");
   EXPECT_EQ(told(weft::read_mesh("a.oBJ")),
-            "a.oBJ: there is no such mesh file (a readable .obj file)\n");
+            "a.oBJ: there is no such mesh file (a readable file)\n");
 }
 
 // Any bytes: no crash, and faults stay few.

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "folder.h"
+#include "made_up_balloon.h"
 #include "made_up_mesh.h"
 #include "weft/read_scene.h"
 #include "weft/simulation.h"
@@ -39,6 +40,11 @@ const char* const kCurved = R"({"cloths": [{"mesh": {"file": "curved.obj"}, "pin
     "bending": 0.01}]})";
 const char* const kPattern = R"({"cloths": [{"mesh": {"file": "mapped.obj", "rest": "uv"},
     "pins": [0, 30]}]})";
+
+// What holds a gas, and a gas in it.
+const char* const kClosed = R"({"cloths": [{"mesh": {"file": "closed.obj"}, "pins": [0]}]})";
+const char* const kInflated = R"({"cloths": [{"mesh": {"file": "closed.obj"}, "pins": [0],
+    "pressure": {"inflate": 1.2}}]})";
 
 const std::map<std::string, Key> kKeys = {
     {"/gravity", {"[0, -5, 0]"}},
@@ -105,6 +111,10 @@ const std::map<std::string, Key> kKeys = {
     {"/cloths/0/pins", {"[1]"}},
     {"/cloths/0/sewing", {"true"}},
     {"/cloths/0/seams", {"[[3, 38]]"}},
+    {"/cloths/0/pressure/over", {"100", kClosed}},
+    {"/cloths/0/pressure/inflate", {"1.3", kClosed}},
+    {"/cloths/0/pressure/ambient", {"1000", kInflated}},
+    {"/cloths/0/pressure/keys", {"[[0, 1], [1, 2]]", kInflated}},
 };
 // Words for people, how long a run is, and from where it is seen.
 const std::set<std::string> kNotOfTheCloth = {
@@ -164,6 +174,7 @@ class MeshKeys : public testing::Test {
     folder_.write("mapped.obj", write_obj(mesh));
     for (Vec3& at : mesh.vertices) at[1] = 0.3 * at[0] * at[0];
     write_mesh(folder_ / "curved.obj", mesh);
+    folder_.write("closed.obj", write_obj(*made_up_balloon(1, 0.3)));
   }
   Outcome run(const Json& scene) {
     std::ofstream(folder_ / "s.json") << scene;

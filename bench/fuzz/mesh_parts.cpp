@@ -180,4 +180,28 @@ void Parts::add_meshes(Scene& scene) {
   for (Collider& c : scene.colliders) c.cuts = false;
 }
 
+void Parts::add_gas(Scene& scene) {
+  Cloth& c = scene.cloths[std::size_t(draw_.between(0, int(scene.cloths.size()) - 1))];
+  const auto shape = random_body(draw_);
+  if (!shape) return;
+  const Extent e = extent(c);
+  c.mesh = {};
+  c.mesh.file = "gas.obj";
+  c.mesh.shape = shape;
+  c.mesh.scale = std::clamp(0.5 * e.size, 1e-4, 1e3);
+  c.mesh.translate = e.middle;
+  c.seams.clear();
+  c.sewing = false;
+  c.pins.clear();
+  leave_out_what_is_of_grids(c);
+  if (draw_.chance(0.5))
+    c.pressure.over = draw_.decades(1, 1e4) * (draw_.chance(0.2) ? -1 : 1);
+  else
+    c.pressure.inflate = draw_.decades(0.5, 3), c.pressure.ambient = draw_.decades(10, 1e6);
+  if (draw_.chance(0.3))
+    c.pressure.keys = {{0, draw_.uniform(0, 1)}, {draw_.decades(0.01, 1), draw_.uniform(0, 2)}};
+  choose_method(scene, draw_);
+  for (Collider& collider : scene.colliders) collider.cuts = false;
+}
+
 }  // namespace fuzz

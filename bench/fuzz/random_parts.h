@@ -41,6 +41,8 @@ class Parts {
   // Some cloths become triangles, and some bodies; the files are cloth0.obj, body0.obj and so on. What
   // meshes do not have goes.
   void add_meshes(weft::Scene& scene);
+  // One of the cloths becomes a closed mesh with a gas in it, where it may.
+  void add_gas(weft::Scene& scene);
 
   // Some optional feature, more often in rich scenes.
   bool some(double share) { return draw_.chance(share * richness_); }

@@ -6,9 +6,9 @@
 #include <map>
 #include <optional>
 
-#include "output/base64.h"
 #include "output/hex.h"
 #include "output/input_names.h"
+#include "scene/base64.h"
 #include "scene/json_text.h"
 #include "weft/mesh.h"
 #include "weft/point_cache.h"

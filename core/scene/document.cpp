@@ -69,6 +69,10 @@ class FieldWriter {
     return Json::array({write(angle.time), write(angle.degrees)});
   }
 
+  static Json write(const Share& share) {
+    return Json::array({write(share.time), write(share.value)});
+  }
+
   static Json write(Pin& pin) {
     Json at = write(Points{pin.i, pin.j});
     if (pin == Pin{pin.i, pin.j, {}, {}, -1}) return at;

@@ -126,6 +126,14 @@ void fields(Walk& walk, Membrane& membrane) {
 }
 
 template <class Walk>
+void fields(Walk& walk, Pressure& pressure) {
+  walk("over", pressure.over);
+  walk("inflate", pressure.inflate);
+  walk("ambient", pressure.ambient);
+  walk("keys", pressure.keys);
+}
+
+template <class Walk>
 void fields(Walk& walk, SelfCollision& self) {
   walk("mode", self.mode);
   walk("thickness", self.thickness);
@@ -161,6 +169,7 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("cuts", cloth.cuts);
   walk("sewing", cloth.sewing);
   walk("seams", cloth.seams);
+  walk("pressure", cloth.pressure);
 }
 
 template <class Walk>

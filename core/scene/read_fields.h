@@ -110,6 +110,12 @@ class FieldReader {
     read(value[1], field.degrees);
   }
 
+  static void read(const Json& value, Share& field) {
+    if (!value.is_array() || value.size() != 2) return;
+    read(value[0], field.time);
+    read(value[1], field.value);
+  }
+
   static void read(const Json& value, Pin& field) {
     if (value.is_object()) {
       FieldReader walk(value);

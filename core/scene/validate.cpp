@@ -12,6 +12,7 @@
 #include "scene/fields.h"
 #include "scene/material.h"
 #include "scene/mesh/animation.h"
+#include "scene/mesh/closed.h"
 #include "scene/mesh/faces.h"
 #include "scene/mesh/refused.h"
 #include "scene/mesh/seams.h"
@@ -106,6 +107,7 @@ class Together {
         return fault(wrong->place, wrong->what, wrong->allowed);
     check_mesh(scene_, cloth, place, result_);
     check_seams(cloth, place, result_);
+    check_pressure(cloth, place, result_);
     if (cloth.mesh.shape)
       self_collision(cloth, place, mean_edge(cloth.mesh), "mean edge of the mesh");
     check_pins(scene_, cloth, place + "/pins", result_);
@@ -113,6 +115,7 @@ class Together {
 
   void sheet(const Cloth& cloth, const std::string& place) {
     check_seams(cloth, place, result_);
+    check_pressure(cloth, place, result_);
     if (sound({place + "/grid"}) && grid(cloth.grid, place + "/grid")) {
       masses(cloth, place);
       self_collision(cloth, place, std::min(spacing_u(cloth.grid), spacing_v(cloth.grid)),
@@ -285,7 +288,8 @@ class Together {
 
   void shape(const MeshBody& body, const std::string& place) {
     if (!sound({place + "/mesh"})) return;
-    if (!body.given()) return fault(place + "/mesh/file", "file is empty", "a mesh file (.obj)");
+    if (!body.given())
+      return fault(place + "/mesh/file", "file is empty", "a mesh file (.obj, .ply, .glb, .gltf)");
     if (!body.shape) return;
     if (const auto wrong = fault_of(body, place + "/mesh"))
       fault(wrong->place, wrong->what, wrong->allowed);

@@ -1,10 +1,14 @@
-// Wavefront meshes: any bytes are a mesh whose triangles are of its vertices, or faults with reasons.
+// Meshes of all formats: any bytes are a mesh whose triangles are of its vertices, or faults with reasons.
 #include "weft/mesh.h"
 
 #include "target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const weft::MeshFile file = weft::read_obj(fuzz::text_of(data, size), "mesh.obj");
+  const auto text = fuzz::text_of(data, size);
+  const bool gltf = text.starts_with("glTF") || text.starts_with("{");
+  const weft::MeshFile file = text.starts_with("ply") ? weft::read_ply(text, "mesh.obj")
+                              : gltf ? weft::read_gltf(text, "mesh.obj", "/nowhere")
+                                     : weft::read_obj(text, "mesh.obj");
   for (const weft::Fault& fault : file.faults)
     fuzz::require(!fault.what.empty() && fault.place.starts_with("mesh.obj"));
   if (!file.faults.empty()) return 0;

@@ -74,6 +74,9 @@ Scene with_body(Scene scene, std::size_t shape, const Vec3& at, double size) {
 Scene with_cloth(Scene scene, const Vec3& at, double size) {
   Cloth cloth = scene.cloths.front();
   cloth.mesh = {};
+  cloth.sewing = false;
+  cloth.seams.clear();
+  cloth.pressure = {};
   cloth.grid = {32, 32, plus(at, {-size / 2, 0, -size / 2}), {size, 0, 0}, {0, 0, size}, 0};
   cloth.pins.clear();
   cloth.cuts.clear();

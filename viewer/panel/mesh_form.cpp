@@ -80,8 +80,9 @@ MeshSource MeshForm::placed(const Workspace& workspace) const {
 
 void MeshForm::draw_path(const Workspace& workspace) {
   ImGui::SetNextItemWidth(30 * ImGui::GetFontSize());
-  const bool entered = ImGui::InputTextWithHint("##file", "a Wavefront file (.obj), then Enter",
-                                                &path_, ImGuiInputTextFlags_EnterReturnsTrue);
+  const bool entered =
+      ImGui::InputTextWithHint("##file", "a file (.obj, .ply, .glb, .gltf), then Enter", &path_,
+                               ImGuiInputTextFlags_EnterReturnsTrue);
   mark("mesh file");
   if (entered || (ImGui::IsItemDeactivatedAfterEdit() && path_ != taken_)) take(path_, workspace);
   if (!taken_.empty()) return;

@@ -250,7 +250,8 @@ void draw_help(bool& open, const Keys& keys) {
         {"Right or Ctrl+left drag", "pan"},
         {"Wheel", "nearer, farther"},
         {"Shift+click", "pin or unpin"},
-        {"Drop a file", "a scene, a picture as texture, a mesh (.obj) as cloth or body"},
+        {"Drop a file",
+         "a scene, a picture as texture, a mesh (.obj, .ply, .glb, .gltf) as cloth or body"},
         {"Click on a message", "dismisses it"},
     };
     if (ImGui::BeginTable("mouse", 2)) {

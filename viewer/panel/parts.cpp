@@ -23,7 +23,9 @@ void draw_parts(Workspace& workspace, Requests& requests) {
   }
   if (ImGui::Button("mesh of a file …", {-1, 0})) requests.mesh = true;
   mark("add mesh");
-  tooltip("A Wavefront file (.obj) as cloth or as a body; or drop the file on the window");
+  tooltip(
+      "A mesh file (.obj, .ply, .glb, .gltf) as cloth or as a body; or drop the file on the "
+      "window");
 }
 
 }  // namespace weft::viewer

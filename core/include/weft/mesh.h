@@ -38,14 +38,21 @@ struct MeshFile {
 // Whether a file's name ends as those of meshes do, in letters of any size.
 bool is_mesh_file(std::string_view path);
 
-// Reads a Wavefront .obj file: faces of three corners or more are cut into triangles. Repaired, with a
-// note: corners that repeat a vertex, faces given twice, faces turned over. Refused: what is not a finite
-// number, faces without area, edges of more than two faces, more than 2^22 triangles or 2^22 vertices.
-// Never throws on bad input.
+// Reads a mesh file by the end of its name, .obj, .ply, .glb or .gltf: faces of three corners or more are cut
+// into triangles. Repaired, with a note: corners that repeat a vertex, faces given twice, faces turned over.
+// Refused: what is not a finite number, faces without area, edges of more than two faces, more than 2^22
+// triangles or 2^22 vertices. Never throws on bad input.
 MeshFile read_mesh(const std::string& path);
 
-// The same from text in memory; `name` is what messages call it.
+// The same from bytes in memory; `name` is what messages call it.
 MeshFile read_obj(std::string_view text, const std::string& name);
+// Stanford .ply, in text or binary. Vertices in one place are one where they carry texture coordinates or
+// normals; edges of the file are loose ones.
+MeshFile read_ply(std::string_view bytes, const std::string& name);
+// glTF 2.0, as .gltf or .glb: all nodes of its scene as one mesh [m], each a group of its name; vertices of one
+// node in one place are one. Buffers lie in the file, or beside it in `folder`. Refused besides: sparse
+// accessors, compression. Left out, with a note: skins, morph targets, points.
+MeshFile read_gltf(std::string_view bytes, const std::string& name, const std::string& folder);
 
 // Text that read_obj() reads to the same mesh, groups left out: the same bits in the same order.
 std::string write_obj(const TriangleMesh& mesh);
@@ -57,6 +64,18 @@ double mean_edge(const MeshSource& mesh);
 // and with `sewing` its loose edges; vertices of no face pass a seam on, but are in no group. Groups come in
 // the order of their least vertices, each ascending.
 std::vector<std::vector<int>> sewn_vertices(const Cloth& cloth);
+
+// A mesh, which is read, with what its seams join as one: points that are vertices, or groups of them, and
+// triangles of points.
+struct EnclosingSurface {
+  std::vector<std::vector<int>> members;      // vertices of each point
+  std::vector<std::array<int, 3>> triangles;  // as those of the mesh
+};
+EnclosingSurface enclosing_surface(const Cloth& cloth);
+
+// What a closed mesh, which is read, encloses as it starts [m³]; points lie in the middle of their vertices.
+// Below 0 where its triangles look inwards.
+double enclosed_volume(const Cloth& cloth);
 
 // Calls visit(mesh, place in the scene) for every mesh of a scene, of cloths, of their shapes at rest, and of
 // bodies.

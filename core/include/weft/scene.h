@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "weft/pin.h"
+#include "weft/pressure.h"
 
 namespace weft {
 
@@ -32,10 +33,10 @@ struct TriangleMesh;  // weft/mesh.h
 // The triangles of a mesh file: of cloth, whose particles are the vertices in the file's order, or of a body.
 // What is read is scaled, turned and then moved.
 struct MeshSource {
-  std::string file;                             // .obj; beside the scene file, or absolute
-  double scale = 1;                             // > 0; m for each unit of the file
-  Vec3 rotate{};                                // degrees, about x, then y, then z
-  Vec3 translate{};                             // m
+  std::string file;  // .obj, .ply, .glb or .gltf; beside the scene file, or absolute
+  double scale = 1;  // > 0; m for each unit of the file
+  Vec3 rotate{};     // degrees, about x, then y, then z
+  Vec3 translate{};  // m
   std::shared_ptr<const TriangleMesh> shape{};  // as read (load_meshes()), or made by a program
   bool given() const { return !file.empty() || shape; }
   // What comes from the same file is equal, read or not.
@@ -164,6 +165,7 @@ struct Cloth {
   std::vector<CutLine> cuts;
   bool sewing = false;      // edges of a mesh file that belong to no face are seams
   std::vector<Seam> seams;  // of a mesh, besides those
+  Pressure pressure{};      // of a closed mesh
   friend bool operator==(const Cloth&, const Cloth&) = default;
 };
 

@@ -139,6 +139,7 @@ void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, 
       return step->model().held_energy(x, dt) + step->model().attachment_energy(x, dt);
     };
     put_in_ += std::max(held(l.x), held(pushed_out(scene, time, l)));
+    if (const Load* load = step->model().load()) put_in_ += load->reserve();
     if (is_explicit(method))
       rounding_ += step->model().rounding_gain();  // projection loses what it gains
   }

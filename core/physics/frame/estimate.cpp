@@ -84,6 +84,9 @@ Cloth cutting(const Cloth& from) {
   Cloth piece;
   if (from.mesh.given()) {
     piece.mesh = from.mesh;
+    piece.sewing = from.sewing;
+    piece.seams = from.seams;
+    piece.pressure = from.pressure;
     piece.density = from.density;
   } else {
     cut_grid(from, piece);

@@ -29,6 +29,8 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   r.energy.elastic += elastic.sum();
   r.membrane_energy += elastic.membrane;
   r.bending_energy += elastic.bending;
+  if (const Load* load = step.model().load())
+    r.energy.elastic += load->energy(double(s.frame) * s.scene.time.frame);
   for (std::size_t p = 0; p < x.size(); ++p) {
     if (masses[particles.lane(int(p))] == 0) continue;
     const double m = step.model().mass(int(p));

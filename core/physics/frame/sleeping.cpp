@@ -36,7 +36,11 @@ std::unique_ptr<Sleeping> Sleeping::make(const Scene& scene, const Cloths& cloth
                                          const KernelTable& kernels) {
   const bool gusts = (scene.wind.turbulence > 0 || !scene.wind.velocity_keys.empty()) &&
                      (scene.wind.drag > 0 || scene.wind.lift > 0);
-  if (scene.solver.sleep == 0 || gusts || !scene.gravity_keys.empty()) return nullptr;
+  const bool loads = std::any_of(cloths.begin(), cloths.end(), [](const auto& step) {
+    const Load* load = step->model().load();
+    return load && load->changes();
+  });
+  if (scene.solver.sleep == 0 || gusts || loads || !scene.gravity_keys.empty()) return nullptr;
   return std::unique_ptr<Sleeping>(new Sleeping(scene, cloths, kernels));
 }
 

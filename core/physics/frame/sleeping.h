@@ -20,7 +20,7 @@ namespace weft::physics {
 
 class Sleeping {
  public:
-  // Null when nothing of the scene may rest: `sleep` is 0, or there are gusts.
+  // Null when nothing of the scene may rest: `sleep` is 0, or there are gusts, or loads over time.
   static std::unique_ptr<Sleeping> make(const Scene& scene, const Cloths& cloths,
                                         const KernelTable& kernels);
 

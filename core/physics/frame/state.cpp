@@ -252,6 +252,7 @@ void Simulation::State::accelerations_now(std::size_t cloth, double behind,
   const ClothStep& step = *cloths[cloth];
   const double time = double(frame) * scene.time.frame;
   step.model().accelerations(gravity_at(scene, time), a);
+  if (const Load* load = step.model().load()) load->add_accelerations(time, a);
   support(scene, step.cloth(), time, {dt, behind}, step.particles(), a);
 }
 

@@ -145,6 +145,7 @@ struct Simulation::State {
   bool carried() const;
   bool driven() const;
   bool sews() const;
+  bool loaded(bool changing) const;
   void open_guard();
   bool blown() const { return scene.wind.drag > 0 || scene.wind.lift > 0; }
   int projection_substeps() const;

@@ -56,7 +56,7 @@ void Simulation::State::choose_method_and_substeps() {
     notes.push_back("what stays slower than " + number(scene.solver.sleep) +
                     " m/s for half a second sleeps");
   else if (scene.solver.sleep > 0)
-    notes.push_back("nothing sleeps: gusts move the cloth");
+    notes.push_back("nothing sleeps: gusts or loads over time move the cloth");
   int count = scene.time.substeps;
   double limit = 0;
   if (is_explicit(method) && scene.solver.iterations > 1 && !scene.solver.iterate_springs)
@@ -218,8 +218,8 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
 
 // Whether nothing but gravity and paths of pins can do work.
 bool Simulation::State::nothing_else_acts() const {
-  return !(grab_ || carried() || self_collision || blown() || sews() || !scene.colliders.empty() ||
-           !scene.gravity_keys.empty());
+  return !(grab_ || carried() || self_collision || blown() || sews() || loaded(false) ||
+           !scene.colliders.empty() || !scene.gravity_keys.empty());
 }
 
 void Simulation::State::open_guard() {
@@ -239,11 +239,20 @@ bool Simulation::State::sews() const {
                      [](const auto& step) { return step->model().open_seams().open > 0; });
 }
 
+// Whether a cloth has a load; `changing`: one that changes over time.
+bool Simulation::State::loaded(bool changing) const {
+  return std::any_of(cloths.begin(), cloths.end(), [&](const auto& step) {
+    const Load* load = step->model().load();
+    return load && (!changing || load->changes());
+  });
+}
+
 bool Simulation::State::driven() const {
   const auto moves = [](const Collider& c) { return !c.keys.empty() || !c.animation.empty(); };
   const auto pulls = [](const Pin& pin) { return pin.moves(); };
   return grab_ || carried() || self_collision || !scene.gravity_keys.empty() || sleeping ||
-         blown() || sews() || std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
+         blown() || sews() || loaded(true) ||
+         std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||
          std::any_of(scene.cloths.begin(), scene.cloths.end(), [&](const Cloth& c) {
            return std::any_of(c.pins.begin(), c.pins.end(), pulls);
          });
@@ -265,6 +274,7 @@ double Simulation::State::stretched_limit() const {
     if (grab_) more = std::max(more, kGrabbed);
     Spectrum stretched = spectra[c];
     stretched.omega_squared *= step.model().folds_freely() ? kFolded : more;
+    if (const Load* load = step.model().load()) stretched.load = load->omega_squared();
     limit = std::min(limit, stretched.largest_substep());
   }
   return limit;

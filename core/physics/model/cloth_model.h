@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/model/load.h"
 #include "physics/model/particles.h"
 #include "physics/model/spectrum.h"
 #include "physics/model/surface_mesh.h"
@@ -107,6 +108,10 @@ class ClothModel {
   // that are rounded anew.
   virtual double attachment_energy(const Rows& x, double dt) const = 0;
   virtual double rounding_gain() const = 0;
+
+  // What acts on the cloth besides its constraints and has an energy; null: nothing. Accelerations and energies
+  // above are without it.
+  virtual const Load* load() const { return nullptr; }
 
   // What limits explicit substeps: the spectrum of the cloth as it starts, with these inverse masses;
   // and whether it can fold without stretching anything, onto a line where all its springs pull the

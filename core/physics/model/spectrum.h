@@ -8,6 +8,7 @@ namespace weft::physics {
 struct Spectrum {
   double omega_squared = 0;  // 1/s², ω_max²: the largest eigenvalue of M⁻¹K
   double damping = 0;        // 1/s, c: the largest eigenvalue of M⁻¹D
+  double load = 0;           // 1/s², what loads add to ω_max² at most
   double drag = 0;           // 1/s: velocities are multiplied by max(0, 1 - dt drag) each substep
 
   // The largest stable substep [s], infinite when nothing can vibrate.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -10,15 +11,24 @@
 namespace weft::text {
 
 inline constexpr std::size_t kMaxVertices = std::size_t{1} << 22, kMaxTriangles = kMaxVertices;
+inline constexpr std::size_t kMaxLooseEdges = 4 * kMaxVertices;
 inline constexpr std::size_t kMaxMeshFaults = 20;
+inline constexpr std::size_t kMaxMeshBytes = std::size_t{1} << 30;  // of a file
+inline constexpr std::size_t kMaxCorners = 256;  // of one face, which is cut in the square of them
+inline constexpr double kFarthestPlace = 1e9;    // in the file's own units
 
-// A mesh, and the line of the file that each of its triangles comes from.
+// A mesh, and the line of the file that each of its triangles comes from; in files without lines another
+// number above 0, which `words` tells of ("face 12").
 struct RawMesh {
   MeshFile& file;
   const std::string& name;
-  std::vector<int> lines;
+  std::vector<int> lines{};
+  std::function<std::string(int)> words{};
+  int first_vertex = 1;  // its number in messages, as the format counts
 
+  // `line`: 0 where the whole file is meant.
   void fault(int line, std::string what, std::string allowed) const;
+  std::string where(int line) const { return words ? words(line) : "line " + std::to_string(line); }
   void note(const std::string& what) const { file.notes.push_back(name + ": " + what); }
   bool full() const { return file.faults.size() >= kMaxMeshFaults; }
 };

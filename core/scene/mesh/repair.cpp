@@ -82,8 +82,8 @@ class Repair {
         ++count;
       }
     if (count == 0) return;
-    raw_.note(times_words(count, "triangle is", "triangles are") + " given twice, first in line " +
-              std::to_string(line(first)) + "; each counts once");
+    raw_.note(times_words(count, "triangle is", "triangles are") + " given twice, first in " +
+              raw_.where(line(first)) + "; each counts once");
     keep(doubled);
   }
 
@@ -120,9 +120,8 @@ class Repair {
       while (end < sides.size() && same_edge(sides[n], sides[end])) ++end;
       if (end - n > 2)
         raw_.fault(line(sides[n + 2].triangle),
-                   "the edge from vertex " + std::to_string(sides[n].low + 1) + " to " +
-                       std::to_string(sides[n].high + 1) + " has " + std::to_string(end - n) +
-                       " triangles",
+                   "the edge from vertex " + number(sides[n].low) + " to " + number(sides[n].high) +
+                       " has " + std::to_string(end - n) + " triangles",
                    "one or two");
       n = end;
     }
@@ -167,8 +166,7 @@ class Repair {
       raw_.note("the surface has one side only (a Moebius band); its normals jump somewhere");
     else if (count > 0)
       raw_.note(times_words(count, "triangle is", "triangles are") +
-                " turned over to agree with the others, first in line " +
-                std::to_string(line(first)));
+                " turned over to agree with the others, first in " + raw_.where(line(first)));
   }
 
   void turn(int t) {
@@ -195,15 +193,16 @@ class Repair {
     if (loose > 0)
       raw_.note(times_words(int(loose), "vertex belongs", "vertices belong") +
                 " to no face, first vertex " +
-                std::to_string(std::find(used.begin(), used.end(), false) - used.begin() + 1) +
+                number(int(std::find(used.begin(), used.end(), false) - used.begin())) +
                 "; what has no face has no mass and stays where it is");
   }
 
   const Vec3& at(int vertex) const { return mesh_.vertices[std::size_t(vertex)]; }
   std::string corners(int t) const {
     const auto& [a, b, c] = mesh_.triangles[std::size_t(t)];
-    return std::to_string(a + 1) + ", " + std::to_string(b + 1) + " and " + std::to_string(c + 1);
+    return number(a) + ", " + number(b) + " and " + number(c);
   }
+  std::string number(int vertex) const { return std::to_string(vertex + raw_.first_vertex); }
 
   RawMesh& raw_;
   TriangleMesh& mesh_;
@@ -213,8 +212,10 @@ class Repair {
 
 void RawMesh::fault(int line, std::string what, std::string allowed) const {
   if (full()) return;
-  file.faults.push_back(
-      {line > 0 ? name + ":" + std::to_string(line) : name, std::move(what), std::move(allowed)});
+  const std::string place = line <= 0 ? name
+                            : words   ? name + ", " + words(line)
+                                      : name + ":" + std::to_string(line);
+  file.faults.push_back({place, std::move(what), std::move(allowed)});
 }
 
 std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec3>& corners) {

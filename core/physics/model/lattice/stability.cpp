@@ -162,7 +162,7 @@ double largest(const Cloth& cloth, const std::vector<Stencil>& stencils, const L
 double Spectrum::largest_substep() const {
   // Root of dt² ω² + 2 dt c = most.
   const auto root = [&](double c, double most) {
-    const double inverse = (c + std::sqrt(c * c + most * omega_squared)) / most;
+    const double inverse = (c + std::sqrt(c * c + most * (omega_squared + load))) / most;
     return inverse > 0 ? 1 / inverse : std::numeric_limits<double>::infinity();
   };
   // What drag leaves of a velocity is 1 - dt drag, or nothing: dt² ω² + 2 dt c < 2 (1 + what is left).

@@ -92,8 +92,9 @@ double MeshModel::attachment_energy(const Rows& at, double dt) const {
 }
 
 double MeshModel::held_energy(const Rows& x, double dt) const {
-  if (!is_explicit(method_)) return projected_energy(x, dt);
-  return mesh_energy(triangles_, material_, particles_.gather(x)) + rounding_gain();
+  const double load = gas_ ? gas_->greatest_energy(particles_.gather(x)) : 0;
+  if (!is_explicit(method_)) return projected_energy(x, dt) + load;
+  return mesh_energy(triangles_, material_, particles_.gather(x)) + rounding_gain() + load;
 }
 
 // A projected edge counts as a spring of at most the inertia of its ends over dt², all that a sweep makes
@@ -178,6 +179,7 @@ Spectrum MeshModel::spectrum(std::span<const float> inverse_masses) const {
   Spectrum spectrum;
   spectrum.omega_squared = largest_eigenvalue(3 * count, stiffness);
   if (material_.damped()) spectrum.damping = largest_eigenvalue(3 * count, damping);
+  if (gas_) spectrum.load = gas_->omega_squared();
   return spectrum;
 }
 

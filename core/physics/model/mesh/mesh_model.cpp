@@ -44,6 +44,7 @@ MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t
   drawn_.uv = mesh_.uv;
   weigh();
   place();
+  if (parts_.cloth.pressure.given()) gas_ = std::make_unique<GasLoad>(parts_, seams_);
 }
 
 // A third of each triangle to each corner.
@@ -83,9 +84,15 @@ void MeshModel::append_motion(Method method, StageList& list) {
 void MeshModel::append_forces(StageList& list) {
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
   if (!material_.bends) list.skip("bending", "bending is 0");
+  append_gas(list);
   list.stages.push_back(make_triangles(parts_, order_, triangles_, material_));
   list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_), "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
+}
+
+void MeshModel::append_gas(StageList& list) {
+  list.choose("pressure", gas_ ? make_pressure(parts_, gas_->gas()) : nullptr,
+              "the cloth has no pressure");
 }
 
 // As those of a grid (lattice_model.cpp).
@@ -102,6 +109,7 @@ void MeshModel::append_projections(StageList& list) {
   if (material_.membrane) strain_sweeps().append_places_before(list);
   list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, nullptr)
                                  : make_predict(parts_, nullptr, nullptr));
+  append_gas(list);
   list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_), "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
   if (solver.tethers && tethers_.empty()) tethers_ = attachments();
@@ -237,7 +245,7 @@ std::size_t MeshModel::bytes() const {
   return particles_.bytes() + triangles_.size() * sizeof(RestTriangle) +
          edges_.ends.size() * (sizeof(Joined) + sizeof(double)) +
          start_.size() * (sizeof(Vec3) + sizeof(double)) + (sweeps_ ? sweeps_->bytes() : 0) +
-         (history_ ? history_->bytes() : 0) + seams_.bytes();
+         (history_ ? history_->bytes() : 0) + seams_.bytes() + (gas_ ? gas_->bytes() : 0);
 }
 
 }  // namespace weft::physics

@@ -2,6 +2,7 @@
 // the mesh; in memory they lie in rows of breadth-first levels (mesh_order.h).
 #pragma once
 
+#include "physics/model/mesh/gas_load.h"
 #include "physics/model/mesh/mesh_sweeps.h"
 #include "physics/model/mesh/seams.h"
 #include "physics/model/mesh/triangle_stage.h"
@@ -34,6 +35,7 @@ class MeshModel final : public ClothModel {
   float greatest_stretch(const Rows& x) const override;
   double attachment_energy(const Rows& x, double dt) const override;
   double rounding_gain() const override;
+  const Load* load() const override { return gas_.get(); }
   Spectrum spectrum(std::span<const float> inverse_masses) const override;
   double stiffening(double stretch) const override;
   bool folds_freely() const override;
@@ -51,6 +53,7 @@ class MeshModel final : public ClothModel {
   void place();
   void append_forces(StageList& list);
   void append_projections(StageList& list);
+  void append_gas(StageList& list);
   void append_membrane(StageList& list);
   MeshSweeps& sweeps();  // of bending, where there is any
   MeshSweeps& edge_sweeps();
@@ -74,6 +77,7 @@ class MeshModel final : public ClothModel {
   std::vector<double> masses_;     // kg, of every particle
   std::vector<Vec3> first_moves_;  // of colliders
   MeshEdges edges_;                // each once
+  std::unique_ptr<GasLoad> gas_;   // null: the cloth has no pressure
   std::unique_ptr<MeshSweeps> sweeps_;
   std::unique_ptr<History> history_;
   std::vector<std::vector<Tether>> tethers_;  // none: the scene has them off

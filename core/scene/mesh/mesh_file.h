@@ -1,0 +1,15 @@
+// Bytes of files that meshes are read from.
+#pragma once
+
+#include <string>
+
+namespace weft::text {
+
+// The bytes of a file that may be as long as `most`; else `fault` says why there are none, and `allowed`.
+struct FileBytes {
+  std::string bytes;
+  const char *fault = nullptr, *allowed = nullptr;
+};
+FileBytes bytes_of_file(const std::string& path, std::size_t most);
+
+}  // namespace weft::text
