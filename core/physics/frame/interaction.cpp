@@ -177,7 +177,7 @@ int Simulation::State::cut(const Vec3& begin, const Vec3& end, double width) {
     const bool could_tear = step->model().tearing();
     step->allow_tearing();
     if (!step->model().tearing()) {
-      note_once("what is cut is a mesh, which does not tear: nothing of it was cut");
+      note_once("what is cut cannot tear: nothing of it was cut");
       continue;
     }
     touch();

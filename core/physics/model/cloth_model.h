@@ -22,6 +22,7 @@ struct ElasticEnergy {
 
 class ClothModel;
 struct LatticeParts;
+class MeshTearing;
 struct History;
 
 // Whether a method integrates springs as forces, and so has a stability limit.
@@ -71,6 +72,8 @@ class ClothModel {
   Particles& particles() const { return parts().particles; }
   // The grid behind the cloth, for stages that use its implicit structure; null where there is none.
   virtual LatticeParts* lattice() { return nullptr; }
+  // What tears of a mesh, for cutters; null where there is none.
+  virtual MeshTearing* mesh_tearing() { return nullptr; }
 
   // Whether no method that projects can move it.
   virtual bool only_explicit() const { return false; }

@@ -29,8 +29,8 @@ void check_keys(const Cloth& cloth, const std::string& place, Check& result) {
   refuse(cloth.strain_limit_order == StrainLimitOrder::course, "/strain_limit_order",
          "the order is one of grids", "strict or colours, with a mesh");
   refuse(!cloth.cuts.empty(), "/cuts", "a mesh is cut", "none, with a mesh");
-  refuse(cloth.tear_strain > 0, "/tear_strain", "a mesh is to tear", "0, with a mesh");
-  refuse(cloth.tears != Tears::split, "/tears", "a mesh does not tear", "split, with a mesh");
+  refuse(cloth.tears == Tears::particles, "/tears", "a tear is to take whole vertices of a mesh",
+         "split or holes, with a mesh");
   refuse(cloth.self_collision.response != SelfCollisionResponse::stiff, "/self_collision/response",
          "neighbours that push are those of a grid", "stiff, with a mesh");
 }
@@ -59,9 +59,6 @@ void check_method(const Solver& solver, const Cloth& cloth, const std::string& p
 void check_mesh(const Scene& scene, const Cloth& cloth, const std::string& place, Check& result) {
   check_keys(cloth, place, result);
   check_method(scene.solver, cloth, place, result);
-  for (const Collider& collider : scene.colliders)
-    if (collider.cuts)
-      return result.fault(place + "/mesh", "a collider cuts a mesh", "grids alone are cut");
 }
 
 }  // namespace weft::text

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "physics/model/keyed_pins.h"
-#include "physics/model/largest_eigenvalue.h"
 #include "physics/model/mesh/mesh_attachments.h"
+#include "physics/model/mesh/mesh_tear_stage.h"
 #include "physics/model/mesh/strand_sweep.h"
 #include "physics/model/number.h"
 #include "physics/model/path.h"
@@ -17,8 +17,7 @@ namespace weft::physics {
 namespace {
 
 // Where what no force reaches is heavy enough for arithmetic, and held.
-constexpr double kLooseMass = 1;    // kg
-constexpr double kRounding = 4e-7;  // of positions in single precision, of the scene's size
+constexpr double kLooseMass = 1;  // kg
 
 double distance(const Vec3& a, const Vec3& b) {
   const Vec3 e = minus(a, b);
@@ -32,7 +31,7 @@ MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t
     : mesh_(*scene.cloths[std::size_t(index)].mesh.shape),
       method_(method),
       seed_(seed),
-      surface_{mesh_.triangles, 0, sewn_vertices(scene.cloths[std::size_t(index)])},
+      surface_{mesh_.triangles, 0, sewn_vertices(scene.cloths[std::size_t(index)]), {}, {}},
       start_(placed_vertices(scene.cloths[std::size_t(index)].mesh)),
       rest_(rest_places(scene.cloths[std::size_t(index)].mesh)),
       triangles_(rest_triangles(mesh_, rest_, scene.cloths[std::size_t(index)].bending)),
@@ -51,6 +50,17 @@ MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t
   drawn_.uv = mesh_.uv;
   weigh();
   place();
+  const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                               [](const Collider& c) { return c.cuts; });
+  if (cut || parts_.cloth.tear_strain > 0) allow_tearing();
+}
+
+// Sweeps that were made before know nothing of it.
+void MeshModel::allow_tearing() {
+  if (tearing_) return;
+  tearing_ = std::make_unique<MeshTearing>(MeshTearing::Parts{
+      parts_.cloth, mesh_, order_, particles_, edges_, rest_.x, triangles_, surface_, drawn_});
+  sweeps_.reset();
 }
 
 // A third of each triangle to each corner.
@@ -83,6 +93,8 @@ void MeshModel::append_motion(Method method, StageList& list) {
   method_ = method;
   material_ = material_of(parts_.cloth, method == Method::spring_friction);
   history_.reset();
+  if (tearing_) tearing_->tell_nobody();
+  if (sweeps_) sweeps_->follow_tears();
   is_explicit(method) ? append_forces(list) : append_projections(list);
   list.choose("sewing", make_sewing(parts_, seams_, history_.get()), "no seams in the scene");
 }
@@ -90,8 +102,9 @@ void MeshModel::append_motion(Method method, StageList& list) {
 void MeshModel::append_forces(StageList& list) {
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
   if (!material_.bends) list.skip("bending", "bending is 0");
-  list.stages.push_back(make_triangles(parts_, order_, triangles_, material_));
-  list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_), "drag and lift are 0");
+  list.stages.push_back(make_triangles(parts_, order_, triangles_, material_, tearing_.get()));
+  list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_, tearing_.get()),
+              "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
 }
 
@@ -108,7 +121,8 @@ void MeshModel::append_projections(StageList& list) {
     list.skip("second order", "order is 1");
   list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, nullptr)
                                  : make_predict(parts_, nullptr, nullptr));
-  list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_), "drag and lift are 0");
+  list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_, tearing_.get()),
+              "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
   if (solver.tethers && tethers_.empty()) tethers_ = attachments();
   list.choose("tethers", solver.tethers ? make_tethers(parts_, true, tethers_) : nullptr,
@@ -116,7 +130,8 @@ void MeshModel::append_projections(StageList& list) {
   if (material_.stiffness == 0)
     list.skip("gauss_seidel", "stiffness is 0");
   else if (lines)
-    list.stages.push_back(make_strands(parts_, edges_, material_.stiffness, start_));
+    list.stages.push_back(
+        make_strands(parts_, edges_, material_.stiffness, start_, tearing_.get()));
   else
     sweeps().append_edges(solver.iterations, list);
   if (material_.bends)
@@ -135,32 +150,19 @@ std::vector<std::vector<Tether>> MeshModel::attachments() const {
   return mesh_attachments(mesh_, rest_.x, pins);
 }
 
-// What is farther from a pin than the mesh is long is taken back at once.
-double MeshModel::attachment_energy(const Rows& at, double dt) const {
-  const std::vector<Vec3> x = particles_.gather(at);
-  double sum = 0;
-  for (const std::vector<Tether>& slot : tethers_)
-    for (std::size_t p = 0; p < slot.size(); ++p) {
-      const double w = particles_.inverse_mass[particles_.lane(int(p))];
-      if (slot[p].pin < 0 || w == 0) continue;
-      const double over =
-          std::max(0.0, distance(x[p], x[std::size_t(slot[p].pin)]) - slot[p].reach);
-      sum += 0.5 / w * over * over / (dt * dt);
-    }
-  return sum;
-}
-
 MeshSweeps& MeshModel::sweeps() {
   if (!sweeps_) {
-    sweeps_ = std::make_unique<MeshSweeps>(parts_, order_, seams_);
+    sweeps_ = std::make_unique<MeshSweeps>(parts_, order_, seams_, tearing_.get());
     sweeps_->make_edges(edges_, material_.stiffness);
     if (material_.bends) sweeps_->make_hinges(triangles_);
+    sweeps_->follow_tears();
   }
   return *sweeps_;
 }
 
 void MeshModel::append_limits(StageList& list) {
-  list.skip("tear", "tear_strain is 0");
+  list.choose("tear", parts_.cloth.tear_strain > 0 ? make_mesh_tear(parts_, *tearing_) : nullptr,
+              "tear_strain is 0");
   if (parts_.cloth.strain_limit > 0)
     sweeps().append_limit(parts_.cloth.strain_limit, list);
   else
@@ -170,149 +172,11 @@ void MeshModel::append_limits(StageList& list) {
     list.stages.push_back(make_seam_hold(parts_, seams_, history_.get()));
 }
 
-ConstraintCounts MeshModel::constraints() const {
-  return {std::int64_t(edges_.ends.size()), 0, 0};
-}
-
-Pull MeshModel::pull() const {
-  const double stiffness = material_.membrane
-                               ? std::max({material_.c11, material_.c22, material_.c66})
-                               : 2 * material_.stiffness;
-  const double longest = *std::max_element(edges_.rest.begin(), edges_.rest.end());
-  const double force = 2 * stiffness * longest;
-  return {stiffness, force, 3 * force / *std::min_element(masses_.begin(), masses_.end())};
-}
-
-void MeshModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) const {
-  a.assign(start_.size(), Vec3{});
-  const std::vector<Vec3> x = particles_.gather(particles_.x);
-  if (material_.damped()) {
-    const std::vector<Vec3> v = particles_.gather(particles_.v);
-    add_mesh_forces(triangles_, material_, x, &v, a);
-  } else {
-    add_mesh_forces(triangles_, material_, x, nullptr, a);
-  }
-  particles_.for_each([&](int j, int i) {
-    Vec3& own = a[std::size_t(particles_.number(j, i))];
-    own = particles_.w(j, i) > 0 ? plus(times(own, particles_.w(j, i)), gravity) : Vec3{};
-  });
-  seams_.share(particles_, a);
-}
-
-ElasticEnergy MeshModel::elastic_energy() const {
-  const std::vector<Vec3> x = particles_.gather(particles_.x);
-  MeshMaterial stretches = material_;
-  stretches.bends = false;
-  ElasticEnergy energy;
-  (material_.membrane ? energy.membrane : energy.springs) = mesh_energy(triangles_, stretches, x);
-  if (material_.bends) energy.bending = mesh_energy(triangles_, bending_alone(material_), x);
-  return energy;
-}
-
-Strain MeshModel::strain() const {
-  const std::vector<Vec3> x = particles_.gather(particles_.x);
-  Strain strain{-1, 0, std::int64_t(edges_.ends.size())};
-  for (std::size_t n = 0; n < edges_.ends.size(); ++n) {
-    const auto& [a, b] = edges_.ends[n];
-    const double e = distance(x[std::size_t(a)], x[std::size_t(b)]) / edges_.rest[n] - 1;
-    strain.max = std::max(strain.max, e);
-    strain.mean += e / double(edges_.ends.size());
-  }
-  return strain;
-}
-
 Vec3 MeshModel::pin_position(const Pin& pin, double time) const {
   const Vec3 alone = pin_alone_at(pin, start_[std::size_t(pin.i)], time);
   if (pin.follow < 0) return alone;
   const auto n = std::size_t(pin.follow);
   return plus(alone, minus(displacement(parts_.scene.colliders[n], time), first_moves_[n]));
-}
-
-double MeshModel::held_energy(const Rows& x, double dt) const {
-  if (!is_explicit(method_)) return projected_energy(x, dt);
-  return mesh_energy(triangles_, material_, particles_.gather(x)) + rounding_gain();
-}
-
-// A projected edge counts as a spring of at most the inertia of its ends over dt², all that a sweep makes
-// of it.
-double MeshModel::projected_energy(const Rows& at, double dt) const {
-  const std::vector<Vec3> x = particles_.gather(at);
-  const double slack = kRounding * std::max(1.0, double(at.greatest(parts_.kernels)));
-  double sum = 0;
-  for (std::size_t n = 0; n < edges_.ends.size(); ++n) {
-    const auto& [a, b] = edges_.ends[n];
-    const double w = double(particles_.inverse_mass[particles_.lane(a)]) +
-                     double(particles_.inverse_mass[particles_.lane(b)]);
-    if (w == 0) continue;
-    const double k = std::min(material_.stiffness * edges_.triangles[n], 1 / (w * dt * dt));
-    const double over =
-        std::abs(distance(x[std::size_t(a)], x[std::size_t(b)]) - edges_.rest[n]) + slack;
-    sum += 0.5 * k * over * over;
-  }
-  return sum + (material_.bends ? mesh_energy(triangles_, bending_alone(material_), x) : 0);
-}
-
-// Every fourth edge is looked at.
-float MeshModel::greatest_stretch(const Rows& x) const {
-  double most = 0;
-  for (std::size_t n = 0; n < edges_.ends.size(); n += 4) {
-    const auto at = [&](int p) {
-      const auto [j, i] = particles_.place(p);
-      return Vec3{x.at(0, j, i), x.at(1, j, i), x.at(2, j, i)};
-    };
-    most = std::max(most, distance(at(edges_.ends[n][0]), at(edges_.ends[n][1])) / edges_.rest[n]);
-  }
-  return float(most * most);
-}
-
-double MeshModel::rounding_gain() const {
-  constexpr double kHalfUnit = 6e-8;  // of a position's last place, of the scene's size
-  const double size = std::max(1.0, double(particles_.x.greatest(parts_.kernels)));
-  return pull().stiffness * double(edges_.ends.size()) * std::pow(kHalfUnit * size, 2);
-}
-
-// Of M^-1/2 K M^-1/2, K as the difference of forces, which are as good as linear so near to rest; the
-// damping's is that of forces by velocities.
-Spectrum MeshModel::spectrum(std::span<const float> inverse_masses) const {
-  const std::size_t count = start_.size();
-  std::vector<double> root(count);
-  for (std::size_t p = 0; p < count; ++p)
-    root[p] = std::sqrt(double(inverse_masses[particles_.lane(int(p))]));
-  using Field = std::vector<double>;
-  const auto weighted = [&](const Field& u, double by) {
-    std::vector<Vec3> field(count);
-    for (std::size_t n = 0; n < u.size(); ++n) field[n / 3][n % 3] = by * root[n / 3] * u[n];
-    return field;
-  };
-  const auto forces = [&](const std::vector<Vec3>& off, const std::vector<Vec3>* v) {
-    std::vector<Vec3> x = start_, f(count);
-    for (std::size_t p = 0; p < count; ++p) x[p] = plus(x[p], off[p]);
-    add_mesh_forces(triangles_, material_, x, v, f);
-    return f;
-  };
-  const double step = 1e-4 * *std::min_element(edges_.rest.begin(), edges_.rest.end());
-  const auto stiffness = [&](const Field& u, Field& y) {
-    double greatest = 1e-300;
-    for (std::size_t n = 0; n < u.size(); ++n)
-      greatest = std::max(greatest, std::abs(u[n]) * root[n / 3]);
-    const double scale = step / greatest;
-    const auto ahead = forces(weighted(u, scale), nullptr);
-    const auto back = forces(weighted(u, -scale), nullptr);
-    for (std::size_t n = 0; n < u.size(); ++n)
-      y[n] = root[n / 3] * (back[n / 3][n % 3] - ahead[n / 3][n % 3]) / (2 * scale);
-  };
-  const std::vector<Vec3> still(count);
-  const auto at_rest = forces(still, nullptr);
-  const auto damping = [&](const Field& u, Field& y) {
-    const std::vector<Vec3> v = weighted(u, 1);
-    const auto f = forces(still, &v);
-    for (std::size_t n = 0; n < u.size(); ++n)
-      y[n] = root[n / 3] * (at_rest[n / 3][n % 3] - f[n / 3][n % 3]);
-  };
-  Spectrum spectrum;
-  spectrum.omega_squared = largest_eigenvalue(3 * count, stiffness);
-  if (material_.damped()) spectrum.damping = largest_eigenvalue(3 * count, damping);
-  return spectrum;
 }
 
 double MeshModel::stiffening(double stretch) const {
@@ -365,7 +229,9 @@ std::vector<Joined> MeshModel::constraints_near(const Vec3& a, const Vec3& way,
                                                 double distance) const {
   const std::vector<Vec3> x = particles_.gather(particles_.x);
   std::vector<Joined> found;
-  for (const Joined& edge : edges_.ends) {
+  for (std::size_t n = 0; n < edges_.ends.size(); ++n) {
+    if (!holds(n)) continue;
+    const Joined& edge = edges_.ends[n];
     const Vec3 &from = x[std::size_t(edge[0])], &to = x[std::size_t(edge[1])];
     if (segment_distance(a, way, from, minus(to, from)) <= distance) found.push_back(edge);
   }
@@ -376,7 +242,7 @@ std::size_t MeshModel::bytes() const {
   return particles_.bytes() + triangles_.size() * sizeof(RestTriangle) +
          edges_.ends.size() * (sizeof(Joined) + sizeof(double)) +
          start_.size() * (sizeof(Vec3) + sizeof(double)) + (sweeps_ ? sweeps_->bytes() : 0) +
-         (history_ ? history_->bytes() : 0) + seams_.bytes();
+         (history_ ? history_->bytes() : 0) + seams_.bytes() + (tearing_ ? tearing_->bytes() : 0);
 }
 
 }  // namespace weft::physics

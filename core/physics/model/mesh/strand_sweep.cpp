@@ -31,16 +31,18 @@ struct StrandBatch {
   AlignedArray<std::int32_t> alive;  // -1 where there is a constraint
 };
 
-class StrandSweep final : public WholeStage {
+class StrandSweep final : public WholeStage, private TornParts {
  public:
   StrandSweep(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-              const std::vector<Strand>& strands, const std::vector<std::vector<int>>& colours)
+              const std::vector<Strand>& strands, const std::vector<std::vector<int>>& colours,
+              MeshTearing* tearing)
       : WholeStage("line",
                    std::to_string(strands.size()) + " strands in " +
                        std::to_string(colours.size()) + " colours, each solved as a whole",
                    std::int64_t(edges.ends.size()) * parts.scene.solver.iterations, "constraints"),
         parts_(parts),
         iterations_(parts.scene.solver.iterations) {
+    if (tearing) place_.resize(edges.ends.size());
     first_.push_back(0);
     for (const std::vector<int>& colour : colours) {
       for (std::size_t n = 0; n < colour.size(); n += kBatchLines)
@@ -51,10 +53,11 @@ class StrandSweep final : public WholeStage {
     for (const float w : parts.particles.inverse_mass.span())
       least_ = std::max(least_, kLeastCompliance * double(w));
     for (const StrandBatch& b : batches_) longest_ = std::max(longest_, b.particles);
+    if (tearing) tearing->tell(*this);
   }
 
   std::size_t bytes() const override {
-    std::size_t bytes = 0;
+    std::size_t bytes = place_.size() * sizeof(Place);
     for (const StrandBatch& b : batches_)
       bytes +=
           b.lanes.size() * sizeof(int) * 2 + sizeof(float) * (3 * b.rest.size() + b.lambda.size());
@@ -80,6 +83,14 @@ class StrandSweep final : public WholeStage {
   }
 
  private:
+  struct Place {
+    std::size_t batch = 0, at = 0;
+  };
+  void set_edge(int edge, bool holds) override {
+    const auto [batch, at] = place_[std::size_t(edge)];
+    batches_[batch].alive[at] = holds ? -1 : 0;
+  }
+
   // Of one thread.
   struct Memory {
     explicit Memory(int particles)
@@ -111,6 +122,7 @@ class StrandSweep final : public WholeStage {
         b.rest[m * kBatchLines + lane] = float(edges.rest[e]);
         b.give[m * kBatchLines + lane] = float(1 / std::max(stiffness * edges.triangles[e], 1e-12));
         b.alive[m * kBatchLines + lane] = -1;
+        if (!place_.empty()) place_[e] = {batches_.size() - 1, m * kBatchLines + lane};
       }
     }
   }
@@ -188,6 +200,7 @@ class StrandSweep final : public WholeStage {
   const int iterations_;
   std::vector<StrandBatch> batches_;
   std::vector<std::size_t> first_;  // batch of each colour, and how many there are
+  std::vector<Place> place_;        // of every edge, where they can tear
   double least_ = 0;                // 1/kg
   int longest_ = 0;
   std::vector<Memory> memory_;  // of every thread
@@ -196,10 +209,11 @@ class StrandSweep final : public WholeStage {
 }  // namespace
 
 std::unique_ptr<Stage> make_strands(const ClothParts& parts, const MeshEdges& edges,
-                                    double stiffness, const std::vector<Vec3>& x) {
+                                    double stiffness, const std::vector<Vec3>& x,
+                                    MeshTearing* tearing) {
   const std::vector<Strand> strands = strands_of(edges, x);
   return std::make_unique<StrandSweep>(parts, edges, stiffness, strands,
-                                       coloured_strands(strands, int(x.size())));
+                                       coloured_strands(strands, int(x.size())), tearing);
 }
 
 }  // namespace weft::physics
