@@ -142,21 +142,6 @@ TEST(MeshCloth, ReportsHowDeepTrianglesLie) {
   EXPECT_NEAR(run.report().penetration.collider_max, 0.04, 1e-6);
 }
 
-TEST(MeshCloth, SaysThatItCannotBeCut) {
-  Scene scene = scene_of(made_up({.nx = 9, .ny = 9}));
-  Simulation run(scene, {.threads = 1}), other(scene, {.threads = 1});
-  EXPECT_EQ(run.cut({2, 0, 0.5}, {3, 0, 0.5}, 0.01), 0);
-  EXPECT_EQ(run.plan().notes, other.plan().notes);  // nothing is there
-  EXPECT_EQ(run.cut({-1, 0, 0.5}, {2, 0, 0.5}, 0.01), 0);
-  EXPECT_EQ(run.cut({-1, 0, 0.5}, {2, 0, 0.5}, 0.01), 0);
-  std::vector<std::string> notes = other.plan().notes;
-  notes.push_back("what is cut is a mesh, which does not tear: nothing of it was cut");
-  EXPECT_EQ(run.plan().notes, notes);
-  run.advance_frame();
-  other.advance_frame();
-  EXPECT_EQ(run.hash(), other.hash());
-}
-
 class MeshScene : public testing::Test {
  protected:
   void SetUp() override {
@@ -211,10 +196,10 @@ TEST_F(MeshScene, NamesWhatIsWrong) {
   EXPECT_EQ(told(R"({"mesh": {"file": "square.obj", "scale": 1e5}})"),
             "/cloths/0/mesh/scale: the mesh reaches 100000.000000 m away (up to 10000 m)\n");
   EXPECT_EQ(
-      told(R"({"mesh": {"file": "square.obj"}, "tear_strain": 0.5, "level": 2,
+      told(R"({"mesh": {"file": "square.obj"}, "tears": "particles", "level": 2,
                      "self_collision": {"mode": "surface", "response": "course"}})"),
       "/cloths/0/level: a mesh has a level (0, with a mesh)\n"
-      "/cloths/0/tear_strain: a mesh is to tear (0, with a mesh)\n"
+      "/cloths/0/tears: a tear is to take whole vertices of a mesh (split or holes, with a mesh)\n"
       "/cloths/0/self_collision/response: neighbours that push are those of a grid (stiff, with a "
       "mesh)\n");
 }

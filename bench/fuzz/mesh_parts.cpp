@@ -204,4 +204,19 @@ void Parts::add_gas(Scene& scene) {
   for (Collider& collider : scene.colliders) collider.cuts = false;
 }
 
+void Parts::tear_meshes(Scene& scene) {
+  bool meshes = false;
+  for (Cloth& c : scene.cloths) {
+    if (!c.mesh.given()) continue;
+    meshes = true;
+    if (draw_.chance(0.3)) c.tear_strain = draw_.decades(1e-3, 10);
+    if (draw_.chance(0.2)) c.tears = Tears::holes;
+  }
+  for (std::size_t n = 0; meshes && n < scene.colliders.size(); ++n) {
+    bool& cuts = scene.colliders[n].cuts;
+    cuts = draw_.chance(0.2);
+    if (cuts && !validate(scene).empty()) cuts = false;
+  }
+}
+
 }  // namespace fuzz

@@ -44,6 +44,9 @@ class Parts {
   // One of the cloths becomes a closed mesh with a gas in it, where it may.
   void add_gas(weft::Scene& scene);
 
+  // Some meshes can tear, and some colliders cut.
+  void tear_meshes(weft::Scene& scene);
+
   // Some optional feature, more often in rich scenes.
   bool some(double share) { return draw_.chance(share * richness_); }
   // Some that stand still become one pin of several; others hold what starts within a box.

@@ -15,7 +15,8 @@ using namespace weft;
 
 namespace {
 
-constexpr double kFrameWork = 1e6, kSubstepWork = 3e5;  // of one, at most
+constexpr std::uint64_t kTears = std::uint64_t{1} << 32;  // streams
+constexpr double kFrameWork = 1e6, kSubstepWork = 3e5;    // of one, at most
 
 // Whether there is cloth of anything but springs on a grid.
 bool has_more_than_springs(const Scene& scene) {
@@ -52,7 +53,8 @@ void shorten_frames(Scene& scene) {
     scene.time.frame = std::max(1e-5, scene.time.frame * kFrameWork / work);
 }
 
-Scene draw_scene(Draw draw) {
+// `tears`: a stream of its own, so that what was drawn before it came is drawn still.
+Scene draw_scene(Draw draw, Draw tears) {
   Parts parts(draw);
   Scene scene;
   scene.time = parts.time();
@@ -69,6 +71,7 @@ Scene draw_scene(Draw draw) {
   parts.add_motion(scene);
   if (draw.chance(0.3)) parts.add_meshes(scene);
   parts.gather_pins(scene);
+  Parts(tears).tear_meshes(scene);
   shorten_frames(scene);
   return scene;
 }
@@ -123,7 +126,8 @@ double work_of_substep(const Scene& scene) {
 
 Scene random_scene(std::uint64_t seed) {
   for (std::uint64_t stream = 0;; ++stream) {
-    Scene scene = with_gas(draw_scene(Draw(seed, stream)), seed);
+    Scene scene =
+        with_gas(draw_scene(Draw(seed, stream), Draw(seed, stream + kTears)), seed);
     if (!can_run(scene) || work_of_substep(scene) >= kSubstepWork) continue;
     for_each_mesh(scene, [&](auto& mesh, const std::string&) {
       mesh.file = std::to_string(seed) + "-" + mesh.file;

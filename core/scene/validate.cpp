@@ -219,7 +219,9 @@ class Together {
     double spacing = std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < scene_.cloths.size(); ++c) {
       if (!sound({"/cloths/" + std::to_string(c) + "/grid"})) return;
-      if (scene_.cloths[c].mesh.given()) continue;
+      const ClothMesh& mesh = scene_.cloths[c].mesh;
+      if (mesh.shape) spacing = std::min(spacing, mean_edge(mesh));
+      if (mesh.given()) continue;
       const Grid& grid = scene_.cloths[c].grid;
       spacing = std::min({spacing, spacing_u(grid), spacing_v(grid)});
     }
@@ -229,7 +231,8 @@ class Together {
     if (reach < kMinReach * spacing)
       fault(place + "/cuts", "the cutter reaches " + number_words(reach) + " m",
             "at least " + number_words(kMinReach * spacing) +
-                " m by its size and offset, a hundredth of the spacing of the grid");
+                " m by its size and offset, a hundredth of the spacing of the grid, or of the mean "
+                "edge of the mesh");
   }
 
   // Half of the least thickness.

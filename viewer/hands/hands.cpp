@@ -6,6 +6,7 @@
 #include <set>
 
 #include "panel/theme.h"
+#include "picture/surface.h"
 
 namespace weft::viewer {
 
@@ -96,7 +97,8 @@ void Hands::press(Workspace& workspace, const Area& area, const Pointer& pointer
     const std::vector<Cloth>& cloths = workspace.document().scene().cloths;
     for (const Cloth& c : cloths) cuts_.push_back(c.cuts);
     if (std::any_of(cloths.begin(), cloths.end(), [](const Cloth& c) { return c.mesh.given(); }))
-      workspace.messages.warn("Meshes are not cut, only grids are", workspace.now());
+      workspace.messages.tell("Meshes are cut in this run alone; a new start makes them whole",
+                              workspace.now());
     return;
   }
   if (tool == Tool::move && pusher.take_handle(workspace, area, pointer.x, pointer.y)) {
@@ -125,8 +127,9 @@ void Hands::drag(Workspace& workspace, const Area& area, const Pointer& pointer)
     return std::hypot(pointer.x - from[0], pointer.y - from[1]) >= kStep;
   };
   if (drag_ == Drag::lasso && moved(lasso_.back())) lasso_.push_back({pointer.x, pointer.y});
-  if (drag_ == Drag::cut && moved(stroke_.points().back()) &&
-      stroke_.go_on(workspace.frame_data(), workspace.camera, area, pointer.x, pointer.y))
+  if (drag_ != Drag::cut || !moved(stroke_.points().back())) return;
+  cut_meshes(workspace, area, ray);
+  if (stroke_.go_on(workspace.frame_data(), workspace.camera, area, pointer.x, pointer.y))
     cut(workspace);
 }
 
@@ -192,6 +195,30 @@ void Hands::cut(Workspace& workspace) {
     changes.push_back({"/cloths/" + std::to_string(c) + "/cuts", all});
   }
   joined_ = workspace.edit(changes, joined_, "cut") || joined_;
+}
+
+// What the stroke's last step crosses of a mesh; beside the cloth it goes on across the view.
+void Hands::cut_meshes(Workspace& workspace, const Area& area, const Ray& to) const {
+  constexpr double kWidth = 0.02;  // of the spacing
+  const auto [x, y] = stroke_.points().back();
+  const Ray rays[] = {ray_through(workspace.camera, area, x, y), to};
+  std::optional<ClothHit> hits[2];
+  for (std::size_t n = 0; n < 2; ++n) {
+    hits[n] = pick_cloth(workspace.frame_data(), rays[n]);
+    const auto& cloths = workspace.frame_data().cloths;
+    if (hits[n] && !cloths[static_cast<std::size_t>(hits[n]->cloth)].mesh) hits[n].reset();
+  }
+  if (!hits[0] && !hits[1]) return;
+  const ClothHit& met = hits[0] ? *hits[0] : *hits[1];
+  const auto end = [&](std::size_t n) {
+    const Vec3f beside = on_plane(rays[n], met.point, workspace.camera.forward());
+    return workspace.in_scene(hits[n] ? hits[n]->point : beside);
+  };
+  const Scene& scene = workspace.document().scene();
+  Input input{.kind = Input::Kind::cut};
+  input.a = end(0), input.b = end(1);
+  input.amount = kWidth * spacing_of(scene.cloths[static_cast<std::size_t>(met.cloth)]);
+  workspace.give(input);
 }
 
 void Hands::choose_newest(const Workspace& workspace, Kind kind) {

@@ -51,6 +51,7 @@ class Hands {
   void release(Workspace& workspace, const Area& area);
   void grab(Workspace& workspace, const Ray& ray);
   void cut(Workspace& workspace);
+  void cut_meshes(Workspace& workspace, const Area& area, const Ray& to) const;
   // Pins these particles of the cloths, or lets them go where all of them are pinned.
   void toggle_pins(Workspace& workspace, const std::vector<std::vector<int>>& particles) const;
   void take_lasso(Workspace& workspace, const Area& area) const;

@@ -104,7 +104,7 @@ bool comes_apart(const Workspace& workspace) {
   return std::any_of(cloths.begin(), cloths.end(),
                      [](const Cloth& c) { return !c.cuts.empty(); }) ||
          std::any_of(shown.begin(), shown.end(),
-                     [](const ClothCopy& c) { return c.torn && !c.mesh; });
+                     [](const ClothCopy& c) { return c.topology_version > (c.mesh ? 1 : 0); });
 }
 
 void draw_export_form(Workspace& workspace, FileForms& forms) {

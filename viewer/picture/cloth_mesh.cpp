@@ -72,6 +72,19 @@ std::vector<float> mesh_coordinates(const MeshSource& source) {
   return uv;
 }
 
+// Of a grid's vertices.
+std::vector<float> grid_coordinates(const ClothSurface& surface) {
+  const int columns = surface.columns, rows = surface.rows;
+  std::vector<float> uv;
+  uv.reserve(2 * surface.x.size());
+  for (int j = 0; j < rows; ++j)
+    for (int i = 0; i < columns; ++i) {
+      uv.push_back(static_cast<float>(i) / static_cast<float>(columns - 1));
+      uv.push_back(static_cast<float>(j) / static_cast<float>(rows - 1));
+    }
+  return uv;
+}
+
 }  // namespace
 
 ClothMesh::ClothMesh()
@@ -104,7 +117,8 @@ void ClothMesh::update(const ClothCopy& whole, std::uint64_t scene, const Cloth&
   glBindVertexArray(array_.id());
   upload_vertices();
   if (same) return;
-  whole.mesh ? upload_coordinates(mesh_coordinates(description.mesh)) : upload_coordinates(cloth);
+  upload_coordinates(whole.mesh ? mesh_coordinates(description.mesh) : grid_coordinates(surface_),
+                     cloth);
   upload_triangles();
   if (sampling.refinement == 1) upload_lines(cloth, description);
   columns_ = whole.columns;
@@ -135,23 +149,11 @@ void ClothMesh::upload_vertices() {
   }
 }
 
-void ClothMesh::upload_coordinates(const ClothCopy& cloth) {
-  const int columns = surface_.columns, rows = surface_.rows;
-  std::vector<float> uv;
-  uv.reserve(2 * surface_.x.size());
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) {
-      uv.push_back(static_cast<float>(i) / static_cast<float>(columns - 1));
-      uv.push_back(static_cast<float>(j) / static_cast<float>(rows - 1));
-    }
+void ClothMesh::upload_coordinates(std::vector<float> uv, const ClothCopy& cloth) {
   for (const std::uint32_t particle : cloth.tear_particles) {
     const std::size_t v = vertex_of(cloth, surface_, particle);
     uv.insert(uv.end(), {uv[2 * v], uv[2 * v + 1]});
   }
-  upload_coordinates(uv);
-}
-
-void ClothMesh::upload_coordinates(const std::vector<float>& uv) {
   glBindBuffer(GL_ARRAY_BUFFER, coordinates_.id());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(uv.size() * sizeof(float)), uv.data(),
                GL_STATIC_DRAW);

@@ -21,6 +21,7 @@ void put_in_order(std::span<const std::uint32_t> lanes, ClothCopy& cloth) {
   }
   for (auto& triangle : cloth.triangles)
     for (std::uint32_t& corner : triangle) corner = numbers[corner];
+  for (std::uint32_t& particle : cloth.tear_particles) particle = numbers[particle];
   cloth.columns = cloth.stride = static_cast<int>(lanes.size());
   cloth.rows = 1;
 }

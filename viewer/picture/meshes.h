@@ -37,8 +37,8 @@ class ClothMesh {
   };
 
   void upload_vertices();
-  void upload_coordinates(const ClothCopy& cloth);
-  void upload_coordinates(const std::vector<float>& uv);
+  // `uv`: of the vertices; points beside tears have those of their particles.
+  void upload_coordinates(std::vector<float> uv, const ClothCopy& cloth);
   void upload_triangles();
   void upload_lines(const ClothCopy& cloth, const Cloth& description);
 

@@ -123,8 +123,7 @@ class Simulation {
   // another; zero lets them rest. set_state() moves on from the positions that it sets.
   void carry(int cloth, const Vec3& velocity);
   // Cuts every constraint of any cloth that comes within `width` [m] of the segment from a to b, and
-  // returns how many. A sheet that could not tear so far can from then on. Meshes cannot be cut: where one
-  // is met, a note of plan() says so.
+  // returns how many. A cloth that could not tear so far can from then on.
   int cut(const Vec3& a, const Vec3& b, double width);
   // Moves a collider evenly to `target` within the next frame, where it then rests: its sphere's or
   // box's center, its plane's point, its capsule's a. Replaces the keys of the scene.

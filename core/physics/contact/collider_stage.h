@@ -31,5 +31,7 @@ std::unique_ptr<RowStage> make_collider_triangles(const ClothParts& parts, const
 // A collider that cuts.
 std::unique_ptr<RowStage> make_cut(const LatticeParts& parts, const Collider& collider,
                                    const StartInside& start);
+std::unique_ptr<RowStage> make_cut(const ClothParts& parts, MeshTearing& tearing,
+                                   const Collider& collider, const StartInside& start);
 
 }  // namespace weft::physics

@@ -2,14 +2,13 @@
 #include <cmath>
 
 #include "physics/contact/collider_stage.h"
-#include "physics/contact/triangle_shape.h"
+#include "physics/contact/cut_way.h"
 #include "physics/model/lattice/tearing.h"
 
 namespace weft::physics {
 namespace {
 
-// A constraint is cut where a point of it comes inside the offset surface. Points are looked at as
-// densely as the cutter is small.
+// A constraint is cut where a point of it comes inside the offset surface.
 class CutStage final : public RowStage {
  public:
   CutStage(const LatticeParts& parts, const Collider& collider, const StartInside& start)
@@ -69,17 +68,7 @@ class CutStage final : public RowStage {
     for (int a = 0; a < f.per_row(parts_.lattice.columns); ++a) {
       if (!f.alive(j, a) || distance[a + f.near()] > 2 * longest_) continue;
       const Vec3 from = at(j, a + f.near()), e = minus(at(j + f.dj, a + f.far()), from);
-      // Sphere tracing along the constraint: each step as long as nothing can be nearer.
-      const double length = std::sqrt(dot(e, e));
-      for (double t = 0;;) {
-        const double left = nearest_of(shape, plus(from, times(e, t))).distance - offset;
-        if (left <= 0) {
-          tearing_.end(f, j, a);
-          break;
-        }
-        if (t >= 1) break;
-        t = std::min(1.0, t + std::max(left, 0.01 * length) / std::max(length, 1e-12));
-      }
+      if (comes_inside(shape, offset, from, e)) tearing_.end(f, j, a);
     }
   }
 

@@ -14,11 +14,14 @@ class MeshTriangles final : public ColliderTriangles {
   MeshTriangles(const ClothParts& parts, const Collider& collider, const StartInside& start,
                 const SpeculativeCulling& particles)
       : ColliderTriangles(parts, collider, start, particles,
-                          std::int64_t(parts.model.surface().triangles.size())),
+                          std::int64_t(parts.model.surface().all().size())),
         parts_(parts),
         rows_(std::size_t(parts.particles.rows)) {
-    for (const auto& corners : parts.model.surface().triangles) {
+    const auto& all = parts.model.surface().all();
+    for (std::size_t n = 0; n < all.size(); ++n) {
+      const auto& corners = all[n];
       Placed t;
+      t.number = n;
       for (std::size_t k = 0; k < 3; ++k) {
         const auto [j, i] = parts.particles.place(corners[k]);
         t.j[k] = j, t.i[k] = i;
@@ -33,14 +36,19 @@ class MeshTriangles final : public ColliderTriangles {
 
  private:
   struct Placed {
+    std::size_t number;
     std::array<int, 3> j, i;  // row and lane of the corners
   };
+  bool gone(const Placed& t) const {
+    const std::vector<std::uint8_t>& all = parts_.model.surface().gone;
+    return !all.empty() && all[t.number];
+  }
 
   int last_row() const override { return parts_.particles.rows; }
   double greatest(const Rows& values, int j) const override {
     double square = 0;
     for (const Placed& t : rows_[std::size_t(j)])
-      for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; k < 3 && !gone(t); ++k) {
         const std::size_t next = (k + 1) % 3;
         Vec3 e{};
         for (int m = 0; m < 3; ++m)
@@ -56,7 +64,8 @@ class MeshTriangles final : public ColliderTriangles {
     if (out_of_reach(near, s, longest)) return near;
     const ColliderRow row = collider().row(parts_, j, s);
     for (int pass = 0; pass < passes(longest); ++pass)
-      for (const Placed& t : rows_[std::size_t(j)]) lift(row, t.j, t.i);
+      for (const Placed& t : rows_[std::size_t(j)])
+        if (!gone(t)) lift(row, t.j, t.i);
     return near;
   }
 
@@ -69,7 +78,7 @@ class MeshTriangles final : public ColliderTriangles {
 std::unique_ptr<RowStage> make_collider_triangles(const ClothParts& parts, const Collider& collider,
                                                   const StartInside& start,
                                                   const SpeculativeCulling& particles) {
-  if (!caught_by_triangles(collider) || parts.model.surface().triangles.empty()) return nullptr;
+  if (!caught_by_triangles(collider) || parts.model.surface().all().empty()) return nullptr;
   return std::make_unique<MeshTriangles>(parts, collider, start, particles);
 }
 

@@ -79,7 +79,7 @@ void ClothStep::choose_stages() {
   model_->append_limits(list_);
 }
 
-// Colliders, and what cuts, which grids alone know.
+// Colliders, and what cuts.
 void ClothStep::choose_contact() {
   const auto& colliders = parts().scene.colliders;
   LatticeParts* const lattice = model_->lattice();
@@ -109,9 +109,11 @@ void ClothStep::choose_contact() {
     list_.skip("collider_faces", "no collider is small against the mesh at rest");
   if (pushed && !runs("stretched_faces"))
     list_.skip("stretched_faces", "no collider is curved and large against the mesh");
-  for (std::size_t k = 0; lattice && k < colliders.size(); ++k) {
+  MeshTearing* const mesh = model_->mesh_tearing();
+  for (std::size_t k = 0; (lattice || mesh) && k < colliders.size(); ++k) {
     if (!colliders[k].cuts) continue;
-    list_.stages.push_back(make_cut(*lattice, colliders[k], starts_[k]));
+    list_.stages.push_back(lattice ? make_cut(*lattice, colliders[k], starts_[k])
+                                   : make_cut(parts(), *mesh, colliders[k], starts_[k]));
     cut = true;
   }
   if (!cut) list_.skip("cut", "no collider cuts");

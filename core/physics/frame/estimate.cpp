@@ -36,6 +36,7 @@ constexpr double kMasses = 40;
 constexpr double kParticles = 430;  // contact of a folded sheet; 230 where it lies flat
 constexpr double kSurface = 1100;   // 900 where it lies flat
 constexpr double kMeshVertex = 2500;
+constexpr double kMeshTearing = 1100;  // and vertex
 constexpr double kMeshBody = 160;  // and body that is a mesh
 }  // namespace memory
 
@@ -53,6 +54,7 @@ constexpr double kTriangle = 20, kStrandStress = 60;  // of a membrane's; of its
 constexpr double kProjection = 1.2, kTethers = 1.5;
 constexpr double kStrainLimit = 1.2, kHeldLimit = 12, kTearing = 0.6, kWind = 0.8;
 constexpr double kCollider = 0.5, kBox = 20;       // and collider; a box meets whole triangles
+constexpr double kMeshTearing = 6;                 // edges of a vertex
 constexpr double kSmall = 500;                     // and collider that is small against the mesh
 constexpr double kParticles = 15, kSurface = 130;  // contact of a sheet that lies on itself
 }  // namespace cost
@@ -214,7 +216,10 @@ double bytes_of(const Cloth& cloth, const Solver& solver) {
   double contact = 0;
   if (cloth.self_collision.mode == SelfCollisionMode::particles) contact = memory::kParticles;
   if (cloth.self_collision.mode == SelfCollisionMode::surface) contact = memory::kSurface;
-  if (cloth.mesh.given()) return (memory::kMeshVertex + contact) * particle_count(cloth);
+  if (cloth.mesh.given()) {
+    const double tearing = cloth.tear_strain > 0 ? memory::kMeshTearing : 0;
+    return (memory::kMeshVertex + tearing + contact) * particle_count(cloth);
+  }
   return (each + contact) * row_stride(cloth.grid.nx) * cloth.grid.ny;
 }
 
@@ -259,7 +264,8 @@ double substep_cost(const Scene& scene, const Cloth& cloth, const Solver& solver
   if (cloth.strain_limit > 0)
     each += cloth.strain_limit_order == StrainLimitOrder::strict ? cost::kHeldLimit
                                                                  : cost::kStrainLimit;
-  if (cloth.tear_strain > 0 || !cloth.cuts.empty()) each += cost::kTearing;
+  if (cloth.tear_strain > 0 || !cloth.cuts.empty())
+    each += cloth.mesh.given() ? cost::kMeshTearing : cost::kTearing;
   if (scene.wind.drag > 0 || scene.wind.lift > 0) each += cost::kWind;
   for (const Collider& collider : scene.colliders)
     each += solver.collision_iterations * collider_cost(cloth, collider);

@@ -177,11 +177,14 @@ int Simulation::State::cut(const Vec3& begin, const Vec3& end, double width) {
     const bool could_tear = step->model().tearing();
     step->allow_tearing();
     if (!step->model().tearing()) {
-      note_once("what is cut is a mesh, which does not tear: nothing of it was cut");
+      note_once("what is cut holds a gas and does not tear: nothing of it was cut");
       continue;
     }
     touch();
-    if (!could_tear) plan_changed();
+    if (!could_tear) {
+      plan_changed();
+      note_models(plan.notes);
+    }
     cut += step->model().tearing()->end_all(found);
   }
   if (cut > 0) ++changes;

@@ -112,6 +112,7 @@ View Simulation::view() const {
       c.tear_points = torn.points;
       c.tear_particles = torn.owners;
       c.tear_triangles = torn.boundary;
+      if (!torn.uv.empty()) c.uv = torn.uv;
     }
     view.cloths.push_back(c);
   }

@@ -314,14 +314,8 @@ struct ContactKernels {
 struct SquaresWithin;
 struct SquaresApart;
 struct SurfacePairs;  // kernels/surface.h
-// Constraints of one stencil in one row: number a joins near + a and far + a. What is longer ends.
-struct TearRow {
-  int count;
-  ConstRow3 near, far;
-  std::int32_t* alive;  // -1 for constraints, 0 for torn ones and beyond the last
-  float longest;        // m
-};
-
+struct TearRow;       // kernels/tear.h
+struct TearEdges;
 struct MeshRow;  // kernels/mesh.h
 struct MeshWind;
 struct MeshForces;
@@ -342,6 +336,7 @@ struct KernelTable {
   void (*spring_stencil)(const StencilRow&);         // f += spring force
   void (*damped_spring_stencil)(const StencilRow&);  // f += spring force and damping along it
   int (*tear)(const TearRow&);                       // returns how many have ended
+  bool (*tear_edges)(const TearEdges&);              // returns whether any is too long
   void (*integrate)(const AdvanceRow&);              // leapfrog step from f, then f <- 0
   void (*predict)(const AdvanceRow&);                // predicted <- x; v and x advanced by gravity
   void (*velocity)(const AdvanceRow&);               // v <- v + (x - predicted)/dt

@@ -28,7 +28,7 @@ struct alignas(64) MeshBatch {
   float du[2][kBatch], dv[2][kBatch];
   float area[kBatch];     // m²; 0: no triangle
   float rest[3][kBatch];  // m; of the sides from corner k to the next
-  float half[3][kBatch];  // 1, or 0 for no triangle
+  float half[3][kBatch];  // 1, or 0 for no triangle and for a side that has torn
   // Hinge k: corner 3 + k off the triangle, as weights of all: away[k] (corner 3+k - foot) + own[k]
   // (corner k+2 - foot), each foot at a share of the side from corner k on.
   float away[3][kBatch], away_at[3][kBatch], own[3][kBatch], own_at[3][kBatch];

@@ -110,6 +110,7 @@ void membrane_rows(const physics::MembraneRows&);
 void spring_stencil(const StencilRow&);
 void damped_spring_stencil(const StencilRow&);
 int tear(const physics::TearRow&);
+bool tear_edges(const physics::TearEdges&);
 void integrate(const AdvanceRow&);
 void predict(const AdvanceRow&);
 void velocity(const AdvanceRow&);

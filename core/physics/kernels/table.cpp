@@ -14,6 +14,7 @@ const physics::KernelTable& table() {
       .spring_stencil = spring_stencil,
       .damped_spring_stencil = damped_spring_stencil,
       .tear = tear,
+      .tear_edges = tear_edges,
       .integrate = integrate,
       .predict = predict,
       .velocity = velocity,

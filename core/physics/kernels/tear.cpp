@@ -1,5 +1,7 @@
 // Constraints that are too long end.
-#include "physics/kernels/row_kernels.h"
+#include "physics/kernels/tear.h"
+
+#include "physics/kernels/gather.h"
 
 namespace weft::WEFT_KERNELS {
 
@@ -25,6 +27,21 @@ int tear(const physics::TearRow& given) {
     torn += __builtin_popcount(bits(over));
   }
   return torn;
+}
+
+bool tear_edges(const physics::TearEdges& r) {
+  unsigned some = 0;
+  for (int n = 0; n < r.count; ++n) {
+    const physics::TearBatch& b = r.batches[n];
+    unsigned over = 0;
+    for (int lane = 0; lane < physics::kTearBatch; lane += kLanes) {
+      const Wide3 e = gathered(r.x, b.far + lane) - gathered(r.x, b.near + lane);
+      over |= unsigned(bits(dot(e, e) > load(b.longest + lane))) << lane;
+    }
+    r.overlong[n] = std::uint16_t(over);
+    some |= over;
+  }
+  return some != 0;
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -7,8 +7,8 @@
 // it at each corner. A particle gains  w T ΣF / (1 + a + b²),  a = w T Σ A/3 drag (u·n),  b = w T Σ A/3
 // lift |u|:  by drag, as much as in the exact motion of a plate against still air; by both, never more
 // than the whole relative motion.
+#include "physics/kernels/gather.h"
 #include "physics/kernels/mesh.h"
-#include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {
@@ -79,16 +79,6 @@ WEFT_INLINE void add(const AirRow& air, int i, const Third& t) {
   store3(air.f, i, load3(air.f, i) + t.force);
   store(air.drag + i, load(air.drag + i) + t.drag);
   store(air.lift + i, load(air.lift + i) + t.lift);
-}
-
-// One value each for kLanes places.
-WEFT_INLINE Wide gathered(const float* from, const std::int32_t* at) {
-  alignas(64) float values[kLanes];
-  for (int l = 0; l < kLanes; ++l) values[l] = from[at[l]];
-  return load(values);
-}
-WEFT_INLINE Wide3 gathered(ConstRow3 from, const std::int32_t* at) {
-  return {gathered(from.x, at), gathered(from.y, at), gathered(from.z, at)};
 }
 
 // Adds the first `count` lanes where they belong.

@@ -23,6 +23,7 @@ struct ElasticEnergy {
 
 class ClothModel;
 struct LatticeParts;
+class MeshTearing;
 struct History;
 
 // Whether a method integrates springs as forces, and so has a stability limit.
@@ -72,6 +73,8 @@ class ClothModel {
   Particles& particles() const { return parts().particles; }
   // The grid behind the cloth, for stages that use its implicit structure; null where there is none.
   virtual LatticeParts* lattice() { return nullptr; }
+  // What tears of a mesh, for cutters; null where there is none.
+  virtual MeshTearing* mesh_tearing() { return nullptr; }
 
   // What substeps of the second order keep from one to the next; null: they are of the first.
   virtual History* history() { return nullptr; }

@@ -13,6 +13,12 @@ struct SurfaceMesh {
   std::vector<std::array<int, 3>> triangles;  // corners by particle number
   std::uint64_t version = 0;                  // rises when they change
   std::vector<std::vector<int>> sewn;         // groups of particles that seams make one
+  // Of a mesh that can tear: all triangles, the torn as well, and which of them are gone. Else none.
+  std::vector<std::array<int, 3>> whole;
+  std::vector<std::uint8_t> gone;
+
+  // As the surface was before anything tore.
+  const std::vector<std::array<int, 3>>& all() const { return whole.empty() ? triangles : whole; }
 };
 
 // The same by lanes of the component arrays, for views: where each particle is, the triangles' corners, and

@@ -19,6 +19,8 @@ struct TornSurface {
   std::span<const std::array<float, 3>> points;  // m; of the tear boundary
   std::span<const std::uint32_t> owners;         // the particle that each point goes with
   Triangles boundary;
+  // Of a mesh with texture coordinates, those of the whole triangles' corners.
+  std::span<const std::array<std::array<double, 2>, 3>> uv{};
 };
 
 class Tearing {

@@ -1,6 +1,8 @@
 // What meshes do not have (refused.h), key by key.
 #include "scene/mesh/refused.h"
 
+#include <algorithm>
+
 namespace weft::text {
 namespace {
 
@@ -29,8 +31,8 @@ void check_keys(const Cloth& cloth, const std::string& place, Check& result) {
   refuse(cloth.strain_limit_order == StrainLimitOrder::course, "/strain_limit_order",
          "the order is one of grids", "strict or colours, with a mesh");
   refuse(!cloth.cuts.empty(), "/cuts", "a mesh is cut", "none, with a mesh");
-  refuse(cloth.tear_strain > 0, "/tear_strain", "a mesh is to tear", "0, with a mesh");
-  refuse(cloth.tears != Tears::split, "/tears", "a mesh does not tear", "split, with a mesh");
+  refuse(cloth.tears == Tears::particles, "/tears", "a tear is to take whole vertices of a mesh",
+         "split or holes, with a mesh");
   refuse(cloth.self_collision.response != SelfCollisionResponse::stiff, "/self_collision/response",
          "neighbours that push are those of a grid", "stiff, with a mesh");
 }
@@ -56,9 +58,11 @@ void check_method(const Solver& solver, const Cloth& cloth, const std::string& p
 void check_mesh(const Scene& scene, const Cloth& cloth, const std::string& place, Check& result) {
   check_keys(cloth, place, result);
   check_method(scene.solver, cloth, place, result);
-  for (const Collider& collider : scene.colliders)
-    if (collider.cuts)
-      return result.fault(place + "/mesh", "a collider cuts a mesh", "grids alone are cut");
+  const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                               [](const Collider& c) { return c.cuts; });
+  if (cloth.pressure.given() && (cut || cloth.tear_strain > 0))
+    result.fault(place + "/pressure", "a gas is in a mesh that is to tear or to be cut",
+                 "no pressure, or tear_strain 0 and no collider that cuts");
 }
 
 }  // namespace weft::text

@@ -89,7 +89,7 @@ void MeshPatches::copy(Threads& threads) {
 template <class Visit>
 void MeshPatches::for_each_way(double most, const Visit& visit) const {
   std::vector<std::vector<int>> joined(rest_.size()), sewn(rest_.size());
-  for (const auto& t : surface_.triangles)
+  for (const auto& t : surface_.all())
     for (std::size_t k = 0; k < 3; ++k)
       for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3})
         joined[std::size_t(t[k])].push_back(t[other]);

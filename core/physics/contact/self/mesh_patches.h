@@ -28,7 +28,7 @@ class MeshPatches {
   }
   // Of every vertex, where it is at rest [m]; the mesh's triangles.
   const std::vector<Vec3>& rest() const { return rest_; }
-  const std::vector<std::array<int, 3>>& triangles() const { return surface_.triangles; }
+  const std::vector<std::array<int, 3>>& triangles() const { return surface_.all(); }
   // The points once more, as records: positions and velocities, row after row; a vertex's number among them.
   const std::vector<Place>& x() const { return x_; }
   const std::vector<Place>& v() const { return v_; }

@@ -24,7 +24,7 @@ void widen(Spread& spread, int k, float value) {
 std::size_t count_squares(const std::vector<Sheet>& sheets) {
   std::size_t count = count_particles(sheets);
   for (const Sheet& s : sheets)
-    if (s.mesh) count += s.model->surface().triangles.size();
+    if (s.mesh) count += s.model->surface().all().size();
   return count;
 }
 
@@ -110,7 +110,7 @@ void NearSquares::make_parts(const std::vector<RestPlace>& rest) {
       return named_[s].name(row, column);
     };
     std::vector<std::array<std::int32_t, 3>> triangles;
-    for (const auto& [a, b, c] : sheets_[s].model->surface().triangles)
+    for (const auto& [a, b, c] : sheets_[s].model->surface().all())
       triangles.push_back({body(a), body(b), body(c)});
     const MeshSquares mesh = squares_of(std::move(triangles));
     owned_.resize(squares_.size(), kOwnsAll);

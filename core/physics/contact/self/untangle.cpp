@@ -41,7 +41,7 @@ bool starts_flat(const Cloth& cloth) {
 // m², of a mesh whose vertices lie there.
 double area_of(const SurfaceMesh& mesh, const std::vector<Vec3>& x) {
   double area = 0;
-  for (const auto& t : mesh.triangles) {
+  for (const auto& t : mesh.all()) {
     const Vec3 n = normal_of(x[std::size_t(t[0])], x[std::size_t(t[1])], x[std::size_t(t[2])]);
     area += 0.5 * std::sqrt(dot(n, n));
   }

@@ -1,6 +1,7 @@
 // Stage "tear": constraints beyond their tear strain end.
 #include <cmath>
 
+#include "physics/kernels/tear.h"
 #include "physics/model/lattice/stages.h"
 #include "physics/model/lattice/tearing.h"
 

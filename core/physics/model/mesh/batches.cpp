@@ -88,7 +88,7 @@ void set_triangle(MeshBatch& b, std::size_t n, const RestTriangle& r) {
   b.area[n] = float(r.area);
   for (std::size_t k = 0; k < 3; ++k) {
     b.rest[k][n] = float(r.rest[k]);
-    b.half[k][n] = 1;
+    b.half[k][n] = float(r.half[k]);
     b.away[k][n] = float(r.away[k]), b.away_at[k][n] = float(r.away_at[k]);
     b.bow[k][n] = float(r.bow[k]);
     b.own[k][n] = float(r.own[k]), b.own_at[k][n] = float(r.own_at[k]);

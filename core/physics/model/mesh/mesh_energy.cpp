@@ -18,6 +18,10 @@ double distance(const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
+ConstraintCounts MeshModel::constraints() const {
+  return {std::int64_t(edges_.ends.size()), 0, 0};
+}
+
 Pull MeshModel::pull() const {
   const double stiffness = material_.membrane
                                ? std::max({material_.c11, material_.c22, material_.c66})
@@ -55,12 +59,14 @@ ElasticEnergy MeshModel::elastic_energy() const {
 
 Strain MeshModel::strain() const {
   const std::vector<Vec3> x = particles_.gather(particles_.x);
-  Strain strain{-1, 0, std::int64_t(edges_.ends.size())};
+  const std::int64_t torn = tearing_ ? tearing_->torn() : 0;
+  Strain strain{-1, 0, std::int64_t(edges_.ends.size()) - torn};
   for (std::size_t n = 0; n < edges_.ends.size(); ++n) {
+    if (!holds(n)) continue;
     const auto& [a, b] = edges_.ends[n];
     const double e = distance(x[std::size_t(a)], x[std::size_t(b)]) / edges_.rest[n] - 1;
     strain.max = std::max(strain.max, e);
-    strain.mean += e / double(edges_.ends.size());
+    strain.mean += e / double(strain.constraints);
   }
   return strain;
 }
@@ -107,6 +113,7 @@ double MeshModel::projected_energy(const Rows& at, double dt) const {
            pull().stiffness * double(edges_.ends.size()) * slack * slack;
   double sum = 0;
   for (std::size_t n = 0; n < edges_.ends.size(); ++n) {
+    if (!holds(n)) continue;
     const auto& [a, b] = edges_.ends[n];
     const double w = double(particles_.inverse_mass[particles_.lane(a)]) +
                      double(particles_.inverse_mass[particles_.lane(b)]);
@@ -123,6 +130,7 @@ double MeshModel::projected_energy(const Rows& at, double dt) const {
 float MeshModel::greatest_stretch(const Rows& x) const {
   double most = 0;
   for (std::size_t n = 0; n < edges_.ends.size(); n += 4) {
+    if (!holds(n)) continue;
     const auto at = [&](int p) {
       const auto [j, i] = particles_.place(p);
       return Vec3{x.at(0, j, i), x.at(1, j, i), x.at(2, j, i)};

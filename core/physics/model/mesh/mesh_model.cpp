@@ -5,6 +5,7 @@
 
 #include "physics/model/keyed_pins.h"
 #include "physics/model/mesh/mesh_attachments.h"
+#include "physics/model/mesh/mesh_tear_stage.h"
 #include "physics/model/mesh/strand_sweep.h"
 #include "physics/model/number.h"
 #include "physics/model/path.h"
@@ -25,7 +26,7 @@ MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t
     : mesh_(*scene.cloths[std::size_t(index)].mesh.shape),
       method_(method),
       seed_(seed),
-      surface_{mesh_.triangles, 0, sewn_vertices(scene.cloths[std::size_t(index)])},
+      surface_{mesh_.triangles, 0, sewn_vertices(scene.cloths[std::size_t(index)]), {}, {}},
       start_(placed_vertices(scene.cloths[std::size_t(index)].mesh)),
       rest_(rest_places(scene.cloths[std::size_t(index)].mesh)),
       triangles_(rest_triangles(mesh_, rest_, scene.cloths[std::size_t(index)].bending)),
@@ -45,6 +46,17 @@ MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t
   weigh();
   place();
   if (parts_.cloth.pressure.given()) gas_ = std::make_unique<GasLoad>(parts_, seams_);
+  const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                               [](const Collider& c) { return c.cuts; });
+  if (cut || parts_.cloth.tear_strain > 0) allow_tearing();
+}
+
+// Sweeps that were made before know nothing of it. A gas would have nothing to push against.
+void MeshModel::allow_tearing() {
+  if (tearing_ || gas_) return;
+  tearing_ = std::make_unique<MeshTearing>(MeshTearing::Parts{
+      parts_.cloth, mesh_, order_, particles_, edges_, rest_.x, triangles_, surface_, drawn_});
+  sweeps_.reset();
 }
 
 // A third of each triangle to each corner.
@@ -77,6 +89,8 @@ void MeshModel::append_motion(Method method, StageList& list) {
   method_ = method;
   material_ = material_of(parts_.cloth, method == Method::spring_friction);
   history_.reset();
+  if (tearing_) tearing_->tell_nobody();
+  if (sweeps_) sweeps_->follow_tears();
   is_explicit(method) ? append_forces(list) : append_projections(list);
   list.choose("sewing", make_sewing(parts_, seams_, history_.get()), "no seams in the scene");
 }
@@ -85,8 +99,9 @@ void MeshModel::append_forces(StageList& list) {
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
   if (!material_.bends) list.skip("bending", "bending is 0");
   append_gas(list);
-  list.stages.push_back(make_triangles(parts_, order_, triangles_, material_));
-  list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_), "drag and lift are 0");
+  list.stages.push_back(make_triangles(parts_, order_, triangles_, material_, tearing_.get()));
+  list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_, tearing_.get()),
+              "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
 }
 
@@ -110,7 +125,8 @@ void MeshModel::append_projections(StageList& list) {
   list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, nullptr)
                                  : make_predict(parts_, nullptr, nullptr));
   append_gas(list);
-  list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_), "drag and lift are 0");
+  list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_, tearing_.get()),
+              "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
   if (solver.tethers && tethers_.empty()) tethers_ = attachments();
   list.choose("tethers", solver.tethers ? make_tethers(parts_, true, tethers_) : nullptr,
@@ -121,7 +137,8 @@ void MeshModel::append_projections(StageList& list) {
     list.skip("gauss_seidel", "stiffness is 0");
   else if (lines)
     list.stages.push_back(
-        StrandSweeps(parts_, edges_, material_.stiffness, start_).stage(solver.iterations, true));
+        StrandSweeps(parts_, edges_, material_.stiffness, start_, tearing_.get())
+            .stage(solver.iterations, true));
   else
     edge_sweeps().append_edges(solver.iterations, list);
   if (material_.bends)
@@ -142,8 +159,9 @@ std::vector<std::vector<Tether>> MeshModel::attachments() const {
 
 MeshSweeps& MeshModel::sweeps() {
   if (!sweeps_) {
-    sweeps_ = std::make_unique<MeshSweeps>(parts_, order_, seams_);
+    sweeps_ = std::make_unique<MeshSweeps>(parts_, order_, seams_, tearing_.get());
     if (material_.bends) sweeps_->make_hinges(triangles_);
+    sweeps_->follow_tears();
   }
   return *sweeps_;
 }
@@ -159,11 +177,11 @@ StrainSweeps& MeshModel::strain_sweeps() {
   return *sweeps_->strains();
 }
 
-// Strands take turns with triangles, which go on from what these hold.
+// Strands take turns with triangles, which go on from what these hold; they know nothing of tears.
 void MeshModel::append_membrane(StageList& list) {
   const Solver& solver = parts_.scene.solver;
   StrainSweeps& strains = strain_sweeps();
-  if (solver.sweep != Sweep::line) return sweeps_->append_strains(solver.iterations, true, list);
+  if (solver.sweep != Sweep::line || tearing_) return sweeps_->append_strains(solver.iterations, true, list);
   StrandSweeps strands(parts_, edges_,
                        std::make_unique<StrandMembrane>(parts_, triangles_, edges_, strains),
                        start_);
@@ -174,7 +192,8 @@ void MeshModel::append_membrane(StageList& list) {
 }
 
 void MeshModel::append_limits(StageList& list) {
-  list.skip("tear", "tear_strain is 0");
+  list.choose("tear", parts_.cloth.tear_strain > 0 ? make_mesh_tear(parts_, *tearing_) : nullptr,
+              "tear_strain is 0");
   if (parts_.cloth.strain_limit > 0)
     edge_sweeps().append_limit(parts_.cloth.strain_limit, list);
   else
@@ -182,10 +201,6 @@ void MeshModel::append_limits(StageList& list) {
   const bool moved = parts_.cloth.strain_limit > 0 || !parts_.scene.colliders.empty();
   if (moved && seams_.count() > 0)
     list.stages.push_back(make_seam_hold(parts_, seams_, history_.get()));
-}
-
-ConstraintCounts MeshModel::constraints() const {
-  return {std::int64_t(edges_.ends.size()), 0, 0};
 }
 
 Vec3 MeshModel::pin_position(const Pin& pin, double time) const {
@@ -210,6 +225,10 @@ std::vector<std::string> MeshModel::notes() const {
   std::vector<std::string> notes;
   if (!is_explicit(method_) && material_.bend_damping > 0)
     notes.push_back("bending runs without its damping, which explicit methods alone have");
+  if (tearing_ && material_.membrane && !is_explicit(method_) &&
+      parts_.scene.solver.sweep == Sweep::line)
+    notes.push_back(
+        "strands do not follow tears of a membrane: gauss_seidel sweeps run in place of line");
   const std::size_t loose = mesh_.edges.size();
   if (loose > 0 && !parts_.cloth.sewing)
     notes.push_back(std::to_string(loose) +
@@ -234,7 +253,9 @@ std::vector<Joined> MeshModel::constraints_near(const Vec3& a, const Vec3& way,
                                                 double distance) const {
   const std::vector<Vec3> x = particles_.gather(particles_.x);
   std::vector<Joined> found;
-  for (const Joined& edge : edges_.ends) {
+  for (std::size_t n = 0; n < edges_.ends.size(); ++n) {
+    if (!holds(n)) continue;
+    const Joined& edge = edges_.ends[n];
     const Vec3 &from = x[std::size_t(edge[0])], &to = x[std::size_t(edge[1])];
     if (segment_distance(a, way, from, minus(to, from)) <= distance) found.push_back(edge);
   }
@@ -245,7 +266,8 @@ std::size_t MeshModel::bytes() const {
   return particles_.bytes() + triangles_.size() * sizeof(RestTriangle) +
          edges_.ends.size() * (sizeof(Joined) + sizeof(double)) +
          start_.size() * (sizeof(Vec3) + sizeof(double)) + (sweeps_ ? sweeps_->bytes() : 0) +
-         (history_ ? history_->bytes() : 0) + seams_.bytes() + (gas_ ? gas_->bytes() : 0);
+         (history_ ? history_->bytes() : 0) + seams_.bytes() + (gas_ ? gas_->bytes() : 0) +
+         (tearing_ ? tearing_->bytes() : 0);
 }
 
 }  // namespace weft::physics

@@ -40,6 +40,10 @@ class MeshModel final : public ClothModel {
   double stiffening(double stretch) const override;
   bool folds_freely() const override;
   std::vector<std::string> notes() const override;
+  MeshTearing* mesh_tearing() override { return tearing_.get(); }
+  Tearing* tearing() override { return tearing_.get(); }
+  const Tearing* tearing() const override { return tearing_.get(); }
+  void allow_tearing() override;
   OpenSeams open_seams() const override { return seams_.open(particles_); }
   void mark_open_seams(double beyond, std::span<std::uint8_t> marks) const override {
     seams_.mark_open(particles_, beyond, marks);
@@ -61,6 +65,7 @@ class MeshModel final : public ClothModel {
   std::vector<std::vector<Tether>> attachments() const;
   double projected_energy(const Rows& x, double dt) const;
   double start_strain() const;  // the greatest of all edges
+  bool holds(std::size_t edge) const { return !tearing_ || tearing_->holds(edge); }
 
   const TriangleMesh& mesh_;
   Method method_;
@@ -82,6 +87,7 @@ class MeshModel final : public ClothModel {
   std::unique_ptr<History> history_;
   std::vector<std::vector<Tether>> tethers_;  // none: the scene has them off
   DrawnMesh drawn_;
+  std::unique_ptr<MeshTearing> tearing_;  // null while it cannot
 };
 
 }  // namespace weft::physics

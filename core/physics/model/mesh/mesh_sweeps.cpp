@@ -1,6 +1,7 @@
 #include "physics/model/mesh/mesh_sweeps.h"
 
 #include <algorithm>
+#include <map>
 
 #include "physics/model/mesh/mesh_records.h"
 #include "physics/model/mesh/triangle_constraint.h"
@@ -49,17 +50,24 @@ class SweepEdges final : public RowStage {
   EdgeOptions options_;
 };
 
-class SweepHinges final : public RowStage {
+class SweepHinges final : public RowStage, private TornParts {
  public:
   SweepHinges(const ClothParts& parts, HingeColour& colour,
-              const std::vector<RestTriangle>& triangles, AlignedArray<float>& records, int number)
+              const std::vector<RestTriangle>& triangles, AlignedArray<float>& records, int number,
+              MeshTearing* tearing)
       : RowStage("bending", "triangles of colour " + std::to_string(number), 2, colour.count,
                  "triangles"),
         parts_(parts),
         colour_(colour),
         triangles_(triangles),
         records_(records),
-        bows_(is_curved(triangles)) {}
+        bows_(is_curved(triangles)) {
+    if (!tearing) return;
+    for (std::size_t n = 0; n < colour.triangles.size(); ++n)
+      if (colour.triangles[n] >= 0) place_[colour.triangles[n]] = n;
+    tearing->tell(*this);
+  }
+  std::size_t bytes() const override { return place_.size() * 8 * sizeof(int); }
   Velocities velocities(double) const override { return Velocities::left_alone; }
   void prepare(double dt) override {
     dt_ = dt;
@@ -75,19 +83,28 @@ class SweepHinges final : public RowStage {
   }
 
  private:
-  // The second order scales inverse masses while it solves, by 9/4 at most.
   void set_matrices() {
+    for (std::size_t n = 0; n < colour_.triangles.size(); ++n)
+      if (colour_.triangles[n] >= 0) set_matrix(n);
+  }
+  // The second order scales inverse masses while it solves, by 9/4 at most.
+  void set_matrix(std::size_t n) {
     const Solver& solver = parts_.scene.solver;
     const double h = dt_ * implicit_share(solver), scale = solver.order == 2 ? 2.25 : 1;
     const Particles& p = parts_.particles;
-    for (std::size_t n = 0; n < colour_.triangles.size(); ++n) {
-      if (colour_.triangles[n] < 0) continue;
-      const RestTriangle& r = triangles_[std::size_t(colour_.triangles[n])];
-      const auto matrix =
-          hinge_matrix(r, h, [&](int v) { return scale * p.inverse_mass[p.lane(v)]; });
-      MeshBatch& b = colour_.batches[n / kBatch];
-      for (std::size_t m = 0; m < 6; ++m) b.moment[m][n % kBatch] = float(matrix[m]);
-    }
+    const RestTriangle& r = triangles_[std::size_t(colour_.triangles[n])];
+    const auto matrix =
+        hinge_matrix(r, h, [&](int v) { return scale * p.inverse_mass[p.lane(v)]; });
+    MeshBatch& b = colour_.batches[n / kBatch];
+    for (std::size_t m = 0; m < 6; ++m) b.moment[m][n % kBatch] = float(matrix[m]);
+  }
+  void set_triangle(int triangle) override {
+    const auto found = place_.find(triangle);
+    if (found == place_.end()) return;
+    const std::size_t n = found->second;
+    physics::set_triangle(colour_.batches[n / kBatch], n % kBatch,
+                          triangles_[std::size_t(triangle)]);
+    if (dt_ > 0) set_matrix(n);
   }
 
   ClothParts parts_;
@@ -95,17 +112,47 @@ class SweepHinges final : public RowStage {
   const std::vector<RestTriangle>& triangles_;
   AlignedArray<float>& records_;
   const bool bows_;
+  std::map<int, std::size_t> place_;  // of the colour's triangles, where they can tear
   double dt_ = 0;
 };
 
 }  // namespace
 
-MeshSweeps::MeshSweeps(const ClothParts& parts, const MeshOrder& order, const Seams& seams)
-    : parts_(parts), order_(order), seams_(seams), records_(records_of(parts.particles)) {}
+MeshSweeps::MeshSweeps(const ClothParts& parts, const MeshOrder& order, const Seams& seams,
+                       MeshTearing* tearing)
+    : parts_(parts),
+      order_(order),
+      seams_(seams),
+      tearing_(tearing),
+      records_(records_of(parts.particles)) {}
+
+// Places of no edge, or no more, are told the padding behind their own row, a lane each.
+void MeshSweeps::put_nobody(EdgeBatch& b, std::size_t lane, int row) const {
+  b.near[lane] = b.far[lane] = offset_of_nobody(parts_.particles, row, int(lane));
+}
+
+void MeshSweeps::set_edge(int edge, bool holds) {
+  if (strains_)
+    tearing_->for_each_side(edge, [&](const MeshTearing::Side& s) { strains_->follow(s.triangle); });
+  if (place_.empty()) return;
+  const EdgePlace& at = place_[std::size_t(edge)];
+  EdgeBatch& b = edges_[std::size_t(at.colour)].batches[at.batch];
+  if (!holds) return put_nobody(b, at.lane, at.row);
+  const auto [near, far] = tearing_->parts().edges.ends[std::size_t(edge)];
+  b.near[at.lane] = offset_of(parts_.particles, near);
+  b.far[at.lane] = offset_of(parts_.particles, far);
+}
+
+// Of what has torn before these were made.
+void MeshSweeps::follow_torn() {
+  for (std::size_t e = 0; tearing_ && e < tearing_->parts().edges.ends.size(); ++e)
+    if (!tearing_->holds(e)) set_edge(int(e), false);
+}
 
 void MeshSweeps::make_edges(const MeshEdges& edges, double stiffness) {
   const Particles& p = parts_.particles;
   std::vector<Corners> elements;
+  if (tearing_) place_.resize(edges.ends.size());
   for (const auto& [a, b] : edges.ends) elements.push_back({a, b, -1, -1, -1, -1});
   for (const Batches& all : coloured_batches(order_, elements)) {
     EdgeColour& colour = edges_.emplace_back();
@@ -113,13 +160,14 @@ void MeshSweeps::make_edges(const MeshEdges& edges, double stiffness) {
     for (int j = 0; j < p.rows; ++j)
       for (int n = all.first[std::size_t(j)]; n < all.first[std::size_t(j) + 1]; ++n) {
         EdgeBatch& b = colour.batches.emplace_back();
-        for (int k = 0; k < kBatch; ++k) {
-          b.near[k] = b.far[k] = offset_of_nobody(p, j, k);
+        for (std::size_t k = 0; k < kBatch; ++k) {
+          put_nobody(b, k, j);
           b.give[k] = 1;
         }
         const std::vector<int>& chosen = all.elements[std::size_t(n)];
         for (std::size_t k = 0; k < chosen.size(); ++k) {
           const auto e = std::size_t(chosen[k]);
+          if (tearing_) place_[e] = {int(edges_.size()) - 1, j, std::size_t(n), k};
           b.near[k] = offset_of(p, edges.ends[e][0]);
           b.far[k] = offset_of(p, edges.ends[e][1]);
           b.rest[k] = float(edges.rest[e]);
@@ -128,6 +176,7 @@ void MeshSweeps::make_edges(const MeshEdges& edges, double stiffness) {
         colour.edges += std::int64_t(chosen.size());
       }
   }
+  follow_torn();
 }
 
 void MeshSweeps::make_hinges(const std::vector<RestTriangle>& triangles) {
@@ -148,7 +197,7 @@ void MeshSweeps::make_hinges(const std::vector<RestTriangle>& triangles) {
             b.corner[c][k] = offset_of_nobody(p, j, int(k));
           if (k >= chosen.size()) continue;
           const RestTriangle& r = triangles[std::size_t(chosen[k])];
-          set_triangle(b, k, r);
+          physics::set_triangle(b, k, r);
           for (std::size_t c = 0; c < kMeshCorners; ++c)
             if (r.corner[c] >= 0) b.corner[c][k] = offset_of(p, r.corner[c]);
         }
@@ -178,7 +227,9 @@ void MeshSweeps::append_edges(int iterations, StageList& list) {
 }
 
 void MeshSweeps::make_strains(const std::vector<RestTriangle>& triangles, bool keeps_stress) {
-  strains_ = std::make_unique<StrainSweeps>(parts_, order_, triangles, records_, keeps_stress);
+  strains_ = std::make_unique<StrainSweeps>(parts_, order_, triangles, records_, keeps_stress,
+                                            tearing_ != nullptr);
+  follow_torn();
 }
 
 void MeshSweeps::append_strains(int iterations, bool fresh, StageList& list) {
@@ -193,8 +244,8 @@ void MeshSweeps::append_strains(int iterations, bool fresh, StageList& list) {
 void MeshSweeps::append_hinges(StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 2));
   for (int c = 0; c < int(hinges_.size()); ++c)
-    list.stages.push_back(
-        std::make_unique<SweepHinges>(parts_, hinges_[std::size_t(c)], *triangles_, records_, c));
+    list.stages.push_back(std::make_unique<SweepHinges>(parts_, hinges_[std::size_t(c)],
+                                                        *triangles_, records_, c, tearing_));
   append_seams(list);
   list.stages.push_back(make_store_records(parts_, records_, false));
 }

@@ -7,7 +7,7 @@
 
 #include "physics/kernels/mesh_sweep.h"
 #include "physics/model/mesh/batches.h"
-#include "physics/model/mesh/mesh_edges.h"
+#include "physics/model/mesh/mesh_tearing.h"
 #include "physics/model/mesh/seams.h"
 #include "physics/model/mesh/strain_sweep.h"
 
@@ -28,9 +28,11 @@ struct HingeColour {
 };
 
 // What is made once for the sweeps of one mesh.
-class MeshSweeps {
+class MeshSweeps : private TornParts {
  public:
-  MeshSweeps(const ClothParts& parts, const MeshOrder& order, const Seams& seams);
+  // `tearing`: null where it cannot.
+  MeshSweeps(const ClothParts& parts, const MeshOrder& order, const Seams& seams,
+             MeshTearing* tearing);
 
   // `stiffness`: of an edge from each of its triangles [N/m].
   void make_edges(const MeshEdges& edges, double stiffness);
@@ -46,18 +48,33 @@ class MeshSweeps {
   // Nothing is longer than 1 + strain times its length.
   void append_limit(double strain, StageList& list);
 
+  // Stages are chosen anew: what tears is told of again.
+  void follow_tears() {
+    if (tearing_) tearing_->tell(*this);
+  }
   bool knows_edges() const { return !edges_.empty(); }
   StrainSweeps* strains() { return strains_.get(); }  // null: not made yet
   std::size_t bytes() const;
 
  private:
+  // Of an edge.
+  struct EdgePlace {
+    int colour = 0, row = 0;
+    std::size_t batch = 0, lane = 0;
+  };
+
   void append_seams(StageList& list);
+  void put_nobody(EdgeBatch& batch, std::size_t lane, int row) const;
+  void set_edge(int edge, bool holds) override;
+  void follow_torn();
 
   const ClothParts& parts_;
   const MeshOrder& order_;
   const Seams& seams_;
+  MeshTearing* const tearing_;
   AlignedArray<float> records_;
   std::vector<EdgeColour> edges_;
+  std::vector<EdgePlace> place_;  // of every edge, where they can tear
   const std::vector<RestTriangle>* triangles_ = nullptr;
   std::vector<HingeColour> hinges_;
   std::unique_ptr<StrainSweeps> strains_;

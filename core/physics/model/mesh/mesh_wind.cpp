@@ -7,32 +7,51 @@
 namespace weft::physics {
 namespace {
 
-class MeshWindStage final : public WindStage {
+class MeshWindStage final : public WindStage, private TornParts {
  public:
   MeshWindStage(const ClothParts& parts, const MeshOrder& order,
-                const std::vector<RestTriangle>& triangles, std::uint64_t seed)
-      : WindStage(parts, seed, std::int64_t(triangles.size())), parts_(parts) {
-    const Batches all = batches_of(order, triangles, 3);
-    for (const std::vector<int>& chosen : all.elements) {
-      MeshAirBatch b{};
-      b.count = int(chosen.size());
-      for (std::size_t n = 0; n < chosen.size(); ++n)
-        for (std::size_t k = 0; k < 3; ++k) {
-          const int corner = triangles[std::size_t(chosen[n])].corner[k];
-          const int j = order.rows[std::size_t(corner)], i = order.lanes[std::size_t(corner)];
-          b.corner[k][n] = j * parts.particles.stride + i;
-          b.sum[k][n] = j % 2 * parts.particles.stride + i;
-        }
-      batches_.push_back(b);
-    }
+                const std::vector<RestTriangle>& triangles, std::uint64_t seed,
+                MeshTearing* tearing)
+      : WindStage(parts, seed, std::int64_t(triangles.size())),
+        parts_(parts),
+        order_(order),
+        triangles_(triangles),
+        tearing_(tearing) {
+    Batches all = batches_of(order, triangles, 3);
+    for (const std::vector<int>& chosen : all.elements) batches_.push_back(batch_of(chosen));
     first_ = all.first;
+    if (!tearing) return;
+    batch_.resize(triangles.size());
+    for (std::size_t b = 0; b < all.elements.size(); ++b)
+      for (const int t : all.elements[b]) batch_[std::size_t(t)] = int(b);
+    elements_ = std::move(all.elements);
+    tearing->tell(*this);
   }
 
   std::size_t bytes() const override {
-    return WindStage::bytes() + batches_.size() * sizeof(MeshAirBatch);
+    return WindStage::bytes() + batches_.size() * sizeof(MeshAirBatch) +
+           2 * batch_.size() * sizeof(int);
   }
 
  private:
+  MeshAirBatch batch_of(const std::vector<int>& chosen) const {
+    MeshAirBatch b{};
+    for (const int t : chosen) {
+      if (tearing_ && tearing_->gone(std::size_t(t))) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const int corner = triangles_[std::size_t(t)].corner[k];
+        const int j = order_.rows[std::size_t(corner)], i = order_.lanes[std::size_t(corner)];
+        b.corner[k][b.count] = j * parts_.particles.stride + i;
+        b.sum[k][b.count] = j % 2 * parts_.particles.stride + i;
+      }
+      ++b.count;
+    }
+    return b;
+  }
+  void set_triangle(int triangle) override {
+    const auto b = std::size_t(batch_[std::size_t(triangle)]);
+    batches_[b] = batch_of(elements_[b]);
+  }
   void blow(int j, const Substep& s) override {
     MeshWind r{};
     set_air(r, s);
@@ -45,17 +64,23 @@ class MeshWindStage final : public WindStage {
   }
 
   ClothParts parts_;
+  const MeshOrder& order_;
+  const std::vector<RestTriangle>& triangles_;
+  MeshTearing* const tearing_;  // null: it cannot
   std::vector<MeshAirBatch> batches_;
   std::vector<int> first_;  // batch of each row
+  // Where it can tear: the triangles of each batch, and the batch of each triangle.
+  std::vector<std::vector<int>> elements_;
+  std::vector<int> batch_;
 };
 
 }  // namespace
 
 std::unique_ptr<RowStage> make_mesh_wind(const ClothParts& parts, const MeshOrder& order,
                                          const std::vector<RestTriangle>& triangles,
-                                         std::uint64_t seed) {
+                                         std::uint64_t seed, MeshTearing* tearing) {
   if (!blows(parts.scene.wind)) return nullptr;
-  return std::make_unique<MeshWindStage>(parts, order, triangles, seed);
+  return std::make_unique<MeshWindStage>(parts, order, triangles, seed, tearing);
 }
 
 }  // namespace weft::physics

@@ -187,9 +187,9 @@ void stretch_springs(const RestTriangle& r, const MeshMaterial& m, const Corners
     const std::size_t next = (k + 1) % 3;
     const Vec3 e = minus(c.x[next], c.x[k]);
     const double l = std::max(length(e), 1e-10), over = l - r.rest[k];
-    p.energy += 0.5 * m.stiffness * over * over;
+    p.energy += r.half[k] * (0.5 * m.stiffness * over * over);
     const double rate = dot(e, minus(c.v[next], c.v[k])) / l;
-    const Vec3 pull = times(e, (m.stiffness * over + m.spring_damping * rate) / l);
+    const Vec3 pull = times(e, r.half[k] * (m.stiffness * over + m.spring_damping * rate) / l);
     p.force[k] = plus(p.force[k], pull);
     p.force[next] = minus(p.force[next], pull);
   }
@@ -282,6 +282,7 @@ std::vector<RestTriangle> rest_triangles(const TriangleMesh& mesh, const RestPla
     r.rest[0] = length(p);
     r.rest[1] = length(minus(q, p));
     r.rest[2] = length(q);
+    r.half[0] = r.half[1] = r.half[2] = 1;
     // Inverse of the matrix with columns p and q, in the frame of warp and weft.
     const double pu = dot(p, warp), pv = dot(p, weft), qu = dot(q, warp), qv = dot(q, weft);
     const double d = pu * qv - qu * pv;

@@ -22,8 +22,9 @@ namespace weft::physics {
 struct RestTriangle {
   std::array<int, 6> corner;  // the triangle's own, and across the side from k to k+1; -1: none
   double du[2], dv[2];        // 1/m; d/du = (x1 - x0) du[0] + (x2 - x0) du[1]
-  double area;                // m²
+  double area;                // m²; 0 where it has torn
   double rest[3];             // m; of the side from corner k to the next
+  double half[3];             // 1, or 0 where that side has torn
   double away[3], away_at[3], own[3], own_at[3];  // of the jumps of slope: kernels/mesh.h
   double bow[3];     // 1/m²; of a jump at rest along the product of the sides from corner 0
   double moment[6];  // their quadratic form, 00 11 22 01 12 20 [N·m³]

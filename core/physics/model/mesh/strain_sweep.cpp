@@ -69,11 +69,11 @@ StrainBatch batch_of(const std::vector<int>& chosen, int row, const Particles& p
 
 StrainSweeps::StrainSweeps(const ClothParts& parts, const MeshOrder& order,
                            const std::vector<RestTriangle>& triangles, AlignedArray<float>& records,
-                           bool keeps_stress)
-    : parts_(parts), records_(records) {
+                           bool keeps_stress, bool tears)
+    : parts_(parts), triangles_(triangles), records_(records) {
   const Particles& p = parts.particles;
   if (damped()) before_ = records_of(p);
-  if (keeps_stress) places_.resize(triangles.size());
+  if (keeps_stress || tears) places_.resize(triangles.size());
   std::vector<Corners> elements;
   for (const RestTriangle& r : triangles)
     elements.push_back({r.corner[0], r.corner[1], r.corner[2], -1, -1, -1});
@@ -84,8 +84,8 @@ StrainSweeps::StrainSweeps(const ClothParts& parts, const MeshOrder& order,
       for (int n = all.first[std::size_t(j)]; n < all.first[std::size_t(j) + 1]; ++n) {
         const std::vector<int>& chosen = all.elements[std::size_t(n)];
         const std::size_t first = colour.batches.size() * kStrains * kBatch;
-        for (std::size_t k = 0; keeps_stress && k < chosen.size(); ++k)
-          places_[std::size_t(chosen[k])] = {colours_.size() - 1, first + k};
+        for (std::size_t k = 0; !places_.empty() && k < chosen.size(); ++k)
+          places_[std::size_t(chosen[k])] = {colours_.size() - 1, first + k, j};
         colour.batches.push_back(batch_of(chosen, j, p, triangles));
         colour.triangles += std::int64_t(chosen.size());
       }
@@ -96,6 +96,17 @@ StrainSweeps::StrainSweeps(const ClothParts& parts, const MeshOrder& order,
 void StrainSweeps::make_room(StrainColour& colour) {
   if (colour.stress.size() == 0)
     colour.stress = AlignedArray<float>(colour.batches.size() * kStrains * kBatch);
+}
+
+void StrainSweeps::follow(int triangle) {
+  const RestTriangle& r = triangles_[std::size_t(triangle)];
+  const Place& at = places_[std::size_t(triangle)];
+  StrainBatch& b = colours_[at.colour].batches[at.first / (kStrains * kBatch)];
+  const std::size_t k = at.first % (kStrains * kBatch);
+  const Particles& p = parts_.particles;
+  b.area[k] = float(r.area);
+  for (std::size_t c = 0; c < 3; ++c)
+    b.corner[c][k] = r.area > 0 ? offset_of(p, r.corner[c]) : offset_of_nobody(p, at.row, int(k));
 }
 
 void StrainSweeps::clear_stress() {

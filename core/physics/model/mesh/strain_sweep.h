@@ -4,6 +4,7 @@
 
 #include "physics/kernels/mesh_sweep.h"
 #include "physics/model/mesh/batches.h"
+#include "physics/model/mesh/mesh_tearing.h"
 
 namespace weft::physics {
 
@@ -17,15 +18,18 @@ struct StrainColour {
 class StrainSweeps {
  public:
   // `keeps_stress`: multipliers are there whatever the number of sweeps, and may be asked for and changed.
+  // `tears`: follow() is going to be called. `triangles` outlive it.
   StrainSweeps(const ClothParts& parts, const MeshOrder& order,
                const std::vector<RestTriangle>& triangles, AlignedArray<float>& records,
-               bool keeps_stress);
+               bool keeps_stress, bool tears);
 
   // Before anything is moved: keeps what damping compares with, if there is any.
   void append_places_before(StageList& list);
   // One sweep of so many; `fresh`: the first of a substep, and of stress.
   void append(int iterations, bool fresh, StageList& list);
 
+  // A triangle has lost its membrane, or has it again: as its area says.
+  void follow(int triangle);
   void clear_stress();
   // Of a triangle; its components are kBatch apart [N/m].
   float* stress(int triangle) {
@@ -40,18 +44,20 @@ class StrainSweeps {
   std::size_t bytes() const;
 
  private:
-  // Of a triangle in the multipliers.
+  // Of a triangle in the multipliers; the row of its batch.
   struct Place {
     std::size_t colour, first;
+    int row;
   };
   static void make_room(StrainColour& colour);
   bool damped() const { return parts_.cloth.membrane.damping > 0; }
 
   const ClothParts& parts_;
+  const std::vector<RestTriangle>& triangles_;
   AlignedArray<float>& records_;
   AlignedArray<float> before_;  // none: nothing is damped
   std::vector<StrainColour> colours_;
-  std::vector<Place> places_;  // none: stress is not asked for
+  std::vector<Place> places_;  // none: neither stress nor tears are asked for
 };
 
 }  // namespace weft::physics

@@ -35,10 +35,11 @@ struct StrandBatch {
 
 }  // namespace
 
-class StrandSweeps::Solver {
+class StrandSweeps::Solver : private TornParts {
  public:
   Solver(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-         std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x)
+         std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x,
+         MeshTearing* tearing)
       : parts_(parts),
         membrane_(std::move(membrane)),
         remembers_(membrane_ || parts.scene.solver.iterations > 1) {
@@ -47,6 +48,7 @@ class StrandSweeps::Solver {
     words_ = std::to_string(strands.size()) + " strands in " + std::to_string(colours.size()) +
              " colours, each solved as a whole";
     count_ = std::int64_t(edges.ends.size());
+    if (tearing) place_.resize(edges.ends.size());
     first_.push_back(0);
     for (const std::vector<int>& colour : colours) {
       for (std::size_t n = 0; n < colour.size(); n += kBatchLines)
@@ -57,6 +59,7 @@ class StrandSweeps::Solver {
     for (const float w : parts.particles.inverse_mass.span())
       least_ = std::max(least_, kLeastCompliance * double(w));
     for (const StrandBatch& b : batches_) longest_ = std::max(longest_, b.particles);
+    if (tearing) tearing->tell(*this);
     if (membrane_)
       for (const double rest : edges.rest) squares_.push_back(rest * rest);
   }
@@ -66,7 +69,7 @@ class StrandSweeps::Solver {
   const ClothParts& parts() const { return parts_; }
   float gain(double dt) const { return velocity_gain(parts_.scene.solver, true, dt); }
   std::size_t bytes() const {
-    std::size_t bytes = membrane_ ? membrane_->bytes() : 0;
+    std::size_t bytes = place_.size() * sizeof(Place) + (membrane_ ? membrane_->bytes() : 0);
     for (const StrandBatch& b : batches_)
       bytes += (b.lanes.size() * 2 + b.edges.size()) * sizeof(int) +
                sizeof(float) * (3 * b.rest.size() + b.lambda.size());
@@ -93,6 +96,14 @@ class StrandSweeps::Solver {
   }
 
  private:
+  struct Place {
+    std::size_t batch = 0, at = 0;
+  };
+  void set_edge(int edge, bool holds) override {
+    const auto [batch, at] = place_[std::size_t(edge)];
+    batches_[batch].alive[at] = holds ? -1 : 0;
+  }
+
   // Of one thread.
   struct Memory {
     explicit Memory(int particles)
@@ -128,6 +139,7 @@ class StrandSweeps::Solver {
         b.give[at] = float(1 / std::max(k, 1e-12));
         b.alive[at] = -1;
         if (membrane_) b.edges[at] = int(e);
+        if (!place_.empty()) place_[e] = {batches_.size() - 1, at};
       }
     }
   }
@@ -225,18 +237,19 @@ class StrandSweeps::Solver {
   std::vector<StrandBatch> batches_;
   std::vector<std::size_t> first_;  // batch of each colour, and how many there are
   std::vector<double> squares_;     // m²; of the membrane's edges at rest
+  std::vector<Place> place_;        // of every edge, where they can tear
   double least_ = 0;                // 1/kg
   int longest_ = 0;
   std::vector<Memory> memory_;  // of every thread
 };
 
 StrandSweeps::StrandSweeps(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-                           const std::vector<Vec3>& x)
-    : solver_(std::make_shared<Solver>(parts, edges, stiffness, nullptr, x)) {}
+                           const std::vector<Vec3>& x, MeshTearing* tearing)
+    : solver_(std::make_shared<Solver>(parts, edges, stiffness, nullptr, x, tearing)) {}
 
 StrandSweeps::StrandSweeps(const ClothParts& parts, const MeshEdges& edges,
                            std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x)
-    : solver_(std::make_shared<Solver>(parts, edges, 0, std::move(membrane), x)) {}
+    : solver_(std::make_shared<Solver>(parts, edges, 0, std::move(membrane), x, nullptr)) {}
 
 // The first of a substep's tells the memory of all.
 class StrandSweeps::Sweep final : public WholeStage {

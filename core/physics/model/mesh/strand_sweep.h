@@ -1,6 +1,7 @@
 // Line sweeps over a mesh: strands in the place of lines.
 #pragma once
 
+#include "physics/model/mesh/mesh_tearing.h"
 #include "physics/model/mesh/strand_membrane.h"
 #include "physics/model/mesh/strands.h"
 
@@ -9,10 +10,11 @@ namespace weft::physics {
 // What is made once for the strands of one mesh; stages share it.
 class StrandSweeps {
  public:
-  // Of springs. `stiffness`: of an edge from each of its triangles [N/m]; `x`: of the vertices at rest [m].
+  // Of springs. `stiffness`: of an edge from each of its triangles [N/m]; `x`: of the vertices at rest [m];
+  // `tearing`: null where it cannot.
   StrandSweeps(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-               const std::vector<Vec3>& x);
-  // Of a membrane.
+               const std::vector<Vec3>& x, MeshTearing* tearing);
+  // Of a membrane that cannot tear.
   StrandSweeps(const ClothParts& parts, const MeshEdges& edges,
                std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x);
 

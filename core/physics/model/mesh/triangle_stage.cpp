@@ -14,18 +14,26 @@
 namespace weft::physics {
 namespace {
 
-class TriangleStage final : public RowStage {
+class TriangleStage final : public RowStage, private TornParts {
  public:
   TriangleStage(const ClothParts& parts, const MeshOrder& order,
-                const std::vector<RestTriangle>& triangles, const MeshMaterial& material)
+                const std::vector<RestTriangle>& triangles, const MeshMaterial& material,
+                MeshTearing* tearing)
       : RowStage("triangles", material.membrane ? "membrane forces" : "springs along edges",
                  material.bends ? 2 : 1, std::int64_t(triangles.size()), "triangles"),
         parts_(parts),
+        triangles_(triangles),
+        tearing_(tearing),
         damped_(material.damped()),
         ring_(reach + 1) {
     fill(material);
     forces_.bows = is_curved(triangles);
-    make_batches(order, triangles, material.bends);
+    const Batches all = batches_of(order, triangles, material.bends ? 6 : 3);
+    for (const std::vector<int>& one : all.elements) batches_.push_back(batch_of(one, order));
+    first_ = all.first;
+    if (!tearing) return;
+    find_places(all.elements);
+    tearing->tell(*this);
   }
 
   bool moves_particles() const override { return true; }
@@ -37,7 +45,7 @@ class TriangleStage final : public RowStage {
     loaded_.assign(std::size_t(slots), 0);
   }
   std::size_t bytes() const override {
-    return batches_.size() * sizeof(MeshBatch) +
+    return batches_.size() * sizeof(MeshBatch) + place_.size() * sizeof(int) +
            (position_.size() + velocity_.size() + force_.size()) * sizeof(float);
   }
 
@@ -68,28 +76,40 @@ class TriangleStage final : public RowStage {
     forces_.bends = m.bends, forces_.bend_damping = float(m.bend_damping);
   }
 
-  void make_batches(const MeshOrder& order, const std::vector<RestTriangle>& triangles,
-                    bool bends) {
-    const Batches all = batches_of(order, triangles, bends ? 6 : 3);
-    for (const std::vector<int>& one : all.elements)
-      batches_.push_back(batch_of(one, order, triangles));
-    first_ = all.first;
-  }
-
-  MeshBatch batch_of(const std::vector<int>& chosen, const MeshOrder& order,
-                     const std::vector<RestTriangle>& triangles) const {
+  MeshBatch batch_of(const std::vector<int>& chosen, const MeshOrder& order) const {
     MeshBatch b{};
     const int nobody = ring_ * parts_.particles.stride;
     for (auto& corner : b.corner) std::fill(std::begin(corner), std::end(corner), nobody);
     for (std::size_t n = 0; n < chosen.size(); ++n) {
-      const RestTriangle& r = triangles[std::size_t(chosen[n])];
+      const RestTriangle& r = triangles_[std::size_t(chosen[n])];
       for (std::size_t k = 0; k < 6; ++k)
         if (const int c = r.corner[k]; c >= 0)
           b.corner[k][n] = order.rows[std::size_t(c)] % ring_ * parts_.particles.stride +
                            order.lanes[std::size_t(c)];
-      set_triangle(b, n, r);
+      physics::set_triangle(b, n, r);
     }
     return b;
+  }
+
+  void find_places(const std::vector<std::vector<int>>& batches) {
+    place_.resize(triangles_.size());
+    for (std::size_t b = 0; b < batches.size(); ++b)
+      for (std::size_t n = 0; n < batches[b].size(); ++n)
+        place_[std::size_t(batches[b][n])] = int(kBatch * b + n);
+  }
+  void set_edge(int edge, bool) override {
+    tearing_->for_each_side(edge, [&](const MeshTearing::Side& side) {
+      const RestTriangle& r = triangles_[std::size_t(side.triangle)];
+      const auto place = std::size_t(place_[std::size_t(side.triangle)]);
+      MeshBatch& b = batches_[place / kBatch];
+      b.half[side.k][place % kBatch] = float(r.half[side.k]);
+      b.area[place % kBatch] = float(r.area);
+    });
+  }
+  void set_triangle(int triangle) override {
+    const auto place = std::size_t(place_[std::size_t(triangle)]);
+    physics::set_triangle(batches_[place / kBatch], place % kBatch,
+                          triangles_[std::size_t(triangle)]);
   }
 
   // Of the rows in turn, and of nobody.
@@ -113,11 +133,14 @@ class TriangleStage final : public RowStage {
   }
 
   ClothParts parts_;
+  const std::vector<RestTriangle>& triangles_;
+  MeshTearing* const tearing_;  // null: it cannot
   const bool damped_;
   const int ring_;  // rows whose records are kept
   MeshForces forces_{};
   std::vector<MeshBatch> batches_;
   std::vector<int> first_;  // batch of each row
+  std::vector<int> place_;  // of every triangle in the batches, where they can tear
   AlignedArray<float> position_, velocity_, force_;
   std::vector<int> loaded_;  // the next row to come into the records, of each slot
 };
@@ -126,8 +149,8 @@ class TriangleStage final : public RowStage {
 
 std::unique_ptr<RowStage> make_triangles(const ClothParts& parts, const MeshOrder& order,
                                          const std::vector<RestTriangle>& triangles,
-                                         const MeshMaterial& material) {
-  return std::make_unique<TriangleStage>(parts, order, triangles, material);
+                                         const MeshMaterial& material, MeshTearing* tearing) {
+  return std::make_unique<TriangleStage>(parts, order, triangles, material, tearing);
 }
 
 }  // namespace weft::physics
