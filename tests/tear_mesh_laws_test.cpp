@@ -36,6 +36,8 @@ TEST(TearMesh, TornInTwoItKeepsMomentumAndGainsNoEnergy) {
     Report before = run.report();
     const Report first = before;
     const double total = first.energy.kinetic + first.energy.elastic;
+    // Lines move particles farther, and so round more.
+    const double drift = scene.solver.sweep == Sweep::line ? 1e-3 : 1e-4;
     double turned = 0;
     for (int n = 0; n < 40; ++n) {
       run.advance_frame();
@@ -44,7 +46,7 @@ TEST(TearMesh, TornInTwoItKeepsMomentumAndGainsNoEnergy) {
       EXPECT_LT(now.energy.kinetic + now.energy.elastic,
                 before.energy.kinetic + before.energy.elastic + 0.01 * total)
           << way.name << ", frame " << n;
-      EXPECT_LT(distance(now.momentum, first.momentum), 1e-3) << way.name << ", frame " << n;
+      EXPECT_LT(distance(now.momentum, first.momentum), drift) << way.name << ", frame " << n;
       turned = std::max(turned, distance(now.angular_momentum, first.angular_momentum));
       before = now;
     }

@@ -1,5 +1,6 @@
 // Tearing and cutting of meshes: what does not tear is not changed, what is too long or in a cutter's way ends, and
 // all of it comes back with a state; the same bits for any threads.
+#include "folder.h"
 #include "machines.h"
 #include "made_up_bodies.h"
 #include "physics/kernels/kernels.h"
@@ -33,6 +34,20 @@ TEST(TearMesh, WhatDoesNotTearMovesBitForBitAsIfItCouldNot) {
 }
 
 // A vertex that two cuts leave alone between pieces goes with the one that is larger there.
+// A cutter is large enough for the mean edge, which is known once the mesh has been read.
+TEST(TearMesh, CuttersComeFromSceneFiles) {
+  const Folder folder;
+  folder.write("m.obj", write_obj(*made_up({.nx = 21, .ny = 21})));
+  for (const double radius : {0.01, 1e-5}) {
+    folder.write("s.json", R"({"weft": 1, "cloths": [{"mesh": {"file": "m.obj"}}], "colliders":
+        [{"sphere": {"radius": )" +
+                               std::to_string(radius) + R"(}, "cuts": true, "offset": 0}]})");
+    const SceneFile file = read_scene(folder / "s.json");
+    ASSERT_EQ(file.faults.size(), radius == 0.01 ? 0u : 1u);
+    if (!file.faults.empty()) EXPECT_EQ(file.faults[0].place, "/colliders/0/cuts");
+  }
+}
+
 // Strands know nothing of tears: it runs as by colours, and a note says so.
 TEST(TearMesh, AMembraneThatCanTearLeavesItsStrands) {
   Scene scene = tug(ways().back(), 0.02), lines = scene;
@@ -72,8 +87,8 @@ TEST(TearMesh, AGasKeepsItsMeshWhole) {
   EXPECT_EQ(run.cut({-1, 0, 0}, {1, 0, 0}, 0.5), 0);
   run.advance_frame();
   EXPECT_EQ(run.report(false).torn, 0);
-  EXPECT_TRUE(std::ranges::any_of(
-      run.plan().notes, [](const std::string& n) { return n.find("gas") != n.npos; }));
+  EXPECT_TRUE(std::ranges::any_of(run.plan().notes,
+                                  [](const std::string& n) { return n.find("gas") != n.npos; }));
   scene.cloths[0].tear_strain = 0.1;
   EXPECT_THROW(Simulation{scene}, SceneError);
 }

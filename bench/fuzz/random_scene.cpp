@@ -89,7 +89,7 @@ Scene with_gas(const Scene& scene, std::uint64_t seed) {
   Parts parts(draw);
   Scene next = scene;
   parts.add_gas(next);
-  if (!can_run(next)) return scene;
+  if (!validate(next).empty()) return scene;
   shorten_frames(next);
   return next;
 }
@@ -126,9 +126,8 @@ double work_of_substep(const Scene& scene) {
 
 Scene random_scene(std::uint64_t seed) {
   for (std::uint64_t stream = 0;; ++stream) {
-    Scene scene =
-        with_gas(draw_scene(Draw(seed, stream), Draw(seed, stream + kTears)), seed);
-    if (!can_run(scene) || work_of_substep(scene) >= kSubstepWork) continue;
+    Scene scene = with_gas(draw_scene(Draw(seed, stream), Draw(seed, stream + kTears)), seed);
+    if (!validate(scene).empty() || work_of_substep(scene) >= kSubstepWork) continue;
     for_each_mesh(scene, [&](auto& mesh, const std::string&) {
       mesh.file = std::to_string(seed) + "-" + mesh.file;
     });

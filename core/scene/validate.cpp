@@ -220,8 +220,11 @@ class Together {
     for (std::size_t c = 0; c < scene_.cloths.size(); ++c) {
       if (!sound({"/cloths/" + std::to_string(c) + "/grid"})) return;
       const ClothMesh& mesh = scene_.cloths[c].mesh;
-      if (mesh.shape) spacing = std::min(spacing, mean_edge(mesh));
-      if (mesh.given()) continue;
+      if (mesh.given()) {
+        if (!mesh.shape) return;  // not read yet
+        spacing = std::min(spacing, mean_edge(mesh));
+        continue;
+      }
       const Grid& grid = scene_.cloths[c].grid;
       spacing = std::min({spacing, spacing_u(grid), spacing_v(grid)});
     }

@@ -77,7 +77,7 @@ struct Report {
   struct {
     double kinetic = 0, elastic = 0, gravity = 0, total = 0;  // J
   } energy;
-  // J; what of the elastic energy stretches membranes, and what bends: the rest stretches springs.
+  // J; what of the elastic energy stretches membranes, and what bends: the rest is of springs and gases.
   double membrane_energy = 0, bending_energy = 0;
   Vec3 momentum{};          // kg m/s
   Vec3 angular_momentum{};  // kg m²/s about the origin

@@ -37,7 +37,7 @@ constexpr double kParticles = 430;  // contact of a folded sheet; 230 where it l
 constexpr double kSurface = 1100;   // 900 where it lies flat
 constexpr double kMeshVertex = 2500;
 constexpr double kMeshTearing = 1100;  // and vertex
-constexpr double kMeshBody = 160;  // and body that is a mesh
+constexpr double kMeshBody = 160;      // and body that is a mesh
 }  // namespace memory
 
 // Nanoseconds on one thread of a current x86-64 core with AVX-512, measured as docs/benchmarks.md tells

@@ -136,9 +136,8 @@ void MeshModel::append_projections(StageList& list) {
   else if (material_.stiffness == 0)
     list.skip("gauss_seidel", "stiffness is 0");
   else if (lines)
-    list.stages.push_back(
-        StrandSweeps(parts_, edges_, material_.stiffness, start_, tearing_.get())
-            .stage(solver.iterations, true));
+    list.stages.push_back(StrandSweeps(parts_, edges_, material_.stiffness, start_, tearing_.get())
+                              .stage(solver.iterations, true));
   else
     edge_sweeps().append_edges(solver.iterations, list);
   if (material_.bends)
@@ -181,7 +180,8 @@ StrainSweeps& MeshModel::strain_sweeps() {
 void MeshModel::append_membrane(StageList& list) {
   const Solver& solver = parts_.scene.solver;
   StrainSweeps& strains = strain_sweeps();
-  if (solver.sweep != Sweep::line || tearing_) return sweeps_->append_strains(solver.iterations, true, list);
+  if (solver.sweep != Sweep::line || tearing_)
+    return sweeps_->append_strains(solver.iterations, true, list);
   StrandSweeps strands(parts_, edges_,
                        std::make_unique<StrandMembrane>(parts_, triangles_, edges_, strains),
                        start_);

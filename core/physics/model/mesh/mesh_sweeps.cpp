@@ -133,7 +133,8 @@ void MeshSweeps::put_nobody(EdgeBatch& b, std::size_t lane, int row) const {
 
 void MeshSweeps::set_edge(int edge, bool holds) {
   if (strains_)
-    tearing_->for_each_side(edge, [&](const MeshTearing::Side& s) { strains_->follow(s.triangle); });
+    tearing_->for_each_side(edge,
+                            [&](const MeshTearing::Side& s) { strains_->follow(s.triangle); });
   if (place_.empty()) return;
   const EdgePlace& at = place_[std::size_t(edge)];
   EdgeBatch& b = edges_[std::size_t(at.colour)].batches[at.batch];

@@ -38,8 +38,7 @@ struct StrandBatch {
 class StrandSweeps::Solver : private TornParts {
  public:
   Solver(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-         std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x,
-         MeshTearing* tearing)
+         std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x, MeshTearing* tearing)
       : parts_(parts),
         membrane_(std::move(membrane)),
         remembers_(membrane_ || parts.scene.solver.iterations > 1) {
