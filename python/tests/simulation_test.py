@@ -28,7 +28,7 @@ def test_the_same_bits_as_the_program(scene, tmp_path):
     file.write_text(json.dumps(scene))
     positions, report = run_program(tmp_path, file, "--frames", "40", "--threads", "1")
     for given, threads in [(scene, 1), (str(file), 2), (file, 3)]:
-        sim = weft.Simulation(given, threads=threads)
+        sim = weft.Simulation(given, threads=threads, follow_strain=True)
         sim.advance(40)
         assert numpy.array_equal(sim.positions, positions)
         ours = sim.report()

@@ -58,9 +58,15 @@ void check_method(const Solver& solver, const Cloth& cloth, const std::string& p
 void check_mesh(const Scene& scene, const Cloth& cloth, const std::string& place, Check& result) {
   check_keys(cloth, place, result);
   check_method(scene.solver, cloth, place, result);
-  const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
-                               [](const Collider& c) { return c.cuts; });
-  if (cloth.pressure.given() && (cut || cloth.tear_strain > 0))
+  const bool tears =
+      cloth.tear_strain > 0 || std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                                           [](const Collider& c) { return c.cuts; });
+  const Solver& solver = scene.solver;
+  if (tears && cloth.membrane.given() && solver.method == Method::compliant &&
+      solver.sweep == Sweep::line && result.sound("/solver/sweep"))
+    result.fault("/solver/sweep", "the membrane of a mesh is to tear or to be cut",
+                 "gauss_seidel, whose triangles follow tears, or no membrane");
+  if (cloth.pressure.given() && tears)
     result.fault(place + "/pressure", "a gas is in a mesh that is to tear or to be cut",
                  "no pressure, or tear_strain 0 and no collider that cuts");
 }

@@ -228,7 +228,8 @@ std::vector<std::string> MeshModel::notes() const {
   if (tearing_ && material_.membrane && !is_explicit(method_) &&
       parts_.scene.solver.sweep == Sweep::line)
     notes.push_back(
-        "strands do not follow tears of a membrane: gauss_seidel sweeps run in place of line");
+        "strands do not follow tears of a membrane: gauss_seidel sweeps run in place of line, "
+        "which hold less for the same substeps");
   const std::size_t loose = mesh_.edges.size();
   if (loose > 0 && !parts_.cloth.sewing)
     notes.push_back(std::to_string(loose) +
