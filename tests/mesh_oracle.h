@@ -24,15 +24,13 @@ struct Way {
   double bending;
 };
 
-// The compliant method in double precision, after Macklin, Müller, Chentanez 2016; constraints of several
-// rows by a dense solver.
+// The compliant method in double precision, after Macklin, Müller, Chentanez 2016. What is projected, others say.
 class Oracle {
  public:
   Oracle(const Scene& scene, const std::vector<Vec3>& start)
       : scene_(scene),
         cloth_(scene.cloths[0]),
         mesh_(*cloth_.mesh.shape),
-        edges_(physics::edges_of(mesh_, mesh_.vertices)),
         triangles_(physics::rest_triangles(mesh_, {mesh_.vertices}, cloth_.bending)),
         dt_(scene.time.frame / scene.time.substeps),
         w_(start.size()) {
@@ -44,19 +42,19 @@ class Oracle {
     for (double& w : w_) w = 1 / w;
     for (const Pin& pin : cloth_.pins) w_[std::size_t(pin.i)] = 0;
   }
+  virtual ~Oracle() = default;
 
   void substep(bool first) {
     const Eigen::Vector3d g(scene_.gravity[0], scene_.gravity[1], scene_.gravity[2]);
     const double kick = first ? dt_ / 2 : dt_;
+    before_ = x_;
     for (std::size_t p = 0; p < x_.size(); ++p) {
       if (w_[p] == 0) continue;
       v_[p] = v_[p] * (1 - kick * cloth_.drag) + kick * g;
       x_[p] += dt_ * v_[p];
     }
-    const std::vector<Eigen::Vector3d> predicted = x_;
-    lambda_.assign(edges_.ends.size(), 0);
-    for (int n = 0; n < scene_.solver.iterations; ++n) stretch();
-    if (cloth_.bending.given()) bend();
+    const Places predicted = x_;
+    project();
     for (std::size_t p = 0; p < x_.size(); ++p) v_[p] += (x_[p] - predicted[p]) / dt_;
   }
   std::vector<Vec3> positions() const {
@@ -65,7 +63,31 @@ class Oracle {
     return x;
   }
 
+ protected:
+  using Places = std::vector<Eigen::Vector3d>;
+  virtual void project() = 0;
+
+  const Scene& scene_;
+  const Cloth& cloth_;
+  const TriangleMesh& mesh_;
+  std::vector<physics::RestTriangle> triangles_;
+  double dt_;
+  std::vector<double> w_;
+  Places x_, v_, before_;  // before_: of the last substep
+};
+
+// Springs along edges, and bending; constraints of several rows by a dense solver.
+class EdgeOracle final : public Oracle {
+ public:
+  EdgeOracle(const Scene& scene, const std::vector<Vec3>& start)
+      : Oracle(scene, start), edges_(physics::edges_of(mesh_, mesh_.vertices)) {}
+
  private:
+  void project() override {
+    lambda_.assign(edges_.ends.size(), 0);
+    for (int n = 0; n < scene_.solver.iterations; ++n) stretch();
+    if (cloth_.bending.given()) bend();
+  }
   double compliance(int e) const {
     const double k = cloth_.stiffness.structural / 2 * edges_.triangles[std::size_t(e)];
     return 1 / (k * dt_ * dt_);
@@ -147,14 +169,8 @@ class Oracle {
     for (Eigen::Index n = 0; n < count; ++n) x_[free[std::size_t(n)]] += move.row(n).transpose();
   }
 
-  const Scene& scene_;
-  const Cloth& cloth_;
-  const TriangleMesh& mesh_;
   physics::MeshEdges edges_;
-  std::vector<physics::RestTriangle> triangles_;
-  double dt_;
-  std::vector<double> w_, lambda_;
-  std::vector<Eigen::Vector3d> x_, v_;
+  std::vector<double> lambda_;
 };
 
 }  // namespace weft

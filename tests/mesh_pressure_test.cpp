@@ -209,6 +209,44 @@ TEST(MeshPressure, SubstepsCountTheGas) {
   EXPECT_NEAR(estimate(scene).substeps, run.substeps(), 1);
 }
 
+// Sweeps hold a gas in the substeps that are chosen for it, whatever the size: the radius is that by forces to
+// 2 % of itself, as a hanging sheet's length. Longer ones are told of.
+TEST(MeshPressure, SweepsHoldTheGasInTheirOwnSubsteps) {
+  for (const double size : {0.1, 1.0, 10.0})
+    for (const Fabric fabric : {Fabric::membrane, Fabric::springs})
+      for (const Pressure& pressure :
+           {Pressure{.over = 20 / size}, Pressure{.inflate = 1.1, .ambient = 200 / size},
+            Pressure{.inflate = 1.05}}) {
+        Scene scene = balloon(fabric, 2);
+        scene.cloths[0].mesh.scale = size;
+        scene.cloths[0].drag = 10;
+        scene.cloths[0].pressure = pressure;
+        const auto radius = [&](const std::string& note) {
+          Simulation run(scene, {.threads = 1});
+          EXPECT_EQ(estimate(scene).substeps, run.substeps());
+          for (int n = 0; n < 60; ++n) run.advance_frame();
+          EXPECT_TRUE(run.status().ok) << run.status().text;
+          const std::vector<std::string>& notes = run.plan().notes;
+          EXPECT_EQ(note.empty(), std::ranges::none_of(notes, [](const std::string& n) {
+                      return n.find("sweeps hold a gas in substeps of") != n.npos;
+                    }));
+          return mean_radius(run) / (size * kRadius);
+        };
+        const double by_forces = radius("");
+        scene.solver.method = Method::compliant;
+        for (const Sweep sweep : {Sweep::gauss_seidel, Sweep::line}) {
+          scene.solver.sweep = sweep;
+          EXPECT_NEAR(radius(""), by_forces, 0.02) << size << " " << int(sweep);
+        }
+        scene.solver.sweep = Sweep::gauss_seidel;
+        if (size < 1) {
+          scene.time.substeps = 30;
+          radius("told of");
+          scene.time.substeps = kAutoSubsteps;
+        }
+      }
+}
+
 // On the floor, pressed flat by its weight: pressure times the area of contact carries it.
 TEST(MeshPressure, ContactCarriesTheWeight) {
   for (const bool ideal : {false, true})

@@ -1,8 +1,13 @@
 // Scenes of one made-up mesh, and what its cloth is made of.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+
 #include "made_up_mesh.h"
 #include "physics/model/mesh/rest_triangles.h"
+#include "physics/model/vector.h"
 #include "weft/simulation.h"
 
 namespace weft {
@@ -58,6 +63,53 @@ inline std::vector<Vec3> positions_of(const Simulation& run) {
   std::vector<Vec3> x(all.size() / 3);
   for (std::size_t n = 0; n < all.size(); ++n) x[n / 3][n % 3] = all[n];
   return x;
+}
+
+// Every vertex off its place by up to so much each way [m].
+inline std::vector<Vec3> rumpled(const TriangleMesh& mesh, double by, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<Vec3> x = mesh.vertices;
+  for (Vec3& p : x)
+    for (double& value : p) value += by * (double(random()) / 2147483648.0 - 1);
+  return x;
+}
+
+inline std::vector<double> flat(const std::vector<Vec3>& x) {
+  std::vector<double> all;
+  for (const Vec3& p : x) all.insert(all.end(), p.begin(), p.end());
+  return all;
+}
+
+// The greatest distance [m].
+inline double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double most = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) {
+    const Vec3 e = physics::minus(a[n], b[n]);
+    most = std::max(most, std::sqrt(physics::dot(e, e)));
+  }
+  return most;
+}
+
+// Puts a mesh where it is rumpled, at rest; returns where it is then, as rounded.
+inline std::vector<Vec3> rumple(Simulation& run, const TriangleMesh& mesh, double by,
+                                unsigned seed) {
+  const std::vector<Vec3> start = rumpled(mesh, by, seed);
+  run.set_state(flat(start), std::vector<double>(3 * start.size()));
+  return positions_of(run);
+}
+
+// Of a strip of 1 m and 0.3 kg/m² that hangs by its end under 9.81 m/s², of a membrane whose stress is
+// half_stiffness (s² - 1) along it [N/m]: ∫ s, with half_stiffness (s² - 1) s = weight below.
+inline double hung_length(double half_stiffness) {
+  double length = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const double pull = 0.3 * 9.81 * (1 - (k + 0.5) / 1000);
+    double s = 1;
+    for (int i = 0; i < 50; ++i)
+      s -= (half_stiffness * (s * s - 1) * s - pull) / (half_stiffness * (3 * s * s - 1));
+    length += s / 1000;
+  }
+  return length;
 }
 
 }  // namespace weft

@@ -39,20 +39,6 @@ inline Scene curtain(int n, const Membrane& membrane, int order, int substeps, i
   return scene;
 }
 
-inline std::vector<Vec3> rumpled(const TriangleMesh& mesh, double by, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<Vec3> x = mesh.vertices;
-  for (Vec3& p : x)
-    for (double& value : p) value += by * (double(random()) / 2147483648.0 - 1);
-  return x;
-}
-
-inline std::vector<double> flat(const std::vector<Vec3>& x) {
-  std::vector<double> all;
-  for (const Vec3& p : x) all.insert(all.end(), p.begin(), p.end());
-  return all;
-}
-
 inline std::vector<Vec3> after(const Scene& scene, int frames) {
   Simulation run(scene, {.threads = 1});
   for (int n = 0; n < frames; ++n) run.advance_frame();
@@ -61,7 +47,7 @@ inline std::vector<Vec3> after(const Scene& scene, int frames) {
   return positions_of(run);
 }
 
-// Root mean square, and the greatest [m].
+// Root mean square [m].
 inline double apart(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double sum = 0;
   for (std::size_t n = 0; n < a.size(); ++n) {
@@ -70,15 +56,6 @@ inline double apart(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   }
   return std::sqrt(sum);
 }
-inline double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double most = 0;
-  for (std::size_t n = 0; n < a.size(); ++n) {
-    const Vec3 e = physics::minus(a[n], b[n]);
-    most = std::max(most, std::sqrt(physics::dot(e, e)));
-  }
-  return most;
-}
-
 inline double length(const Vec3& a) {
   return std::sqrt(physics::dot(a, a));
 }

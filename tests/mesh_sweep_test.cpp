@@ -33,29 +33,6 @@ Scene projected(std::shared_ptr<const TriangleMesh> mesh, const Way& way) {
   return scene;
 }
 
-std::vector<Vec3> rumpled(const TriangleMesh& mesh, double by, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<Vec3> x = mesh.vertices;
-  for (Vec3& p : x)
-    for (double& value : p) value += by * (double(random()) / 2147483648.0 - 1);
-  return x;
-}
-
-std::vector<double> flat(const std::vector<Vec3>& x) {
-  std::vector<double> all;
-  for (const Vec3& p : x) all.insert(all.end(), p.begin(), p.end());
-  return all;
-}
-
-double greatest_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double most = 0;
-  for (std::size_t n = 0; n < a.size(); ++n) {
-    const Vec3 e = minus(a[n], b[n]);
-    most = std::max(most, std::sqrt(dot(e, e)));
-  }
-  return most;
-}
-
 TEST(MeshSweep, DoesWhatTheEquationsSay) {
   const auto mesh = made_up({.nx = 9, .ny = 8, .shift = 0.3, .shuffled = true});
   for (const Way& way : kWays) {
@@ -65,14 +42,12 @@ TEST(MeshSweep, DoesWhatTheEquationsSay) {
     scene.cloths[0].drag = 0.5;
     scene.cloths[0].pins = {{5, 0, {}}, {40, 0, {}}};
     Simulation run(scene, {.threads = 1});
-    const std::vector<Vec3> start = rumpled(*mesh, 0.004, 7);
-    run.set_state(flat(start), std::vector<double>(3 * start.size()));
-    const std::vector<Vec3> rounded = positions_of(run);
-    Oracle oracle(scene, rounded);
+    const std::vector<Vec3> rounded = rumple(run, *mesh, 0.004, 7);
+    EdgeOracle oracle(scene, rounded);
     run.advance_frame();
     for (int n = 0; n < 4; ++n) oracle.substep(n == 0);
-    EXPECT_GT(greatest_distance(rounded, positions_of(run)), 1e-3) << way.name;
-    EXPECT_LT(greatest_distance(oracle.positions(), positions_of(run)), 2e-6) << way.name;
+    EXPECT_GT(farthest(rounded, positions_of(run)), 1e-3) << way.name;
+    EXPECT_LT(farthest(oracle.positions(), positions_of(run)), 2e-6) << way.name;
   }
 }
 
@@ -168,12 +143,10 @@ TEST(MeshSweep, GoesOverIntoSprings) {
       for (int n = 0; n < frames; ++n) run.advance_frame();
       return positions_of(run);
     };
-    EXPECT_LT(greatest_distance(after(Method::compliant, 1000, 1, 15),
-                                after(Method::spring, 1000, 1, 15)),
+    EXPECT_LT(farthest(after(Method::compliant, 1000, 1, 15), after(Method::spring, 1000, 1, 15)),
               way.order == 2 ? 2e-3 : 4e-3)
         << way.name;
-    EXPECT_LT(greatest_distance(after(Method::compliant, 100, 5, 300),
-                                after(Method::spring, 100, 5, 300)),
+    EXPECT_LT(farthest(after(Method::compliant, 100, 5, 300), after(Method::spring, 100, 5, 300)),
               1e-3)
         << way.name;
   }

@@ -51,12 +51,6 @@ inline std::vector<Way> ways() {
   return all;
 }
 
-inline std::vector<double> flat(const std::vector<Vec3>& x) {
-  std::vector<double> all;
-  for (const Vec3& p : x) all.insert(all.end(), p.begin(), p.end());
-  return all;
-}
-
 // A strip along x, 3 m long, whose ends are drawn apart.
 inline Scene tug(const Way& way, double strain) {
   Scene scene = scene_of(made_up({.nx = 31, .ny = 9, .width = 3, .shift = 0.2}));

@@ -5,6 +5,8 @@
 #include <thread>
 #include <vector>
 
+#include "made_up_bodies.h"
+#include "mesh_scenes.h"
 #include "physics/step/threads.h"
 #include "weft/simulation.h"
 
@@ -55,6 +57,44 @@ TEST(Threads, TwoGiveWhatOneGivesOfSheetsSideBySide) {
     c.tear_strain = 0.05;
   }
   EXPECT_EQ(hash_after(scene, 2), hash_after(scene, 1));
+}
+
+// What tears, and what a tear is told to, lie in rows that several threads work on.
+TEST(Threads, TwoGiveWhatOneGivesOfMeshesThatTear) {
+  Scene scene = scene_of(made_up({.nx = 130, .ny = 130, .shift = 0.2}));
+  Cloth& cloth = scene.cloths[0];
+  cloth.tear_strain = 0.01;
+  cloth.bending = 1e-5;
+  cloth.pins = {{0, 0, {}}, {129, 0, {}}};
+  scene.time.substeps = 10;
+  scene.solver.method = Method::compliant;
+  scene.colliders = {{Sphere{{0.5, 0.1, 0.5}, 0.3}, {}, 0.01, {}, false}};
+  for (const bool membrane : {false, true}) {
+    if (membrane)
+      cloth.membrane = {.warp = 400, .weft = 300, .coupling = 30, .shear = 60, .damping = 0};
+    EXPECT_EQ(hash_after(scene, 2), hash_after(scene, 1)) << membrane;
+    Simulation run(scene, {.threads = 2});
+    for (int frame = 0; frame < 3; ++frame) run.advance_frame();
+    EXPECT_GT(run.report(false).torn, 0) << membrane;
+  }
+  scene.solver.method = Method::spring;
+  scene.time.substeps = 0;
+  scene.time.frame = 2e-3;
+  scene.wind = {.velocity = {0, 3, 1}, .drag = 1, .lift = 1};
+  scene.colliders.push_back(
+      {Sphere{{0.3, 0, 0}, 0.1}, {}, 0.01, {{0, {0.3, 0, 0}}, {0.01, {0.3, 0, 1}}}, true});
+  EXPECT_EQ(hash_after(scene, 2), hash_after(scene, 1));
+}
+
+TEST(Threads, TwoGiveWhatOneGivesOfAGas) {
+  Scene scene = scene_of(tests::ball(160, 110, 0.3));
+  scene.cloths[0].pressure.inflate = 1.2;
+  for (const Method method : {Method::spring, Method::compliant}) {
+    scene.solver.method = method;
+    scene.time.frame = method == Method::spring ? 1e-3 : 1.0 / 60;
+    scene.time.substeps = method == Method::spring ? 0 : 10;
+    EXPECT_EQ(hash_after(scene, 2), hash_after(scene, 1));
+  }
 }
 
 // Every share of every round is worked on once, by a thread of its own number, after all of the round

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <set>
 #include <sstream>
 
 #include "scene/course.h"
@@ -13,6 +12,7 @@
 #include "scene/json_text.h"
 #include "scene/overrides.h"
 #include "scene/schema.h"
+#include "study/columns.h"
 #include "study/draws.h"
 #include "study/study.h"
 #include "study/triangles.h"
@@ -30,13 +30,6 @@ constexpr double kMostRuns = 1e7;
 constexpr std::size_t kMostParameters = 100, kMostSamples = 100'000, kChunkBytes = 1u << 20;
 constexpr std::size_t kMostTextBytes = 200;
 
-// With all that a run may measure.
-Json empty_report() {
-  Report report;
-  report.strain.max_of_frames = 0;
-  return Json::parse(to_json(report));
-}
-
 std::string fault_lines(const std::vector<Fault>& faults) {
   std::string lines;
   for (const Fault& f : faults)
@@ -47,13 +40,6 @@ std::string fault_lines(const std::vector<Fault>& faults) {
 
 std::string count_words(double count) {
   return count < 1e15 ? std::to_string(std::uint64_t(count)) : text::number_words(count);
-}
-
-// "/cloth/ks" -> "cloth.ks"
-std::string name_of_pointer(const std::string& pointer) {
-  std::string name = pointer.substr(std::min<std::size_t>(1, pointer.size()));
-  std::ranges::replace(name, '/', '.');
-  return name;
 }
 
 }  // namespace
@@ -257,12 +243,11 @@ struct Study::Reader {
       const bool pointer =
           value.is_string() && text::split_pointer(value.get<std::string>(), tokens);
       const Json::json_pointer at(pointer ? value.get<std::string>() : "");
-      const bool there = pointer && report.contains(at) && report.at(at).is_primitive();
-      if (!there)
+      if (pointer && report.contains(at) && report.at(at).is_primitive())
+        study.measures_.push_back(value.get<std::string>());
+      else
         fault(place, "the report has no single value at " + text::brief(value),
               "a JSON pointer such as /strain/max");
-      else
-        study.measures_.push_back(value.get<std::string>());
     }
   }
 
@@ -365,39 +350,6 @@ std::vector<Study::Json> Study::values_of(std::uint64_t run) const {
     }
   }
   return values;
-}
-
-void Study::add_columns() {
-  using Kind = Column::Kind;
-  constexpr std::size_t kMeasureBytes = 64, kStatusBytes = 160;
-  const auto add = [&](const std::string& name, Kind kind, std::size_t bytes = 8) {
-    columns_.push_back({name, kind, bytes, row_bytes()});
-  };
-  add("run", Kind::whole);
-  add("particles", Kind::whole);
-  for (const Parameter& p : parameters_) {
-    std::size_t bytes = 1;
-    for (const Json& v : p.values) bytes = std::max(bytes, v.dump().size());
-    p.text ? add(p.name, Kind::text, bytes) : add(p.name, Kind::number);
-  }
-  const Json report = empty_report();
-  for (const std::string& measure : measures_) {
-    const Json& value = report.at(Json::json_pointer(measure));
-    value.is_string() ? add(name_of_pointer(measure), Kind::text, kMeasureBytes)
-                      : add(name_of_pointer(measure), Kind::number);
-  }
-  add("seconds", Kind::number);
-  // The report's own status comes under another name.
-  add("outcome", Kind::text, kStatusBytes);
-  std::set<std::string> names;
-  for (const Column& c : columns_)
-    if (!names.insert(c.name).second)
-      throw StudyError({{"/parameters", "two columns have the name \"" + c.name + "\"",
-                         "another \"name\" of a parameter, each measure once"}});
-}
-
-std::size_t Study::row_bytes() const {
-  return columns_.empty() ? 0 : columns_.back().offset + columns_.back().bytes;
 }
 
 }  // namespace weft

@@ -38,6 +38,11 @@ StableSubsteps stable_substeps(const Cloths& cloths, std::span<const Spectrum> s
   return stable;
 }
 
+bool holds_gas(const Scene& scene) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(),
+                     [](const Cloth& c) { return c.pressure.given(); });
+}
+
 }  // namespace
 
 void Simulation::State::estimate_spectra() {
@@ -86,7 +91,13 @@ void Simulation::State::choose_method_and_substeps() {
     count = projection_substeps();
     if (projection_substep(scene) < kLongestProjection)
       notes.push_back("substeps of " + number(scene.time.frame / count) +
-                      " s, so that sweeps hold up a sheet that hangs by an edge");
+                      " s, so that sweeps hold up a sheet that hangs by an edge" +
+                      (holds_gas(scene) ? ", or hold a gas" : ""));
+  } else if (const double needed = projection_substep(scene);
+             !is_explicit(method) && holds_gas(scene) && scene.time.frame / count > needed) {
+    notes.push_back("sweeps hold a gas in substeps of " + number(needed) + " s; in those of " +
+                    number(scene.time.frame / count) +
+                    " s it stretches the cloth more than it should");
   }
   note_models(notes);
   plan = describe_stages();

@@ -32,9 +32,9 @@ inline constexpr double kLongestProjection = 1.0 / 960;
 
 // Methods that project are stable at any substep, but a sweep of Gauss-Seidel or Jacobi passes a pull on
 // over one constraint alone: each is as stiff as a substep can make it, m/(2 dt²), and a sheet of n
-// points, h apart, that hangs by its edge stretches there by 2 n g dt²/h. The longest substep that keeps
-// this to 2 %, or lets one sweep do all that the material's own stiffness asks for, k dt² = m; at most
-// kLongestProjection.
+// points, h apart, that hangs by its edge stretches there by 2 n g dt²/h. A gas of pressure p in a mesh of
+// density ρ stretches it as such a pull of g = p/ρ does. The longest substep that keeps this to 2 %, or lets one
+// sweep do all that the material's own stiffness asks for, k dt² = m; at most kLongestProjection.
 double projection_substep(const Scene& scene);
 
 }  // namespace weft::physics

@@ -53,13 +53,14 @@ void TearBoundary::rebuild(const LatticeTearing& t) {
   for (int j = 0; j + 1 < t.rows(); ++j)
     for (int i = 0; i + 1 < t.columns(); ++i) {
       const unsigned gone = t.gone(i, j);
-      if (gone & 7) add_triangle(t, {{i, j}, {i + 1, j}, {i, j + 1}}, gone & 7);
-      if (gone >> 3) add_triangle(t, {{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}, gone >> 3);
+      if (gone & 7) add_triangle(t, {Site{i, j}, {i + 1, j}, {i, j + 1}}, gone & 7);
+      if (gone >> 3) add_triangle(t, {Site{i + 1, j}, {i + 1, j + 1}, {i, j + 1}}, gone >> 3);
     }
   places_.resize(points_.size());
 }
 
-void TearBoundary::add_triangle(const LatticeTearing& t, const Site (&corner)[3], unsigned gone) {
+void TearBoundary::add_triangle(const LatticeTearing& t, const std::array<Site, 3>& corner,
+                                unsigned gone) {
   const auto far = [](const Site& p, const Site& q, float share) {
     return std::pair(share * float(q.i - p.i), share * float(q.j - p.j));
   };
@@ -69,29 +70,16 @@ void TearBoundary::add_triangle(const LatticeTearing& t, const Site (&corner)[3]
     const auto [along, down] = far(p, q, share(p, q));
     return point(t, p, along, down);
   };
-  for (int n = 0; n < 3; ++n) {
-    const Site a = corner[n], b = corner[(n + 1) % 3], c = corner[(n + 2) % 3];
-    const bool ab = gone >> n & 1, bc = gone >> (n + 1) % 3 & 1, ca = gone >> (n + 2) % 3 & 1;
-    if (ab && !bc && !ca) {
-      add({own(a), end(a, b), own(c)});
-      add({end(b, a), own(b), own(c)});
-    } else if (ab && ca && !bc) {
-      add({own(a), end(a, b), end(a, c)});
-      const auto near_b = end(b, a);
-      add({near_b, own(b), own(c)});
-      add({near_b, own(c), end(c, a)});
-    } else if (ab && bc && ca) {
-      const auto [along_b, down_b] = far(a, b, 1 / 3.0f);
-      const auto [along_c, down_c] = far(a, c, 1 / 3.0f);
-      const auto center = point(t, a, along_b + along_c, down_b + down_c);
-      add({own(a), end(a, b), center});
-      add({own(a), center, end(a, c)});
-    }
-  }
+  const auto middle = [&](const Site& a, const Site& b, const Site& c) {
+    const auto [along_b, down_b] = far(a, b, 1 / 3.0f);
+    const auto [along_c, down_c] = far(a, c, 1 / 3.0f);
+    return point(t, a, along_b + along_c, down_b + down_c);
+  };
+  share_torn_triangle(corner, gone, own, end, middle,
+                      [&](const std::array<TornPoint, 3>& points) { add(points); });
 }
 
-std::optional<std::uint32_t> TearBoundary::point(const LatticeTearing& t, Site p, float along,
-                                                 float down) {
+TornPoint TearBoundary::point(const LatticeTearing& t, Site p, float along, float down) {
   const auto number = [&](int i, int j) { return static_cast<std::uint32_t>(j * t.stride() + i); };
   Point made{number(p.i, p.j), {}};
   for (const int axis : {0, 1}) {
@@ -118,7 +106,7 @@ std::optional<std::uint32_t> TearBoundary::point(const LatticeTearing& t, Site p
 }
 
 // (In braces the corners are made in their order; the arguments of a call are not.)
-void TearBoundary::add(const std::array<std::optional<std::uint32_t>, 3>& c) {
+void TearBoundary::add(const std::array<TornPoint, 3>& c) {
   if (c[0] && c[1] && c[2]) triangles_.push_back({*c[0], *c[1], *c[2]});
 }
 

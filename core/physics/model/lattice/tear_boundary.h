@@ -14,10 +14,10 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "physics/model/lattice/tearing.h"
+#include "physics/model/torn_triangle.h"
 
 namespace weft::physics {
 
@@ -49,12 +49,12 @@ class TearBoundary {
 
   void rebuild(const LatticeTearing& tearing);
   float share(Site from, Site to) const;  // of the way to a neighbour, at which the tear crosses
-  void add_triangle(const LatticeTearing& tearing, const Site (&corner)[3], unsigned gone);
+  void add_triangle(const LatticeTearing& tearing, const std::array<Site, 3>& corner,
+                    unsigned gone);
   // A point `along` and `down` steps from a particle, as the sheet lies on its side; none where it has
   // no constraint to tell.
-  std::optional<std::uint32_t> point(const LatticeTearing& tearing, Site p, float along,
-                                     float down);
-  void add(const std::array<std::optional<std::uint32_t>, 3>& corners);
+  TornPoint point(const LatticeTearing& tearing, Site p, float along, float down);
+  void add(const std::array<TornPoint, 3>& corners);
 
   // Of edges that cuts cross, from [column, row] to [column, row].
   std::map<std::array<int, 4>, float> shares_;

@@ -55,7 +55,6 @@ void MeshTearBoundary::rebuild(const MeshTearing& t) {
   places_.resize(points_.size());
 }
 
-// By how many of its edges are gone; a, b, c is the triangle as seen from each corner.
 void MeshTearBoundary::add_shares(const MeshTearing& t, std::size_t triangle) {
   const auto& corners = t.parts().mesh.triangles[triangle];
   const auto way = [&](int p, int q, double share) {
@@ -64,28 +63,14 @@ void MeshTearBoundary::add_shares(const MeshTearing& t, std::size_t triangle) {
   };
   const auto own = [&](int p) { return point(t, p, Vec3{}); };
   const auto end = [&](int p, int q) { return point(t, p, way(p, q, 0.5)); };
-  const unsigned gone = t.gone(triangle);
-  for (std::size_t n = 0; n < 3; ++n) {
-    const int a = corners[n], b = corners[(n + 1) % 3], c = corners[(n + 2) % 3];
-    const bool ab = gone >> n & 1, bc = gone >> (n + 1) % 3 & 1, ca = gone >> (n + 2) % 3 & 1;
-    if (ab && !bc && !ca) {
-      add({own(a), end(a, b), own(c)});
-      add({end(b, a), own(b), own(c)});
-    } else if (ab && ca && !bc) {
-      add({own(a), end(a, b), end(a, c)});
-      const Corner near_b = end(b, a);
-      add({near_b, own(b), own(c)});
-      add({near_b, own(c), end(c, a)});
-    } else if (ab && bc && ca) {
-      const Corner center = point(t, a, plus(way(a, b, 1 / 3.0), way(a, c, 1 / 3.0)));
-      add({own(a), end(a, b), center});
-      add({own(a), center, end(a, c)});
-    }
-  }
+  const auto middle = [&](int a, int b, int c) {
+    return point(t, a, plus(way(a, b, 1 / 3.0), way(a, c, 1 / 3.0)));
+  };
+  share_torn_triangle(corners, t.gone(triangle), own, end, middle,
+                      [&](const std::array<TornPoint, 3>& points) { add(points); });
 }
 
-MeshTearBoundary::Corner MeshTearBoundary::point(const MeshTearing& t, int vertex,
-                                                 const Vec3& way) {
+TornPoint MeshTearBoundary::point(const MeshTearing& t, int vertex, const Vec3& way) {
   const auto lane = [&](int v) { return t.parts().drawn.lanes[std::size_t(v)]; };
   Point made{lane(vertex), lane(vertex), lane(vertex), 0, 0};
   if (way != Vec3{}) {
@@ -106,7 +91,7 @@ MeshTearBoundary::Corner MeshTearBoundary::point(const MeshTearing& t, int verte
   return std::uint32_t(points_.size() - 1);
 }
 
-void MeshTearBoundary::add(const std::array<Corner, 3>& c) {
+void MeshTearBoundary::add(const std::array<TornPoint, 3>& c) {
   if (c[0] && c[1] && c[2]) triangles_.push_back({*c[0], *c[1], *c[2]});
 }
 

@@ -6,9 +6,8 @@
 // direction; α and β are from the shape at rest. Where p has no whole triangle left, nothing is drawn.
 #pragma once
 
-#include <optional>
-
 #include "physics/model/mesh/mesh_tearing.h"
+#include "physics/model/torn_triangle.h"
 
 namespace weft::physics {
 
@@ -28,12 +27,11 @@ class MeshTearBoundary {
     std::uint32_t vertex, a, b;  // lanes
     float along_a, along_b;
   };
-  using Corner = std::optional<std::uint32_t>;  // a point's number
 
   void rebuild(const MeshTearing& tearing);
   void add_shares(const MeshTearing& tearing, std::size_t triangle);
-  Corner point(const MeshTearing& tearing, int vertex, const Vec3& way);
-  void add(const std::array<Corner, 3>& corners);
+  TornPoint point(const MeshTearing& tearing, int vertex, const Vec3& way);
+  void add(const std::array<TornPoint, 3>& corners);
 
   std::uint64_t version_ = 0;
   std::vector<Point> points_;

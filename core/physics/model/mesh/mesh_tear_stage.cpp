@@ -45,14 +45,18 @@ class MeshTearStage final : public RowStage, private TornParts {
   void add_batches(const std::vector<int>& edges) {
     const MeshEdges& all = tearing_.parts().edges;
     for (std::size_t n = 0; n < edges.size(); ++n) {
+      const auto e = std::size_t(edges[n]);
+      const auto near = std::int32_t(parts_.particles.lane(all.ends[e][0]));
+      // Places of no edge look at a vertex of the batch: those of other rows may be moving.
       if (n % kTearBatch == 0) {
         TearBatch& none = batches_.emplace_back();
+        std::fill(std::begin(none.near), std::end(none.near), near);
+        std::fill(std::begin(none.far), std::end(none.far), near);
         std::fill(std::begin(none.longest), std::end(none.longest),
                   std::numeric_limits<float>::infinity());
       }
-      const auto e = std::size_t(edges[n]);
       TearBatch& b = batches_.back();
-      b.near[n % kTearBatch] = std::int32_t(parts_.particles.lane(all.ends[e][0]));
+      b.near[n % kTearBatch] = near;
       b.far[n % kTearBatch] = std::int32_t(parts_.particles.lane(all.ends[e][1]));
       place_[e] = int((batches_.size() - 1) * kTearBatch + n % kTearBatch);
       set_edge(edges[n], true);
