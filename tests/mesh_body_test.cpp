@@ -1,6 +1,8 @@
 // Bodies that are meshes: distances and sides against brute force, and cloth on them against the same bodies
 // as shapes, whose kernels are others.
+#include <array>
 #include <cstdio>
+#include <limits>
 #include <random>
 
 #include "contact_scenes.h"
@@ -87,6 +89,28 @@ TEST(MeshBody, HintsAndListsChangeNothing) {
     ASSERT_EQ(c.normal, d.normal);
   }
   EXPECT_GT(listed, 500);
+}
+
+// A particle may lie anywhere, or nowhere, in a frame that is run again later.
+TEST(MeshBody, AnswersWhateverThePlace) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinite = std::numeric_limits<double>::infinity();
+  const auto mesh =
+      tests::together(*tests::ball(31, 20, bumpy), *tests::ball(32, 24, spiky), {2, 0, 0});
+  const BodySurface body(*mesh, mesh->vertices);
+  const physics::BodyMoment surface = body.at();
+  const int triangles = int(mesh->triangles.size());
+  const std::array<int, 3> some{0, 7, triangles - 1};
+  for (const double strange : {nan, infinite, -infinite, 1e30, 1e200})
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vec3 p{0.1, 0.2, 0.3};
+      p[k] = strange;
+      for (const BodySurface::Point& found : {surface.nearest(p), surface.nearest(p, triangles - 1),
+                                              surface.nearest_among(some, p)}) {
+        ASSERT_GE(found.triangle, 0) << strange;
+        ASSERT_LT(found.triangle, triangles) << strange;
+      }
+    }
 }
 
 TEST(MeshBody, NormalIsTheGradientOfTheDistance) {

@@ -8,6 +8,9 @@ namespace {
 
 constexpr double kTouching = 1e-10;  // m; nearer points have no direction of their own
 
+// What is near to a place that is no number: the first triangle, as far off as can be.
+constexpr BodyMoment::Point kNothingNear{1e300, {}, 0, {1, 0, 0}};
+
 double length(const Vec3& a) {
   return std::sqrt(dot(a, a));
 }
@@ -70,11 +73,11 @@ BodyMoment::Point BodyMoment::nearest_in(std::size_t number, const Vec3& p, int 
   look_at(hint >= part.first && hint < part.last ? hint : part.first, p, best);
   part.tree.nearest([&](int node) { return part_box(number, node); }, p, best.square,
                     [&](int n) { look_at(part.first + n, p, best); });
-  return best.triangle < 0 ? Point{1e300, {}, -1, {}} : point_of(best, p);
+  return best.triangle < 0 ? kNothingNear : point_of(best, p);
 }
 
 BodyMoment::Point BodyMoment::nearest(const Vec3& p, int hint) const {
-  Point best{1e300, {}, -1, {}};
+  Point best = kNothingNear;
   for (std::size_t part = 0; part < form_->parts.size(); ++part) {
     const double square = part_box(part, 0).square_from(p);
     const double most = best.distance > 0 ? best.distance * best.distance : 0;
@@ -88,7 +91,7 @@ BodyMoment::Point BodyMoment::nearest(const Vec3& p, int hint) const {
 
 BodyMoment::Point BodyMoment::nearest_among(std::span<const int> triangles, const Vec3& p) const {
   const std::vector<BodyForm::Part>& parts = form_->parts;
-  Point best{1e300, {}, -1, {}};
+  Point best = kNothingNear;
   for (std::size_t n = 0; n < triangles.size();) {
     const int first = triangles[n];
     const int last =
