@@ -269,6 +269,23 @@ TEST(Membrane, FallsFreelyBelowACut) {
   EXPECT_NEAR(fallen, 9.81 * t * t / 2, 1e-3);
 }
 
+// A state stretched 10⁴ times would take substeps of 10⁻⁹ s: no number of them resolves it.
+TEST(Membrane, TakesNoMoreSubstepsThanSinglePrecisionResolves) {
+  for (const int asked : {kAutoSubsteps, 50})
+    for (const double stretch : {30.0, 1e3, 1e4}) {
+      Scene scene = sheet(9, 7, {0.8, 0, 0}, {0, 0, 0.6}, {200, 150, 40, 30, 0.001});
+      scene.time.substeps = asked;
+      Simulation simulation(scene);
+      std::vector<double> x = simulation.positions();
+      for (double& value : x) value *= stretch;
+      simulation.set_state(x, std::vector<double>(x.size()));
+      EXPECT_GT(simulation.dt(), 1e-7) << stretch;
+      for (int n = 0; n < 2; ++n) simulation.advance_frame();
+      EXPECT_GT(simulation.dt(), 1e-8) << stretch;
+      EXPECT_TRUE(simulation.plan().fallback || !simulation.status().ok) << stretch;
+    }
+}
+
 TEST(Membrane, IsTakenForSpringsByMethodsThatProjectWhichANoteSays) {
   Scene scene = sheet(12, 12, {0.3, 0, 0}, {0, 0, 0.3}, {1000, 800, 200, 50, 0});
   scene.solver.method = Method::compliant;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "physics/frame/cloth_step.h"
+#include "physics/frame/projection_substep.h"
 #include "physics/model/lattice/energy.h"
 #include "physics/model/lattice/stability.h"
 #include "physics/model/lattice/stages.h"

@@ -35,6 +35,39 @@ TEST(FreeFall, IsThatOfGalilei) {
   }
 }
 
+// What single precision cannot move in a substep stays where it is: the plan says below which speed, and longer
+// substeps fall as they should.
+TEST(FreeFall, SaysWhereSubstepsAreTooShort) {
+  for (const Method method : {Method::spring, Method::positional, Method::compliant})
+    for (const double size : {0.7, 6.0})
+      for (const int substeps : {1, 100}) {
+        Scene scene;
+        scene.cloths.emplace_back();
+        scene.cloths[0].grid = {9, 6, {-size, size, -size}, {size, 0, 0}, {0, 0, size}, 0};
+        scene.cloths[0].stiffness = {0.001, 0.001, 0};
+        scene.solver.method = method;
+        scene.time = {1e-4, substeps, 5};
+        Simulation simulation(scene);
+        constexpr int kFrames = 10;
+        for (int n = 0; n < kFrames; ++n) simulation.advance_frame();
+        const std::vector<std::string>& notes = simulation.plan().notes;
+        const auto note = std::find_if(notes.begin(), notes.end(), [](const std::string& text) {
+          return text.find("single precision does not move") != std::string::npos;
+        });
+        const double speed = 9.81 * kFrames * 1e-4, fall = speed * kFrames * 1e-4 / 2;
+        const double fallen = size - position(simulation, 4, 3)[1];
+        if (substeps == 1) {
+          EXPECT_EQ(note, notes.end());
+          EXPECT_NEAR(fallen, fall, 10 * 2.4e-7);
+        } else {
+          ASSERT_NE(note, notes.end());
+          const std::string words = "slower than ";
+          EXPECT_GT(std::stod(note->substr(note->find(words) + words.size())), speed);
+          EXPECT_EQ(fallen, size - double(float(size)));
+        }
+      }
+}
+
 std::vector<Solver> solvers() {
   const auto solver = [](Method method, Sweep sweep, int order, int iterations) {
     Solver s;

@@ -26,7 +26,7 @@ namespace {
 constexpr int kFewFrames = 5;
 // s of processor time; what takes longer is run in one other way alone. One scene in a hundred does, and all
 // ways of these would take more than half of the time.
-constexpr double kLong = 2;
+constexpr double kLong = 1;
 constexpr std::uint64_t kCaseStream = 6'000'000;
 
 Options options_of(const Case& c, Simd simd, int threads) {

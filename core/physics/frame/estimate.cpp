@@ -9,6 +9,7 @@
 
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/moving_collider.h"
+#include "physics/frame/time_step.h"
 #include "physics/model/lattice/stability.h"
 #include "physics/model/lattice/stencil.h"
 #include "physics/model/path.h"
@@ -187,8 +188,7 @@ Way way_of(const Scene& scene) {
   Way way{piece.scene().solver, piece.substeps()};
   if (piece.plan().fallback && is_spring(way.solver.method)) way.solver.method = Method::compliant;
   if (!is_spring(way.solver.method) && scene.time.substeps == kAutoSubsteps)
-    way.substeps =
-        int(std::clamp(std::round(scene.time.frame / projection_substep(scene)), 1.0, 1e5));
+    way.substeps = projection_substeps(scene);
   else if (scene.time.substeps == kAutoSubsteps)
     way.substeps = int(std::clamp(way.substeps * more_substeps(scene), 1.0, 1e5));
   return way;

@@ -20,21 +20,20 @@ void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   const ClothStep& step = *s.cloths[index];
   const Particles& particles = step.particles();
   const AlignedArray<float>& masses = s.masses(index);
-  const Vec3 gravity = gravity_at(s.scene, double(s.frame) * s.scene.time.frame);
+  const Vec3 gravity = gravity_at(s.scene, s.time());
   const std::vector<Vec3> x = particles.gather(particles.x);
   // A strain limit takes back much of what springs alone would add in the half substep to now.
   const std::vector<Vec3> v =
-      step.cloth().strain_limit > 0 ? particles.gather(particles.v) : velocities_now(s, index);
+      step.cloth().strain_limit > 0 ? particles.gather(particles.v) : s.velocities(index);
   const ElasticEnergy elastic = step.model().elastic_energy();
   r.energy.elastic += elastic.sum();
   r.membrane_energy += elastic.membrane;
   r.bending_energy += elastic.bending;
-  if (const Load* load = step.model().load())
-    r.energy.elastic += load->energy(double(s.frame) * s.scene.time.frame);
+  if (const Load* load = step.model().load()) r.energy.elastic += load->energy(s.time());
   for (std::size_t p = 0; p < x.size(); ++p) {
     if (masses[particles.lane(int(p))] == 0) continue;
     const double m = step.model().mass(int(p));
-    const Vec3 a = plus(x[p], s.origin);
+    const Vec3 a = plus(x[p], s.placed.origin());
     const Vec3& b = v[p];
     for (int k = 0; k < 3; ++k) {
       r.energy.kinetic += 0.5 * m * b[k] * b[k];
@@ -54,7 +53,7 @@ void add_constraints(const ClothStep& step, Report& r) {
 }
 
 void add_penetration(const Simulation::State& s, const ClothStep& step, Report& r) {
-  const double time = double(s.frame) * s.scene.time.frame;
+  const double time = s.time();
   const std::vector<Vec3> x = step.particles().gather(step.particles().x);
   for (const Collider& c : s.scene.colliders)
     if (!c.cuts)
@@ -72,11 +71,11 @@ void add_self_contact(const Simulation::State& s, Report& r) {
     add_sewn(*model, sewn);
   }
   r.penetration.crossings = count_crossings(x, faces, sewn);
-  if (!s.self_collision) return;
+  if (!s.contact) return;
   // By a search of its own: the one that runs must not notice.
   const SelfContact::Overlaps overlaps =
       SelfContact::make(s.scene, models_of(s.cloths), kernel_table(s.simd))->overlaps();
-  const SelfContact::Record& record = s.self_collision->record();
+  const SelfContact::Record& record = s.contact->pairs().record();
   r.contact = {record.contacts_now, record.energy_taken, record.greatest_held,
                record.least_distance};
   r.penetration.self_pairs = overlaps.pairs;
@@ -99,32 +98,32 @@ void add_idle(const Simulation::State& s, Report& r) {
                   static_cast<long long>(s.sleeping->asleep()), 100 * s.sleeping->share());
     r.skipped.push_back({"sleep", why});
   }
-  if (s.self_collision && s.self_collision_runs > 0) {
+  if (s.contact && s.contact->runs() > 0) {
     const auto percent_of_substeps = [&](std::int64_t times) {
       return 100 * double(times) / double(std::max<std::int64_t>(s.total_substeps, 1));
     };
-    const SelfContact::Record& of = s.self_collision->record();
+    const SelfContact::Record& of = s.contact->pairs().record();
     const double runs = double(std::max<std::int64_t>(of.runs, 1));
     char why[240];
     std::snprintf(why, sizeof why,
                   "ran after %.1f %% of the substeps, searched in %.1f %% of those; %.1f %% of the "
                   "particles had nothing near; %.1f contacts, swept %.1f times",
-                  percent_of_substeps(s.self_collision_runs), 100 * double(of.searches) / runs,
-                  100 * of.passed_over / (runs * double(s.self_collision->particles())),
+                  percent_of_substeps(s.contact->runs()), 100 * double(of.searches) / runs,
+                  100 * of.passed_over / (runs * double(s.contact->pairs().particles())),
                   double(of.contacts) / runs, double(of.sweeps) / runs);
     r.skipped.push_back({"self_collision", why});
-    if (s.self_collision->surfaces()) {
+    if (s.contact->pairs().surfaces()) {
       std::snprintf(why, sizeof why, "pairs listed %.1f times; %lld moves of particles cut short",
-                    s.self_collision->listed(), static_cast<long long>(of.held));
+                    s.contact->pairs().listed(), static_cast<long long>(of.held));
       r.skipped.push_back({"self_surface", why});
     }
   }
 }
 
 void add_wall_time(const Simulation::State& s, Report& r) {
-  std::vector<float> ms = s.frame_ms;
+  std::vector<float> ms = s.times.frames();
   std::sort(ms.begin(), ms.end());
-  r.wall_ms.total = s.total_ms;
+  r.wall_ms.total = s.times.total();
   if (ms.empty()) return;
   const auto quantile = [&](double q) {
     return double(ms[std::size_t(q * double(ms.size() - 1))]);
@@ -138,14 +137,14 @@ void add_wall_time(const Simulation::State& s, Report& r) {
 // Stages of one name together, plus what the frame spends outside them; sums to the total.
 void add_stages(const Simulation::State& s, Report& r) {
   if (!s.options.profile) {
-    r.stages.push_back({"step", s.total_ms, s.total_substeps});
+    r.stages.push_back({"step", s.times.total(), s.total_substeps});
     return;
   }
   double sum = 0;
   for (std::size_t c = 0; c < s.cloths.size(); ++c) {
     const auto& stages = s.cloths[c]->stages();
     for (std::size_t q = 0; q < stages.size(); ++q) {
-      const double ms = double(s.stage_ns[c][q].load()) * 1e-6;
+      const double ms = s.times.stage(c, q);
       auto at = std::find_if(r.stages.begin(), r.stages.end(),
                              [&](const StageTime& t) { return t.name == stages[q]->name; });
       if (at == r.stages.end()) at = r.stages.insert(at, {stages[q]->name, 0, 0});
@@ -154,15 +153,15 @@ void add_stages(const Simulation::State& s, Report& r) {
       sum += ms;
     }
   }
-  if (s.self_collision) {
-    const double ms = double(s.self_collision_ns) * 1e-6;
-    r.stages.push_back({"self_collision", ms, s.self_collision_runs});
+  if (s.contact) {
+    const double ms = s.contact->milliseconds();
+    r.stages.push_back({"self_collision", ms, s.contact->runs()});
     sum += ms;
   }
   // Several threads spend more than passes on the clock: shares of the work, not of the wall.
-  const double scale = sum > s.total_ms ? s.total_ms / sum : 1;
+  const double scale = sum > s.times.total() ? s.times.total() / sum : 1;
   for (StageTime& t : r.stages) t.ms *= scale;
-  r.stages.push_back({"frame", std::max(0.0, s.total_ms - sum * scale), s.frame});
+  r.stages.push_back({"frame", std::max(0.0, s.times.total() - sum * scale), s.frame});
 }
 
 }  // namespace
@@ -178,17 +177,6 @@ Strain strain_of(const Cloths& cloths) {
   }
   if (all.constraints > 0) all.mean /= double(all.constraints);
   return all;
-}
-
-std::vector<Vec3> velocities_now(const Simulation::State& s, std::size_t index) {
-  const ClothStep& step = *s.cloths[index];
-  std::vector<Vec3> v = step.particles().gather(step.particles().v);
-  if (!is_explicit(s.method)) return v;
-  std::vector<Vec3> a;
-  s.accelerations_now(index, s.lag, a);
-  for (std::size_t p = 0; p < v.size(); ++p)
-    for (int k = 0; k < 3; ++k) v[p][k] += a[p][k] * s.lag;
-  return v;
 }
 
 std::uint64_t state_hash(const Simulation::State& s) {
@@ -218,9 +206,9 @@ Report measure(const Simulation::State& s, bool contacts) {
   r.simd = simd_name(s.simd);
   r.frames = s.frame;
   r.substeps = s.total_substeps;
-  r.dt = s.dt;
-  r.sim_seconds = double(s.frame) * s.scene.time.frame;
-  r.threads = s.threads.count();
+  r.dt = s.time_step.dt;
+  r.sim_seconds = s.time();
+  r.threads = s.runner.threads().count();
   r.skipped = s.plan.skipped;
   r.notes = s.plan.notes;
   r.status = s.status;

@@ -1,4 +1,4 @@
-// What a run is measured by: the report, the hash, velocities at the time of the positions.
+// What a run is measured by: the report, the hash.
 #pragma once
 
 #include "physics/frame/state.h"
@@ -8,9 +8,6 @@ namespace weft::physics {
 
 Report measure(const Simulation::State& state, bool contacts);
 std::uint64_t state_hash(const Simulation::State& state);
-
-// Velocities of one cloth at the frame's time [m/s].
-std::vector<Vec3> velocities_now(const Simulation::State& state, std::size_t cloth);
 
 // Over all cloths: the largest, and the mean weighted by constraints.
 Strain strain_of(const Cloths& cloths);

@@ -7,7 +7,7 @@
 
 #include "physics/frame/cloth_step.h"
 #include "physics/frame/measure.h"
-#include "physics/frame/origin.h"
+#include "physics/frame/placed_scene.h"
 #include "physics/frame/state.h"
 
 namespace weft {
@@ -48,13 +48,13 @@ void Simulation::advance_frame() {
   state_->advance_frame();
 }
 const Scene& Simulation::scene() const {
-  return state_->where_it_stands();
+  return state_->placed.given();
 }
 const Options& Simulation::options() const {
   return state_->options;
 }
 int Simulation::threads() const {
-  return state_->threads.count();
+  return state_->runner.threads().count();
 }
 Simd Simulation::simd() const {
   return state_->simd;
@@ -63,16 +63,16 @@ std::int64_t Simulation::frame() const {
   return state_->frame;
 }
 double Simulation::time() const {
-  return double(state_->frame) * state_->scene.time.frame;
+  return state_->time();
 }
 double Simulation::dt() const {
-  return state_->dt;
+  return state_->time_step.dt;
 }
 int Simulation::substeps() const {
-  return state_->substeps;
+  return state_->time_step.substeps;
 }
 const Plan& Simulation::plan() const {
-  state_->tell_of_limits();
+  state_->tell_notes();
   return state_->plan;
 }
 const Status& Simulation::status() const {
@@ -83,7 +83,7 @@ View Simulation::view() const {
   View view;
   view.version = std::uint64_t(state_->frame) + state_->changes;
   view.time = time();
-  view.origin = state_->origin;
+  view.origin = state_->placed.origin();
   for (std::size_t n = 0; n < state_->cloths.size(); ++n) {
     const auto& step = state_->cloths[n];
     const Particles& l = step->particles();
@@ -127,14 +127,14 @@ std::vector<double> Simulation::positions() const {
   std::vector<double> all;
   for (const auto& step : state_->cloths)
     for (const Vec3& x : step->particles().gather(step->particles().x))
-      for (int k = 0; k < 3; ++k) all.push_back(x[k] + state_->origin[k]);
+      for (int k = 0; k < 3; ++k) all.push_back(x[k] + state_->placed.origin()[k]);
   return all;
 }
 
 std::vector<double> Simulation::velocities() const {
   std::vector<double> all;
   for (std::size_t c = 0; c < state_->cloths.size(); ++c)
-    for (const Vec3& v : velocities_now(*state_, c)) all.insert(all.end(), v.begin(), v.end());
+    for (const Vec3& v : state_->velocities(c)) all.insert(all.end(), v.begin(), v.end());
   return all;
 }
 
@@ -167,7 +167,7 @@ int Simulation::cut(const Vec3& a, const Vec3& b, double width) {
 }
 
 Report Simulation::report(bool contacts) const {
-  state_->tell_of_limits();
+  state_->tell_notes();
   return measure(*state_, contacts);
 }
 std::uint64_t Simulation::hash() const {
@@ -175,13 +175,9 @@ std::uint64_t Simulation::hash() const {
 }
 
 double Simulation::bytes_per_particle() const {
-  std::size_t bytes = 0, particles = 0;
-  for (const auto& step : state_->cloths) {
-    bytes += step->bytes();
-    particles += std::size_t(step->particles().count());
-  }
-  if (state_->sleeping) bytes += state_->sleeping->bytes();
-  return double(bytes + state_->record_bytes()) / double(particles);
+  std::size_t particles = 0;
+  for (const auto& step : state_->cloths) particles += std::size_t(step->particles().count());
+  return double(state_->bytes()) / double(particles);
 }
 
 }  // namespace weft

@@ -83,4 +83,9 @@ class Sleeping {
   std::int64_t rows_slept_ = 0, rows_seen_ = 0;
 };
 
+// Whether all of a cloth is asleep. `sleeping`: null where nothing may sleep.
+inline bool is_asleep(const Sleeping* sleeping, std::size_t cloth) {
+  return sleeping && sleeping->rows(cloth).empty();
+}
+
 }  // namespace weft::physics

@@ -4,8 +4,8 @@
 #include <iterator>
 #include <set>
 
-#include "physics/frame/measure.h"
 #include "physics/frame/state.h"
+#include "physics/model/number.h"
 
 // A snapshot comes from a caller: every number in it is looked at before anything changes.
 
@@ -30,16 +30,16 @@ static int columns_of(const Cloth& cloth) {
 
 Snapshot Simulation::State::snapshot() const {
   Snapshot m;
-  m.time = double(frame) * scene.time.frame;
-  m.origin = origin;
-  m.lag = is_explicit(method) ? 0 : lag;
+  m.time = time();
+  m.origin = placed.origin();
+  m.lag = is_explicit(time_step.method) ? 0 : time_step.lag;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     const Particles& p = cloths[n]->particles();
     Snapshot::ClothState c;
     c.columns = columns_of(scene.cloths[n]);
     c.positions.reserve(3 * std::size_t(p.count()));
     c.velocities.reserve(c.positions.capacity());
-    for (const Vec3& v : velocities_now(*this, n))
+    for (const Vec3& v : velocities(n))
       for (const double component : v) c.velocities.push_back(float(component));
     p.for_each([&](int j, int i) {
       for (int k = 0; k < 3; ++k) c.positions.push_back(p.x.at(k, j, i));
@@ -50,7 +50,7 @@ Snapshot Simulation::State::snapshot() const {
       c.inside.push_back({start.time, start.deepest_particle, start.deepest_triangle});
     m.cloths.push_back(std::move(c));
   }
-  for (const Collider& c : where_it_stands().colliders) m.paths.push_back(c.keys);
+  for (const Collider& c : placed.given().colliders) m.paths.push_back(c.keys);
   return m;
 }
 
@@ -107,7 +107,7 @@ void Simulation::State::check(const Snapshot& m) const {
             "has an origin that is not in whole meters (allowed: -1e9 to 1e9)");
   for (std::size_t n = 0; n < cloths.size(); ++n)
     check_cloth(m.cloths[n], *cloths[n], scene.colliders.size());
-  Scene with_paths = where_it_stands();
+  Scene with_paths = placed.given();
   bool same = true;
   for (std::size_t n = 0; n < m.paths.size(); ++n) {
     std::vector<Key>& keys = with_paths.colliders[n].keys;
@@ -121,6 +121,7 @@ void Simulation::State::check(const Snapshot& m) const {
 }
 
 void Simulation::State::restore(const Snapshot& m) {
+  hands_.let_go();
   std::vector<double> positions, velocities;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
     const Snapshot::ClothState& c = m.cloths[n];
@@ -148,11 +149,12 @@ void Simulation::State::restore(const Snapshot& m) {
   was_driven_ = false;
   take_substeps(began_.substeps);
   go_on_as(began_.method, began_.solver);
-  lag = is_explicit(method) ? dt / 2 : 0;
-  for (std::size_t n = 0; is_explicit(method) && n < cloths.size(); ++n)
-    spectra[n] = cloths[n]->model().spectrum(masses(n).span());
+  const bool forces = is_explicit(time_step.method);
+  time_step.lag = forces ? time_step.dt / 2 : 0;
+  for (std::size_t n = 0; forces && n < cloths.size(); ++n)
+    time_step.spectra[n] = cloths[n]->model().spectrum(masses(n).span());
   status = Status{};
-  make_self_contact();
+  if (contact) contact->begin_anew();
   plan_changed();
   set(positions, m.origin, velocities, m.lag);
 }
@@ -226,10 +228,7 @@ Snapshot Simulation::snapshot() const {
 // About the snapshot's origin, wherever the scene would have its own: cloths stay as fine as they were.
 void Simulation::restore(const Snapshot& snapshot) {
   state_->check(snapshot);
-  if (snapshot.origin == state_->origin) {
-    state_->let_go();
-    return state_->restore(snapshot);
-  }
+  if (snapshot.origin == state_->placed.origin()) return state_->restore(snapshot);
   auto next = std::make_unique<State>(scene(), state_->options, snapshot.origin);
   next->restore(snapshot);
   next->changes += state_->changes;

@@ -21,9 +21,7 @@ bool flies_away(const FrameRun& run) {
 }  // namespace
 
 Verdict StepGuard::judge(const FrameRun& run) {
-  const bool sleeps = std::all_of(run.asleep.begin(), run.asleep.end(),
-                                  [](std::uint8_t asleep) { return asleep != 0; });
-  if (sleeps) return Verdict::accept;
+  if (run.sleeping && run.sleeping->all_asleep()) return Verdict::accept;
   if (run.finite) energy_.look(run.energy, run.driven);
   const bool springs = is_explicit(run.method);
   const bool lines = !springs && run.scene.solver.sweep == Sweep::line;
@@ -73,7 +71,7 @@ bool StepGuard::overshot(const FrameRun& run) const {
   if (!run.alone) return false;
   const double start = double(run.frame) * run.scene.time.frame;
   for (std::size_t c = 0; c < run.cloths.size(); ++c) {
-    if (run.asleep[c]) continue;
+    if (is_asleep(run.sleeping, c)) continue;
     const ClothStep& step = *run.cloths[c];
     const float most = step.model().greatest_stretch(step.particles().x);
     if (!(most > kNoticed)) continue;
@@ -94,7 +92,7 @@ bool StepGuard::keeps_on(const FrameRun& run) {
   bool stretched = false;
   if (run.alone && !works(run.scene, start, start + run.scene.time.frame))
     for (std::size_t c = 0; c < cloths.size(); ++c)
-      stretched |= cloths[c]->cloth().drag > 0 && !run.asleep[c] &&
+      stretched |= cloths[c]->cloth().drag > 0 && !is_asleep(run.sleeping, c) &&
                    cloths[c]->model().greatest_stretch(cloths[c]->particles().x) > kLasting;
   Balance all;
   for (std::size_t c = 0; c < cloths.size() && stretched; ++c) {

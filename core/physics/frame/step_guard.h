@@ -12,12 +12,12 @@
 
 #include "physics/frame/energy_guard.h"
 #include "physics/frame/rollback_buffer.h"
+#include "physics/frame/sleeping.h"
+#include "physics/frame/time_step.h"
 
 namespace weft::physics {
 
 inline constexpr int kFinest = 16;               // times the substeps that are due, to save a frame
-inline constexpr double kLeastSubstep = 1e-6;    // s; below, single precision loses speeds of cm/s
-inline constexpr double kLimitShare = 0.9;       // of the stability limit, in automatic substeps
 inline constexpr float kFarAway = 1e7f;          // m; nothing in a sane scene gets there
 inline constexpr double kInteractionPasses = 1;  // s; what a person did has passed by then
 
@@ -27,7 +27,7 @@ struct FrameRun {
   Method method;
   const Cloths& cloths;
   std::span<const RollbackBuffer> starts;  // each cloth as it was at the frame's start
-  std::span<const std::uint8_t> asleep;    // each cloth as a whole
+  const Sleeping* sleeping;                // or null
   std::int64_t frame;                      // frames before it
   double dt;                               // s
   bool finite;                             // all positions and velocities

@@ -10,10 +10,7 @@
 
 #include "physics/model/largest_eigenvalue.h"
 #include "physics/model/lattice/bending.h"
-#include "physics/model/mesh/gas.h"
-#include "physics/model/path.h"
 #include "physics/model/random.h"
-#include "weft/mesh.h"
 
 namespace weft::physics {
 namespace {
@@ -160,17 +157,6 @@ double largest(const Cloth& cloth, const std::vector<Stencil>& stencils, const L
 
 }  // namespace
 
-double Spectrum::largest_substep() const {
-  // Root of dt² ω² + 2 dt c = most.
-  const auto root = [&](double c, double most) {
-    const double inverse = (c + std::sqrt(c * c + most * (omega_squared + load))) / most;
-    return inverse > 0 ? 1 / inverse : std::numeric_limits<double>::infinity();
-  };
-  // What drag leaves of a velocity is 1 - dt drag, or nothing: dt² ω² + 2 dt c < 2 (1 + what is left).
-  const double dt = root(damping + drag, 4);
-  return dt * drag <= 1 ? dt : root(damping, 2);
-}
-
 Spectrum estimate_spectrum(const Cloth& cloth, const std::vector<Stencil>& stencils,
                            const Lattice& l, bool damped, const KernelTable& kernels) {
   Spectrum spectrum;
@@ -206,68 +192,6 @@ Spectrum membrane_spectrum(const Cloth& cloth, const MembraneCells& cells, const
 double lightest_mass(const Cloth& cloth) {
   if (cloth.masses.empty()) return particle_mass(cloth, cloth.grid.nx / 2, cloth.grid.ny / 2);
   return *std::min_element(cloth.masses.begin(), cloth.masses.end());
-}
-
-namespace {
-
-// What the substep of methods that project depends on.
-struct Fineness {
-  double points_over_spacing;  // 1/m; along the longer side
-  double mass, stiffness;      // kg, N/m
-};
-
-Fineness fineness_of(const Cloth& c, const Solver& solver) {
-  if (!c.mesh.given())
-    return {std::max(c.grid.nx / spacing_u(c.grid), c.grid.ny / spacing_v(c.grid)),
-            lightest_mass(c), spring_repeats(solver) * greatest_stiffness(c)};
-  // As if its triangles were halves of squares of their mean area.
-  const std::vector<Vec3>& x = c.mesh.shape->vertices;
-  double area = 0, longest = 0;
-  for (const auto& [p, q, r] : c.mesh.shape->triangles) {
-    const Vec3 n = cross(minus(x[std::size_t(q)], x[std::size_t(p)]),
-                         minus(x[std::size_t(r)], x[std::size_t(p)]));
-    area += std::sqrt(physics::dot(n, n)) / 2;
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto [low, high] = std::minmax_element(
-        x.begin(), x.end(), [&](const Vec3& a, const Vec3& b) { return a[k] < b[k]; });
-    longest = std::max(longest, (*high)[k] - (*low)[k]);
-  }
-  const double scale = c.mesh.scale;
-  const double square = scale * scale * 2 * area / double(c.mesh.shape->triangles.size());
-  const Membrane& m = c.membrane;
-  const double stiffness = m.given() ? std::max({m.warp, m.weft, m.shear}) : c.stiffness.structural;
-  return {scale * longest / square, c.density * square, stiffness};
-}
-
-// m/s²; by which a gas accelerates the cloth that holds it at the start, where its pressure is greatest.
-double push_of_gas(const Cloth& c) {
-  if (!c.pressure.given()) return 0;
-  const GasLaw law(c.pressure, 1);
-  return std::abs(law.over(law.greatest_share(), 1)) / c.density;
-}
-
-}  // namespace
-
-double projection_substep(const Scene& scene) {
-  constexpr double kSag = 0.02;
-  constexpr double kJacobi = 0.3;  // of what a Gauss-Seidel sweep does: it takes means
-  constexpr double kLines = 10;    // the same, against a gas; 15 on balls of 270 vertices
-  const Solver& solver = scene.solver;
-  const bool lines = solver.sweep == Sweep::line;
-  const double g = lines || solver.tethers ? 0 : greatest_gravity(scene);
-  const double sweeps = solver.iterations * (solver.sweep == Sweep::jacobi ? kJacobi : 1);
-  double dt = kLongestProjection;
-  for (const Cloth& c : scene.cloths) {
-    const double pull = g + push_of_gas(c) / (lines ? kLines : 1);
-    if (!(pull > 0)) continue;
-    const Fineness f = fineness_of(c, solver);
-    double needed = std::sqrt(kSag * sweeps / (2 * pull * f.points_over_spacing));
-    if (solver.method != Method::positional)
-      needed = std::max(needed, std::sqrt(f.mass / std::max(f.stiffness, 1e-12)));
-    dt = std::min(dt, needed);
-  }
-  return dt;
 }
 
 }  // namespace weft::physics

@@ -1,5 +1,5 @@
-// The origin of a simulation (origin.h), and moving scenes.
-#include "physics/frame/origin.h"
+// Scenes about an origin (placed_scene.h), and moving scenes.
+#include "physics/frame/placed_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "physics/contact/colliders/shapes.h"
+#include "physics/frame/projection_substep.h"
 
 namespace weft {
 
@@ -59,6 +60,39 @@ Vec3 origin_of(const Scene& scene) {
     near &= std::abs(middle[k]) <= kNear;
   }
   return near ? Vec3{} : middle;
+}
+
+namespace {
+
+bool holds_several(const Scene& scene) {
+  return std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const Cloth& c) {
+    return std::any_of(c.pins.begin(), c.pins.end(), [](const Pin& p) { return p.of_several(); });
+  });
+}
+
+}  // namespace
+
+PlacedScene::PlacedScene(Scene scene, const Vec3& origin) : origin_(origin) {
+  if (origin_ != Vec3{} || holds_several(scene)) given_ = scene;
+  for (Cloth& cloth : scene.cloths) cloth.pins = single_pins(cloth);
+  simulated_ = origin_ == Vec3{} ? std::move(scene) : moved(std::move(scene), times(origin_, -1));
+}
+
+void PlacedScene::set_path(std::size_t collider, std::vector<Key> keys) {
+  if (given_) given_->colliders[collider].keys = keys;
+  for (Key& key : keys) key.position = minus(key.position, origin_);
+  simulated_.colliders[collider].keys = std::move(keys);
+}
+
+void PlacedScene::set_solver(const Solver& solver) {
+  simulated_.solver = solver;
+  if (given_) given_->solver = solver;
+}
+
+std::string PlacedScene::steady() {
+  const std::string changed = steady_jacobi(simulated_);
+  if (given_) given_->solver = simulated_.solver;
+  return changed;
 }
 
 }  // namespace physics

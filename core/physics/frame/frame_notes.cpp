@@ -1,0 +1,98 @@
+// Notes on frames (frame_notes.h).
+#include "physics/frame/frame_notes.h"
+
+#include <algorithm>
+
+#include "physics/model/number.h"
+
+namespace weft::physics {
+
+void add_once(std::vector<std::string>& notes, const std::string& note) {
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+}
+
+void FrameNotes::look(const EndedFrame& frame, std::vector<std::string>& notes) {
+  check_strain_limits(frame);
+  note_clamps(frame, notes);
+  note_stretch(frame, notes);
+  note_left_strain(frame, notes);
+}
+
+void FrameNotes::check_strain_limits(const EndedFrame& frame) {
+  constexpr double kTolerance = 1e-2;  // of the limit
+  for (std::size_t c = 0; c < frame.cloths.size(); ++c) {
+    const ClothStep& step = *frame.cloths[c];
+    const double limit = step.cloth().strain_limit;
+    if (limit == 0 || overlong_[c].frame > 0 || is_asleep(frame.sleeping, c)) continue;
+    const double strain = step.model().limited_strain();
+    if (strain > limit * (1 + kTolerance)) overlong_[c] = {frame.number, strain, false};
+  }
+}
+
+// Motion that contact had to cut short.
+void FrameNotes::note_clamps(const EndedFrame& frame, std::vector<std::string>& notes) {
+  if (clamps_ || !frame.contact || frame.contact->pairs().record().held == 0) return;
+  clamps_ = true;
+  notes.push_back("frame " + std::to_string(frame.number) +
+                  ": sheets would have passed through each other; what met moves as one until "
+                  "it comes apart (shorter substeps or a greater thickness avoid that)");
+}
+
+// Nothing passes through, so that what is drawn against something stretches instead.
+void FrameNotes::note_stretch(const EndedFrame& frame, std::vector<std::string>& notes) {
+  constexpr double kDoubled = 1;
+  if (!frame.contact || !frame.contact->pairs().touched()) return;
+  for (std::size_t c = 0; c < frame.cloths.size(); ++c) {
+    if (stretched_[c] || is_asleep(frame.sleeping, c)) continue;
+    const double strain = frame.cloths[c]->model().strain().max;
+    if (strain < kDoubled) continue;
+    stretched_[c] = 1;
+    notes.push_back("frame " + std::to_string(frame.number) + ": cloth " + std::to_string(c) +
+                    " is drawn against what it cannot pass, to " + number(1 + strain) +
+                    " times its length (other ways of its pins, a strain limit or tear_strain "
+                    "avoid that)");
+  }
+}
+
+// Sweeps that leave strain keep energy that nothing put in. A look takes about as long as a sweep.
+void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::string>& notes) {
+  constexpr int kFramesBetweenLooks = 8;
+  constexpr double kInstant = 1e-9;  // s; in substeps so short all stiffness is felt
+  if (left_strain_ || frame.method != Method::compliant || frame.number % kFramesBetweenLooks != 0)
+    return;
+  double held = 0;
+  for (std::size_t c = 0; c < frame.cloths.size(); ++c)
+    if (!is_asleep(frame.sleeping, c)) {
+      const ClothStep& step = *frame.cloths[c];
+      held += step.model().held_energy(step.particles().x, kInstant);
+    }
+  if (!frame.energy.is_made(held)) return;
+  left_strain_ = true;
+  notes.push_back("frame " + std::to_string(frame.number) + ": the sweeps leave strain of " +
+                  number(held) + " J that nothing put in; more substeps or iterations leave less");
+}
+
+void FrameNotes::tell(const Cloths& cloths, std::int64_t frames, std::vector<std::string>& notes) {
+  for (std::size_t c = 0; c < overlong_.size(); ++c) {
+    Overlong& o = overlong_[c];
+    if (o.frame == 0 || o.told) continue;
+    o.told = true;
+    notes.push_back("cloth " + std::to_string(c) + ": the strain limit of " +
+                    number(cloths[c]->cloth().strain_limit) + " did not hold in frame " +
+                    std::to_string(o.frame) + " (" + number(o.strain) +
+                    "); more substeps hold it better");
+  }
+  for (const std::string& old : seams_) std::erase(notes, old);
+  seams_.clear();
+  for (std::size_t c = 0; frames > 0 && c < cloths.size(); ++c) {
+    const OpenSeams seams = cloths[c]->model().open_seams();
+    if (seams.open == 0) continue;
+    seams_.push_back("cloth " + std::to_string(c) + ": " + std::to_string(seams.open) + " of " +
+                     std::to_string(seams.all) + " seams are open after frame " +
+                     std::to_string(frames) + ", their ends up to " + number(seams.widest) +
+                     " m from the middle");
+  }
+  notes.insert(notes.end(), seams_.begin(), seams_.end());
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,56 @@
+// What frames find to be worse than what was asked for: told once each, by notes of the plan.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "physics/frame/cloth_step.h"
+#include "physics/frame/energy_guard.h"
+#include "physics/frame/sheet_contact.h"
+#include "physics/frame/sleeping.h"
+
+namespace weft::physics {
+
+// Adds a note that is not among them yet.
+void add_once(std::vector<std::string>& notes, const std::string& note);
+
+// A frame that has been accepted.
+struct EndedFrame {
+  std::int64_t number;  // from 1 on
+  Method method;
+  const Cloths& cloths;
+  const Sleeping* sleeping;     // or null
+  const SheetContact* contact;  // or null
+  const EnergyGuard& energy;
+};
+
+class FrameNotes {
+ public:
+  explicit FrameNotes(std::size_t cloths) : overlong_(cloths), stretched_(cloths) {}
+
+  // Looks at a frame, and adds what it finds. What is read only when somebody asks waits for tell(): frames
+  // allocate nothing for it.
+  void look(const EndedFrame& frame, std::vector<std::string>& notes);
+  // Adds strain limits that did not hold; and seams that are open after so many frames, in place of those told
+  // of before.
+  void tell(const Cloths& cloths, std::int64_t frames, std::vector<std::string>& notes);
+
+ private:
+  // The first frame at whose end a cloth was longer somewhere than its strain limit allows.
+  struct Overlong {
+    std::int64_t frame = 0;  // 0: none
+    double strain = 0;
+    bool told = false;
+  };
+  void check_strain_limits(const EndedFrame& frame);
+  void note_clamps(const EndedFrame& frame, std::vector<std::string>& notes);
+  void note_stretch(const EndedFrame& frame, std::vector<std::string>& notes);
+  void note_left_strain(const EndedFrame& frame, std::vector<std::string>& notes);
+
+  std::vector<Overlong> overlong_;       // of every cloth
+  std::vector<std::uint8_t> stretched_;  // of every cloth: told of
+  bool clamps_ = false, left_strain_ = false;
+  std::vector<std::string> seams_;
+};
+
+}  // namespace weft::physics

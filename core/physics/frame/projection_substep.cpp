@@ -1,0 +1,100 @@
+// Stable settings of methods that project (projection_substep.h).
+#include "physics/frame/projection_substep.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "physics/model/lattice/stability.h"
+#include "physics/model/lattice/stencil.h"
+#include "physics/model/mesh/gas.h"
+#include "physics/model/path.h"
+#include "weft/mesh.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr double kAlikeMasses = 4;  // greatest over least that Jacobi takes
+
+// What the substep of methods that project depends on.
+struct Fineness {
+  double points_over_spacing;  // 1/m; along the longer side
+  double mass, stiffness;      // kg, N/m
+};
+
+Fineness fineness_of(const Cloth& c, const Solver& solver) {
+  if (!c.mesh.given())
+    return {std::max(c.grid.nx / spacing_u(c.grid), c.grid.ny / spacing_v(c.grid)),
+            lightest_mass(c), spring_repeats(solver) * greatest_stiffness(c)};
+  // As if its triangles were halves of squares of their mean area.
+  const std::vector<Vec3>& x = c.mesh.shape->vertices;
+  double area = 0, longest = 0;
+  for (const auto& [p, q, r] : c.mesh.shape->triangles) {
+    const Vec3 n = cross(minus(x[std::size_t(q)], x[std::size_t(p)]),
+                         minus(x[std::size_t(r)], x[std::size_t(p)]));
+    area += std::sqrt(dot(n, n)) / 2;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto [low, high] = std::minmax_element(
+        x.begin(), x.end(), [&](const Vec3& a, const Vec3& b) { return a[k] < b[k]; });
+    longest = std::max(longest, (*high)[k] - (*low)[k]);
+  }
+  const double scale = c.mesh.scale;
+  const double square = scale * scale * 2 * area / double(c.mesh.shape->triangles.size());
+  const Membrane& m = c.membrane;
+  const double stiffness = m.given() ? std::max({m.warp, m.weft, m.shear}) : c.stiffness.structural;
+  return {scale * longest / square, c.density * square, stiffness};
+}
+
+// m/s²; by which a gas accelerates the cloth that holds it at the start, where its pressure is greatest.
+double push_of_gas(const Cloth& c) {
+  if (!c.pressure.given()) return 0;
+  const GasLaw law(c.pressure, 1);
+  return std::abs(law.over(law.greatest_share(), 1)) / c.density;
+}
+
+}  // namespace
+
+double projection_substep(const Scene& scene) {
+  constexpr double kSag = 0.02;
+  constexpr double kJacobi = 0.3;  // of what a Gauss-Seidel sweep does: it takes means
+  constexpr double kLines = 10;    // the same, against a gas; 15 on balls of 270 vertices
+  const Solver& solver = scene.solver;
+  const bool lines = solver.sweep == Sweep::line;
+  const double g = lines || solver.tethers ? 0 : greatest_gravity(scene);
+  const double sweeps = solver.iterations * (solver.sweep == Sweep::jacobi ? kJacobi : 1);
+  double dt = kLongestProjection;
+  for (const Cloth& c : scene.cloths) {
+    const double pull = g + push_of_gas(c) / (lines ? kLines : 1);
+    if (!(pull > 0)) continue;
+    const Fineness f = fineness_of(c, solver);
+    double needed = std::sqrt(kSag * sweeps / (2 * pull * f.points_over_spacing));
+    if (solver.method != Method::positional)
+      needed = std::max(needed, std::sqrt(f.mass / std::max(f.stiffness, 1e-12)));
+    dt = std::min(dt, needed);
+  }
+  return dt;
+}
+
+std::string steady_jacobi(Scene& scene) {
+  if (scene.solver.sweep != Sweep::jacobi) return "";
+  const double dt = scene.time.substeps == kAutoSubsteps ? projection_substep(scene)
+                                                         : scene.time.frame / scene.time.substeps;
+  bool stiff = false;
+  for (const Cloth& c : scene.cloths) {
+    const double lightest = lightest_mass(c);
+    double heaviest = lightest;
+    for (const double mass : c.masses) heaviest = std::max(heaviest, mass);
+    if (heaviest > kAlikeMasses * lightest) {
+      scene.solver.sweep = Sweep::gauss_seidel;
+      return "Jacobi sweeps do not converge for masses this unequal; gauss_seidel runs in their "
+             "place";
+    }
+    stiff |= 2 * greatest_stiffness(c) * dt * dt > lightest;
+  }
+  if (!stiff || scene.solver.method != Method::compliant || scene.solver.iterations > 1) return "";
+  scene.solver.iterations = 2;
+  return "one Jacobi sweep of constraints this stiff is not stable in large motions; two run";
+}
+
+}  // namespace weft::physics

@@ -1,0 +1,26 @@
+// How long substeps of methods that project may be, and what of their settings is stable.
+#pragma once
+
+#include <string>
+
+#include "weft/scene.h"
+
+namespace weft::physics {
+
+// s, of methods that project; about what a sheet of 1 m with 32 x 32 points needs.
+inline constexpr double kLongestProjection = 1.0 / 960;
+
+// Methods that project are stable at any substep, but a sweep of Gauss-Seidel or Jacobi passes a pull on
+// over one constraint alone: each is as stiff as a substep can make it, m/(2 dt²), and a sheet of n
+// points, h apart, that hangs by its edge stretches there by 2 n g dt²/h. A gas of pressure p in a mesh of
+// density ρ stretches it as such a pull of g = p/ρ does. The longest substep that keeps this to 2 %, or lets one
+// sweep do all that the material's own stiffness asks for, k dt² = m; at most kLongestProjection.
+double projection_substep(const Scene& scene);
+
+// Jacobi adds up corrections that each constraint works out for two ends of like mass; where a light
+// particle has heavy neighbours they add up to more than the whole. And a single sweep with compliance
+// is an explicit spring as stiff as the sweep allows, which large motions feed: two sweeps damp. Puts
+// what is stable into the scene and returns what to tell, "" where nothing changed.
+std::string steady_jacobi(Scene& scene);
+
+}  // namespace weft::physics

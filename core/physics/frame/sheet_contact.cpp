@@ -1,0 +1,68 @@
+// Contact beside the substeps (sheet_contact.h).
+#include "physics/frame/sheet_contact.h"
+
+#include <cmath>
+
+#include "physics/model/path.h"
+#include "physics/model/vector.h"
+
+namespace weft::physics {
+namespace {
+
+constexpr std::int64_t kManyParticles = 8192;  // for whose contact threads stand by all frame
+
+}  // namespace
+
+std::unique_ptr<SheetContact> SheetContact::make(const Scene& scene, const Cloths& cloths,
+                                                 const KernelTable& kernels) {
+  std::vector<ClothModel*> models = models_of(cloths);
+  auto contact = SelfContact::make(scene, models, kernels);
+  if (!contact) return nullptr;
+  return std::unique_ptr<SheetContact>(
+      new SheetContact(scene, std::move(models), kernels, std::move(contact)));
+}
+
+SheetContact::SheetContact(const Scene& scene, std::vector<ClothModel*> models,
+                           const KernelTable& kernels, std::unique_ptr<SelfContact> contact)
+    : scene_(scene),
+      models_(std::move(models)),
+      kernels_(kernels),
+      contact_(std::move(contact)),
+      untangle_(std::make_unique<Untangle>(scene, models_)) {}
+
+void SheetContact::begin_anew() {
+  contact_ = SelfContact::make(scene_, models_, kernels_);
+  untangle_ = std::make_unique<Untangle>(scene_, models_);
+}
+
+void SheetContact::restart() {
+  contact_->restart();
+  until_ = 1;
+}
+
+// Surfaces begin with what does not cross; what does comes apart first.
+void SheetContact::begin_frame(Threads& threads) {
+  const bool drawn = contact_->surfaces() && untangle_->look_at_seams();
+  if (contact_->surfaces() && (untangle_->due() || contact_->forced() || drawn)) {
+    untangle_->pull_apart();
+    contact_->leave_out(untangle_->passing());
+    contact_->restart();
+  }
+  if (!contact_->begun()) contact_->begin(threads);
+}
+
+// Ends the interval of `count` substeps before substep `end`.
+void SheetContact::run_contact(const Substeps& frame, int end, int count, Threads& threads) {
+  const auto start = std::chrono::steady_clock::now();
+  const Vec3 g = gravity_at(scene_, frame.time + end * frame.dt);
+  until_ = contact_->run({frame.dt, count, std::sqrt(dot(g, g))}, threads);
+  if (untangle_->due()) untangle_->calm(count * frame.dt);
+  spent_ += std::chrono::steady_clock::now() - start;
+  ++runs_;
+}
+
+bool SheetContact::stands_by() const {
+  return contact_->particles() >= kManyParticles;
+}
+
+}  // namespace weft::physics

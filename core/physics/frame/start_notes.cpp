@@ -1,0 +1,119 @@
+// Notes on how cloths start (start_notes.h).
+#include "physics/frame/start_notes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/contact/start_inside.h"
+#include "physics/model/lattice/cuts.h"
+#include "physics/model/number.h"
+#include "physics/model/path.h"
+#include "physics/model/vector.h"
+#include "weft/mesh.h"
+
+namespace weft::physics {
+namespace {
+
+// Pins whose paths begin farther than `distance` from their places on the sheet, and the farthest [m].
+struct FarPins {
+  int count = 0;
+  double most = 0;
+};
+FarPins far_pins(const Cloth& cloth, double distance) {
+  FarPins far;
+  const bool mesh = cloth.mesh.given();
+  const std::vector<Vec3> vertices = mesh ? placed_vertices(cloth.mesh) : std::vector<Vec3>();
+  for (const Pin& pin : cloth.pins) {
+    if (!pin.moves()) continue;
+    const Vec3 off = minus(pin_alone_at(cloth, pin, 0), mesh ? vertices[std::size_t(pin.i)]
+                                                             : place_on(cloth.grid, pin.i, pin.j));
+    const double length = std::sqrt(dot(off, off));
+    if (length <= distance) continue;
+    ++far.count;
+    far.most = std::max(far.most, length);
+  }
+  return far;
+}
+
+// How far neighbours are apart, about [m].
+double spacing_of(const Cloth& cloth) {
+  return cloth.mesh.given() ? mean_edge(cloth.mesh)
+                            : std::min(spacing_u(cloth.grid), spacing_v(cloth.grid));
+}
+
+// `surfaces`: whether any cloth meets others by its surface.
+void note_thickness(const std::string& which, const Cloth& cloth, bool surfaces,
+                    std::vector<std::string>& notes) {
+  const SelfCollision& self = cloth.self_collision;
+  if (self.mode == SelfCollisionMode::off) return;
+  const bool mesh = cloth.mesh.given();
+  const double spacing = spacing_of(cloth);
+  const std::string thickness = which + ": the thickness of " + number(self.thickness) + " m is ";
+  if (self.thickness > spacing)
+    notes.push_back(thickness + "above the " + (mesh ? "mean edge of " : "spacing of ") +
+                    number(spacing) + " m; particles nearer than the thickness on the " +
+                    (mesh ? "mesh at rest" : "flat sheet") + " do not meet");
+  // As far as a particle gets from all others, at least.
+  const double widest = 0.5 * longest_edge(cloth);
+  if (self.mode == SelfCollisionMode::particles && !surfaces && self.thickness < widest)
+    notes.push_back(thickness + "below " + number(widest) + " m, half " +
+                    (mesh ? "the longest edge" : "the diagonal of a square") +
+                    ": particles can pass between others (mode surface lets nothing through)");
+}
+
+// Whether a cut of the scene passes between two neighbours.
+bool crosses_sheet(const CutLine& cut, const Grid& grid) {
+  bool crosses = false;
+  for (const auto& [di, dj] : {std::pair(1, 0), {0, 1}})
+    for_each_cut({cut}, grid, di, dj, [&](int, int, double) { crosses = true; });
+  return crosses;
+}
+
+}  // namespace
+
+void note_starts(const Scene& scene, const Cloths& cloths, SheetContact* contact,
+                 std::vector<std::string>& notes) {
+  if (!scene.gravity_keys.empty())
+    notes.push_back("gravity follows its keys from " + number(scene.gravity_keys.front().time) +
+                    " to " + number(scene.gravity_keys.back().time) + " s");
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const std::string which = "cloth " + std::to_string(c);
+    for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+      const StartInside& start = cloths[c]->starts()[k];
+      if (start.particles == 0 && start.triangles == 0) continue;
+      const bool course = scene.colliders[k].friction.model == FrictionModel::course;
+      const double deepest = std::max(start.deepest_particle, start.deepest_triangle);
+      notes.push_back(
+          which + " starts inside collider " + std::to_string(k) + ": " +
+          std::to_string(start.particles) + " particles, " +
+          (start.triangles > 0 ? std::to_string(start.triangles) + " triangles, " : "") + "up to " +
+          number(deepest) + " m deep; " +
+          (course ? "they are put out at once, as the course does"
+                  : "moved out over " + std::to_string(kPulledFrames) + " frames"));
+    }
+    const Cloth& cloth = scene.cloths[c];
+    note_thickness(which, cloth, contact && contact->pairs().surfaces(), notes);
+    if (const FarPins far = far_pins(cloth, spacing_of(cloth)); far.count > 0)
+      notes.push_back(which + ": " + std::to_string(far.count) +
+                      (far.count == 1 ? " pin starts " : " pins start up to ") + number(far.most) +
+                      " m from where the sheet has " + (far.count == 1 ? "it" : "them") +
+                      " (a pin with keys begins where they say); the sheet is stretched there");
+    for (std::size_t k = 0; k < cloth.cuts.size(); ++k)
+      if (!crosses_sheet(cloth.cuts[k], cloth.grid))
+        notes.push_back(which + ": cut " + std::to_string(k) + " passes between no two particles");
+  }
+  if (!contact) return;
+  if (const SelfContact::Overlaps o = contact->overlaps(); o.pairs > 0)
+    notes.push_back(std::to_string(o.pairs) +
+                    " pairs of particles start nearer than the thickness, by up to " +
+                    number(o.deepest) + " m; they are pushed apart");
+  if (const std::size_t crossings = contact->crossings(); crossings > 0)
+    notes.push_back(
+        std::to_string(crossings) + " edges pass through triangles of cloth at the start; " +
+        (contact->pairs().surfaces()
+             ? "the smaller part of what meets is taken through, row by row"
+             : "their particles are kept apart on the sides where they are (mode surface takes "
+               "such sheets apart)"));
+}
+
+}  // namespace weft::physics
