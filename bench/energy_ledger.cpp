@@ -183,9 +183,13 @@ double Ledger::noise(const std::vector<Vec3>& x) const {
   double size = 1;
   for (const Vec3& p : x) size = std::max(size, norm(p));
   const double off = kRounding * size;
-  return sum_of([&](const weft::physics::Stencil&, std::size_t, std::size_t, double k) {
-    return 0.5 * k * off * off;
-  });
+  std::vector<Vec3> ripples(x.size());
+  for (std::size_t p = 0; p < x.size(); ++p) {
+    const std::size_t nx = std::size_t(cloth_.grid.nx);
+    ripples[p][1] = (p % nx + p / nx) % 2 == 0 ? off : -off;
+  }
+  return bent(ripples) + sum_of([&](const weft::physics::Stencil&, std::size_t, std::size_t,
+                                    double k) { return 0.5 * k * off * off; });
 }
 
 }  // namespace bench

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "physics/kernels/kernels.h"
+#include "physics/kernels/lattice.h"
 #include "physics/model/lattice/lattice.h"
 #include "physics/model/random.h"
 
@@ -132,7 +133,7 @@ void call_carrying(const KernelTable& k, Kernel kernel, Rows& r, Patch& p) {
     carried[at] = p.carry.at(axis, number, i);
   });
   r.carry = carried.data();
-  (k.*kernel)(r);
+  (k.lattice.*kernel)(r);
   for_each_carried(k, p.stride, [&](int number, int axis, int i, std::size_t at) {
     p.carry.at(axis, number, i) = carried[at] + 0.0f;  // a zero's sign means nothing here
   });
@@ -175,7 +176,7 @@ inline void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, 
   r.overlong = overlong;
   r.alike = alike;
   r.advance = advance();
-  call_carrying(k, &KernelTable::spring_rows, r, p);
+  call_carrying(k, &LatticeKernels::spring_rows, r, p);
 }
 
 }  // namespace weft::physics

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "kernel_patch.h"
+#include "physics/kernels/colliders.h"
 #include "physics/kernels/kernels.h"
+#include "physics/kernels/lattice.h"
 
 namespace weft::physics {
 namespace {
@@ -88,7 +90,7 @@ void jacobi_rows(const KernelTable& k, Patch& p, float compliance, bool alike, b
   r.constants = constraints.data();
   r.weight = 3;
   r.inverse_dt = compliance > 0 ? 100.0f : 0.0f;
-  call_carrying(k, &KernelTable::jacobi_rows, r, p);
+  call_carrying(k, &LatticeKernels::jacobi_rows, r, p);
 }
 
 // A kernel over all rows at once, and in two parts.
@@ -135,28 +137,28 @@ void add_springs(std::vector<Case>& cases) {
   for (const auto& [di, dj] : kOffsets) {
     const std::string at = " (" + std::to_string(di) + "," + std::to_string(dj) + ")";
     const auto springs = [di = di, dj = dj](auto kernel) {
-      return [=](const KernelTable& k, Patch& p) { (k.*kernel)(stencil_row(p, di, dj)); };
+      return [=](const KernelTable& k, Patch& p) { (k.lattice.*kernel)(stencil_row(p, di, dj)); };
     };
     const int least = std::abs(di) + 1;
-    cases.push_back({"spring_stencil" + at, least, springs(&KernelTable::spring_stencil)});
+    cases.push_back({"spring_stencil" + at, least, springs(&LatticeKernels::spring_stencil)});
     cases.push_back(
-        {"damped_spring_stencil" + at, least, springs(&KernelTable::damped_spring_stencil)});
+        {"damped_spring_stencil" + at, least, springs(&LatticeKernels::damped_spring_stencil)});
   }
 }
 
 void add_moves(std::vector<Case>& cases) {
   const auto move = [](auto kernel) {
-    return [=](const KernelTable& k, Patch& p) { (k.*kernel)(advance_row(p)); };
+    return [=](const KernelTable& k, Patch& p) { (k.particles.*kernel)(advance_row(p)); };
   };
-  cases.push_back({"integrate", 2, move(&KernelTable::integrate)});
+  cases.push_back({"integrate", 2, move(&ParticleKernels::integrate)});
   cases.push_back({"predict, velocities first", 2, [](const KernelTable& k, Patch& p) {
                      AdvanceRow r = advance_row(p);
                      r.f = {};
-                     k.predict(r);
+                     k.particles.predict(r);
                    }});
-  cases.push_back({"predict, corrections first", 2, move(&KernelTable::predict)});
-  cases.push_back({"velocity", 2, move(&KernelTable::velocity)});
-  cases.push_back({"apply_corrections", 2, move(&KernelTable::apply_corrections)});
+  cases.push_back({"predict, corrections first", 2, move(&ParticleKernels::predict)});
+  cases.push_back({"velocity", 2, move(&ParticleKernels::velocity)});
+  cases.push_back({"apply_corrections", 2, move(&ParticleKernels::apply_corrections)});
 }
 
 struct Features {
@@ -210,9 +212,9 @@ void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Featur
   }
   for (int a = 0; dj == 0 && a < r.count; ++a) p.lanes[std::size_t(a / di % 2 * p.stride + a)] = -1;
   r.lanes = p.lanes.data();
-  if (jacobi) return k.jacobi_stencil(r, 0, p.f.row(0), p.f.row(dj));
+  if (jacobi) return k.lattice.jacobi_stencil(r, 0, p.f.row(0), p.f.row(dj));
   // Along rows all of them: two may be worked through together.
-  k.project({&r, 1, 0, dj == 0 ? kRows : 1, 0});
+  k.lattice.project({&r, 1, 0, dj == 0 ? kRows : 1, 0});
 }
 
 void add_projections(std::vector<Case>& cases) {
@@ -290,9 +292,9 @@ void add_contacts(std::vector<Case>& cases) {
       r.bias = 0.5f * size;
       r.damped = 0.3f;
       if (model == kFrictionModels)
-        k.collider[shape]->damp_sliding(r);
+        k.colliders[shape]->damp_sliding(r);
       else
-        k.collider[shape]->collide[model](r);
+        k.colliders[shape]->collide[model](r);
     };
   };
   for (const float friction : {0.0f, 0.4f})

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "physics/kernels/kernels.h"
+#include "physics/kernels/lattice.h"
 #include "physics/model/lattice/lattice.h"
 #include "physics/model/lattice/stencil.h"
 #include "physics/model/random.h"
@@ -20,7 +21,7 @@ class Sizes : public testing::TestWithParam<Simd> {};
 // Every lane and every place counts, the sign does not, and what is no number is infinite.
 TEST_P(Sizes, FindTheGreatestSize) {
   if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
-  const auto greatest = kernel_table(GetParam()).greatest;
+  const auto greatest = kernel_table(GetParam()).particles.greatest;
   EXPECT_EQ(greatest(nullptr, 0), 0.0f);
   for (const int count : {16, 48, 64, 208}) {
     AlignedArray<float> values(static_cast<std::size_t>(count));
@@ -65,8 +66,8 @@ TEST_P(Sizes, TallyARow) {
       }
     }
     r.columns = columns;
-    const EnergySum got = kernel_table(GetParam()).energy_sum(r);
-    const EnergySum scalar = kernel_table(Simd::scalar).energy_sum(r);
+    const EnergySum got = kernel_table(GetParam()).particles.energy_sum(r);
+    const EnergySum scalar = kernel_table(Simd::scalar).particles.energy_sum(r);
     EXPECT_EQ(got.kinetic, scalar.kinetic);
     EXPECT_EQ(got.potential, scalar.potential);
     EXPECT_NEAR(got.kinetic, kinetic, 2e-7 * kinetic);
@@ -77,7 +78,7 @@ TEST_P(Sizes, TallyARow) {
 
 TEST_P(Sizes, FindTheLongestConstraintThatIsLeft) {
   if (!simd_available(GetParam())) GTEST_SKIP() << "not on this machine";
-  const auto longest = kernel_table(GetParam()).greatest_square;
+  const auto longest = kernel_table(GetParam()).lattice.greatest_square;
   Rows x(2, 96);
   Random random(9, 1);
   for (int k = 0; k < 3; ++k)
@@ -149,8 +150,8 @@ TEST_P(Sizes, CountWhatConstraintsHold) {
               expected += 0.5 * std::min<double>(stiffness, share * rigid) * off * off;
               expected += 0.5 * rigid * over * over;
             }
-            const double got = kernel_table(GetParam()).stretch_energy(r);
-            EXPECT_EQ(got, kernel_table(Simd::scalar).stretch_energy(r));
+            const double got = kernel_table(GetParam()).lattice.stretch_energy(r);
+            EXPECT_EQ(got, kernel_table(Simd::scalar).lattice.stretch_energy(r));
             EXPECT_NEAR(got, expected, 1e-6 * expected);
           }
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/kernels/kernels.h"
+#include "physics/kernels/line.h"
 #include "physics/kernels/transpose.h"
 #include "physics/model/random.h"
 
@@ -52,7 +53,7 @@ TEST_P(Transposing, PutsRowsIntoLanes) {
     std::vector<float> rows = rows_, lanes = lanes_;
     t.rows = rows.data();
     t.lanes = lanes.data();
-    kernels().rows_to_lanes(t);
+    kernels().lines.rows_to_lanes(t);
     EXPECT_EQ(rows, rows_);
     for (int r = 0; r < t.row_count; ++r)
       for (int i = 0; i < t.columns; ++i)
@@ -65,7 +66,7 @@ TEST_P(Transposing, PutsLanesIntoRowsAndNowhereElse) {
     std::vector<float> rows = rows_, lanes = lanes_, expected = rows_;
     t.rows = rows.data();
     t.lanes = lanes.data();
-    kernels().lanes_to_rows(t);
+    kernels().lines.lanes_to_rows(t);
     EXPECT_EQ(lanes, lanes_);
     for (int r = 0; r < t.row_count; ++r)
       for (int i = 0; i < t.columns; ++i)
@@ -82,7 +83,7 @@ TEST_P(Transposing, AddsLanesToRowsAndTheirRates) {
     t.lanes = lanes.data();
     t.rates = rates.data();
     t.rate = 720.3f;
-    kernels().lanes_to_rows(t);
+    kernels().lines.lanes_to_rows(t);
     for (int r = 0; r < t.row_count; ++r)
       for (int i = 0; i < t.columns; ++i) {
         const float moved = lanes_[std::size_t(i * kPitch + r)];

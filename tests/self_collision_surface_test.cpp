@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "physics/kernels/kernels.h"
 #include "physics/kernels/surface.h"
 #include "physics/model/random.h"
 
@@ -129,7 +130,7 @@ class Surfaces : public testing::TestWithParam<Simd> {
   }
   static std::vector<SurfaceContact> found(const Squares& s, Simd simd, SurfaceSearch search) {
     std::vector<SurfaceContact> room(s.owner.size() * kKindsOfPair);
-    const int count = kernel_table(simd).surface_pairs(
+    const int count = kernel_table(simd).sheets.surface_pairs(
         {s.place.data(), s.moved.data(), s.rest.data(), s.square.data(), s.pairs, s.owner.data(),
          s.neighbour.data(), search, 1, kFloor, room.data()});
     room.resize(std::size_t(count));
@@ -137,7 +138,7 @@ class Surfaces : public testing::TestWithParam<Simd> {
   }
   static std::vector<int> not_apart(const Squares& s, Simd simd, float range) {
     std::vector<std::int32_t> owner(s.owner.size()), neighbour(s.owner.size());
-    const int count = kernel_table(simd).squares_not_apart(
+    const int count = kernel_table(simd).sheets.squares_not_apart(
         {s.place.data(), s.moved.data(), s.square.data(), s.pairs, s.owner.data(),
          s.neighbour.data(), range, owner.data(), neighbour.data()});
     std::vector<int> pairs;

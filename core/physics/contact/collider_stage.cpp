@@ -13,15 +13,14 @@ std::string detail_of(const Collider& c) {
          (c.keys.empty() ? "" : ", moving") + (c.animation.empty() ? "" : ", animated");
 }
 
-class ColliderStage final : public ParticlesStage {
+class ColliderStage final : public ColliderRowStage {
  public:
   using Kernel = RowReach (*)(const CollideRow&);
   ColliderStage(const ClothParts& parts, const Collider& collider, const StartInside& start,
                 const std::string& name, Kernel kernel)
-      : ParticlesStage(name, detail_of(collider), 0, parts.particles.count(), "particles"),
+      : ColliderRowStage(parts, collider, start, false, name, detail_of(collider), 0,
+                         parts.particles.count(), "particles"),
         parts_(parts),
-        collider_(parts, collider, start),
-        far_(parts, collider_.fastest()),
         kernel_(kernel) {
     if (const BodySurface* surface = surface_of(collider))
       probe_ = std::make_unique<BodyProbe>(*surface, parts.particles);
@@ -34,31 +33,21 @@ class ColliderStage final : public ParticlesStage {
     far_.found(j, s, kernel_(row));
   }
   std::size_t bytes() const override { return probe_ ? probe_->bytes() : 0; }
-  const SpeculativeCulling& far() const override { return far_; }
-  double idle() const override { return far_.share(); }
-  void restart() override { far_.restart(collider_.fastest()); }
-  void follow(const Collider& collider) override {
-    if (&collider != &collider_.collider()) return;
-    collider_.follow_keys();
-    far_.restart(collider_.fastest());
-  }
 
  private:
   ClothParts parts_;
-  MovingCollider collider_;
-  SpeculativeCulling far_;
   Kernel kernel_;
   std::unique_ptr<BodyProbe> probe_;  // of a mesh
 };
 
 const ColliderKernels& kernels_of(const ClothParts& parts, const Collider& collider) {
-  return *parts.kernels.collider[collider.shape.index()];
+  return *parts.kernels.colliders[collider.shape.index()];
 }
 
 }  // namespace
 
-std::unique_ptr<ParticlesStage> make_collider(const ClothParts& parts, const Collider& collider,
-                                              const StartInside& start) {
+std::unique_ptr<ColliderRowStage> make_collider(const ClothParts& parts, const Collider& collider,
+                                                const StartInside& start) {
   const auto kernel = kernels_of(parts, collider).collide[std::size_t(collider.friction.model)];
   return std::make_unique<ColliderStage>(parts, collider, start, "collider", kernel);
 }

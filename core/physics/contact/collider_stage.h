@@ -6,15 +6,36 @@
 
 namespace weft::physics {
 
-// Particles against a collider.
-class ParticlesStage : public RowStage {
+// A row stage against one collider: where that is, which rows are out of its reach, and what follows when its path
+// has changed.
+class ColliderRowStage : public RowStage {
  public:
-  using RowStage::RowStage;
+  double idle() const override { return far_.share(); }
+  void restart() override { far_.restart(collider_.fastest()); }
+  void follow(const Collider& collider) override {
+    if (&collider != &collider_.collider()) return;
+    collider_.follow_keys();
+    far_.restart(collider_.fastest());
+  }
   // Which rows are out of reach.
-  virtual const SpeculativeCulling& far() const = 0;
+  const SpeculativeCulling& far() const { return far_; }
+
+ protected:
+  // `triangles`: whether it acts on triangles; the others as of RowStage.
+  ColliderRowStage(const ClothParts& parts, const Collider& collider, const StartInside& start,
+                   bool triangles, std::string name, std::string detail, int rows_reached,
+                   std::int64_t touched, std::string item)
+      : RowStage(std::move(name), std::move(detail), rows_reached, touched, std::move(item)),
+        collider_(parts, collider, start, triangles),
+        far_(parts, collider_.fastest()) {}
+
+  MovingCollider collider_;
+  SpeculativeCulling far_;
 };
-std::unique_ptr<ParticlesStage> make_collider(const ClothParts& parts, const Collider& collider,
-                                              const StartInside& start);
+
+// Particles against a collider.
+std::unique_ptr<ColliderRowStage> make_collider(const ClothParts& parts, const Collider& collider,
+                                                const StartInside& start);
 // The layer of a collider's bias; null where its friction does not damp.
 std::unique_ptr<RowStage> make_friction_layer(const ClothParts& parts, const Collider& collider,
                                               const StartInside& start);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "physics/contact/body/body_triangle.h"
+#include "physics/contact/friction.h"
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/path.h"
 
@@ -59,10 +60,8 @@ std::pair<Vec3, Vec3> rub(const CollideRow& r, const Touch& touch, const Vec3& s
   const Vec3 tangential = minus(speed, times(touch.normal, into));
   const double distance = std::sqrt(dot(tangential, tangential)) * r.dt;
   const double pressed = std::max(0.0, -into * r.dt);
-  const double rubbed = distance <= r.friction_static * pressed
-                            ? 1
-                            : std::min(1.0, r.friction_dynamic * pressed / distance);
-  const Vec3 lost = times(tangential, -rubbed);
+  const double taken = taken_by_friction(r.friction_static, r.friction_dynamic, distance, pressed);
+  const Vec3 lost = times(tangential, -taken);
   return {plus(times(touch.normal, touch.depth), times(lost, r.dt)),
           plus(times(touch.normal, std::max(0.0, -into)), lost)};
 }
@@ -72,14 +71,13 @@ std::pair<Vec3, Vec3> rub(const CollideRow& r, const Touch& touch, const Vec3& s
 ColliderTriangles::ColliderTriangles(const ClothParts& parts, const Collider& collider,
                                      const StartInside& start, const SpeculativeCulling& particles,
                                      std::int64_t triangles)
-    : RowStage(resolves(parts.cloth, collider) ? "stretched_faces" : "collider_faces",
-               resolves(parts.cloth, collider)
-                   ? "triangles of the sheet where it is stretched"
-                   : "triangles of the sheet against its small features",
-               1, triangles, "triangles"),
+    : ColliderRowStage(parts, collider, start, true,
+                       resolves(parts.cloth, collider) ? "stretched_faces" : "collider_faces",
+                       resolves(parts.cloth, collider)
+                           ? "triangles of the sheet where it is stretched"
+                           : "triangles of the sheet against its small features",
+                       1, triangles, "triangles"),
       cloth_(parts),
-      collider_(parts, collider, start, true),
-      far_(parts, collider_.fastest()),
       particles_(particles),
       resolved_(resolves(parts.cloth, collider)),
       upright_(collider.shape),
@@ -87,14 +85,8 @@ ColliderTriangles::ColliderTriangles(const ClothParts& parts, const Collider& co
       allowed_(parts.cloth, collider),
       lengths_(std::size_t(parts.particles.rows)) {}
 
-void ColliderTriangles::follow(const Collider& collider) {
-  if (&collider != &collider_.collider()) return;
-  collider_.follow_keys();
-  far_.restart(collider_.fastest());
-}
-
 void ColliderTriangles::restart() {
-  far_.restart(collider_.fastest());
+  ColliderRowStage::restart();
   std::fill(lengths_.begin(), lengths_.end(), Length{});
 }
 

@@ -19,14 +19,11 @@
 namespace weft::physics {
 
 // What all cloths have in common: when a row's triangles are looked at, and how one is lifted.
-class ColliderTriangles : public RowStage {
+class ColliderTriangles : public ColliderRowStage {
  public:
   // `particles`: what the stage of the particles has found.
   ColliderTriangles(const ClothParts& parts, const Collider& collider, const StartInside& start,
                     const SpeculativeCulling& particles, std::int64_t triangles);
-
-  double idle() const override { return far_.share(); }
-  void follow(const Collider& collider) override;
 
   void restart() override;
 
@@ -78,8 +75,6 @@ class ColliderTriangles : public RowStage {
   bool touch(const ColliderRow& r, const std::array<int, 3>& j, const std::array<int, 3>& i);
 
   ClothParts cloth_;
-  MovingCollider collider_;
-  SpeculativeCulling far_;
   const SpeculativeCulling& particles_;
   const bool resolved_;  // the mesh at rest resolves the collider
   Upright upright_;

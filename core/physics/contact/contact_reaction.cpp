@@ -6,6 +6,7 @@
 #include "physics/contact/body/body_passage.h"
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/collider_stage.h"
+#include "physics/contact/friction.h"
 #include "physics/model/path.h"
 
 namespace weft::physics {
@@ -17,9 +18,9 @@ constexpr double kAtRest = 1e-2;    // of what a substep adds to the velocity in
 // What friction leaves of an acceleration along a surface onto which it is pressed [m/s²].
 Vec3 rubbed(const Friction& friction, const Vec3& along, double pressed) {
   if (friction.model == FrictionModel::course) return times(along, 1 - friction.dynamic);
-  const double size = std::sqrt(dot(along, along));
-  if (size <= friction.statik * pressed) return {};
-  return times(along, std::max(0.0, 1 - friction.dynamic * pressed / size));
+  const double taken =
+      taken_by_friction(friction.statik, friction.dynamic, std::sqrt(dot(along, along)), pressed);
+  return taken == 1 ? Vec3{} : times(along, 1 - taken);
 }
 
 // What a point is off a collider at least [m]: of a mesh known by less work than the distance.

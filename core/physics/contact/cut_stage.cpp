@@ -9,24 +9,15 @@ namespace weft::physics {
 namespace {
 
 // A constraint is cut where a point of it comes inside the offset surface.
-class CutStage final : public RowStage {
+class CutStage final : public ColliderRowStage {
  public:
   CutStage(const LatticeParts& parts, const Collider& collider, const StartInside& start)
-      : RowStage("cut", "constraints in a cutter's way end", greatest_reach(parts),
-                 parts.constraints(), "constraints"),
+      : ColliderRowStage(parts, collider, start, false, "cut", "constraints in a cutter's way end",
+                         greatest_reach(parts), parts.constraints(), "constraints"),
         parts_(parts),
-        collider_(parts, collider, start),
-        far_(parts, collider_.fastest()),
         upright_(collider.shape),
         tearing_(*parts.tearing) {
     for (const Stencil& f : parts.stencils) longest_ = std::max(longest_, f.rest);
-  }
-  double idle() const override { return far_.share(); }
-  void restart() override { far_.restart(collider_.fastest()); }
-  void follow(const Collider& collider) override {
-    if (&collider != &collider_.collider()) return;
-    collider_.follow_keys();
-    far_.restart(collider_.fastest());
   }
   void reserve_slots(int slots) override {
     distances_ = AlignedArray<float>(std::size_t(slots) * parts_.lattice.stride);
@@ -73,8 +64,6 @@ class CutStage final : public RowStage {
   }
 
   LatticeParts parts_;
-  MovingCollider collider_;
-  SpeculativeCulling far_;
   Upright upright_;
   LatticeTearing& tearing_;
   double longest_ = 0;  // m, of a constraint at rest

@@ -9,26 +9,18 @@
 namespace weft::physics {
 namespace {
 
-class MeshCutStage final : public RowStage {
+class MeshCutStage final : public ColliderRowStage {
  public:
   MeshCutStage(const ClothParts& parts, MeshTearing& tearing, const Collider& collider,
                const StartInside& start)
-      : RowStage("cut", "edges in a cutter's way end", tearing.reach(),
-                 std::int64_t(tearing.parts().edges.ends.size()), "constraints"),
+      : ColliderRowStage(parts, collider, start, false, "cut", "edges in a cutter's way end",
+                         tearing.reach(), std::int64_t(tearing.parts().edges.ends.size()),
+                         "constraints"),
         parts_(parts),
-        collider_(parts, collider, start),
-        far_(parts, collider_.fastest()),
         upright_(collider.shape),
         tearing_(tearing) {
     for (const Joined& ends : tearing.parts().edges.ends)
       ends_.push_back({parts.particles.place(ends[0]), parts.particles.place(ends[1])});
-  }
-  double idle() const override { return far_.share(); }
-  void restart() override { far_.restart(collider_.fastest()); }
-  void follow(const Collider& collider) override {
-    if (&collider != &collider_.collider()) return;
-    collider_.follow_keys();
-    far_.restart(collider_.fastest());
   }
 
   void run(int j, const Substep& s) override {
@@ -66,8 +58,6 @@ class MeshCutStage final : public RowStage {
   }
 
   ClothParts parts_;
-  MovingCollider collider_;
-  SpeculativeCulling far_;
   Upright upright_;
   MeshTearing& tearing_;
   std::vector<std::array<Particles::Place, 2>> ends_;  // of every edge

@@ -28,8 +28,8 @@ class Edges {
       f.di = kOffsets[edge][0];
       f.dj = kOffsets[edge][1];
       f.links = links_[edge];
-      square =
-          std::max(square, parts_.kernels.greatest_square(far_rows(f, values, l.columns, row)));
+      square = std::max(
+          square, parts_.kernels.lattice.greatest_square(far_rows(f, values, l.columns, row)));
     };
     look(kAlong, j);
     look(kAlong, j + 1);
@@ -77,7 +77,7 @@ class SquareTriangles final : public ColliderTriangles {
   double greatest(const Rows& values, int j) const override { return edges_.greatest(values, j); }
 
   RowReach look(int j, const Substep& s, double longest) override {
-    if (!parts_.kernels.collider[collider().shape()]->below_faces)
+    if (!parts_.kernels.colliders[collider().shape()]->below_faces)
       return look_at_all(j, s, longest);
     Lattice& l = parts_.lattice;
     FacesRow f;
@@ -91,7 +91,7 @@ class SquareTriangles final : public ColliderTriangles {
     f.bound[0] = bound.x;
     f.bound[1] = bound.y;
     f.room = room_.data() + room() * std::size_t(s.slot);
-    const RowReach reach = parts_.kernels.collider[collider().shape()]->below_faces(f);
+    const RowReach reach = parts_.kernels.colliders[collider().shape()]->below_faces(f);
     // The way of a substep matters only where it is long against the collider.
     const float way = reach.speed * f.row.dt;
     const float near = way > 0.5f * f.row.shape.thin ? way : -f.slack;

@@ -44,7 +44,7 @@ EnergySum motion(const Scene& scene, const ClothStep& step, const Rows& x, const
   const Particles& l = step.particles();
   EnergySum sum;
   for (int j = 0; j < l.rows; ++j)
-    sum += step.parts().kernels.energy_sum(
+    sum += step.parts().kernels.particles.energy_sum(
         energy_row(l, x.row(j), v.row(j), j, EnergyGuard::counted_gravity(scene)));
   return sum;
 }

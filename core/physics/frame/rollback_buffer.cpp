@@ -53,7 +53,7 @@ void RollbackBuffer::before(RowSpan rows) {
 
 void RollbackBuffer::after(RowSpan rows) {
   for (int j = rows.begin; j < rows.end; ++j)
-    seen_[std::size_t(j)] = kernels_.energy_sum(
+    seen_[std::size_t(j)] = kernels_.particles.energy_sum(
         energy_row(particles_, particles_.x.row(j), particles_.v.row(j), j, gravity_));
 }
 

@@ -107,7 +107,7 @@ void Sleeping::look(Resting& cloth, Block& block, const Rows& before) const {
   rows.v = l.v.row(block.rows.begin);
   rows.then = {nullptr, nullptr, nullptr};
   rows.bounds = &bounds;
-  kernels_.block_bounds(rows);
+  kernels_.sheets.block_bounds(rows);
   const auto frame = float(scene_.time.frame);
   for (int k = 0; k < 3; ++k) {
     block.box.low[k] = bounds.x.low[k] + std::min(0.0f, bounds.v.low[k] * frame);

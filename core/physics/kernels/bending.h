@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/rows.h"
 
 namespace weft::physics {
 

@@ -4,7 +4,8 @@
 
 #include <cstdint>
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/kernel_list.h"
+#include "physics/kernels/rows.h"
 
 namespace weft::physics {
 
@@ -200,6 +201,40 @@ struct ContactPackets {
   Displacement* change;  // of displacements by contact, and inverse masses again
   float share;           // of what is too close, that is put apart at once,
   float most;            // but no more than that [m]
+};
+
+// What is done with packets of contacts, one after another (contact_packets.cpp).
+template <int N>
+struct ContactKernels {
+  void (*prepare)(const ContactPackets<N>&);
+  float (*sweep)(const ContactPackets<N>&);     // returns the greatest correction [m]
+  float (*separate)(const ContactPackets<N>&);  // returns the greatest depth [of the distance held]
+};
+
+struct SquaresWithin;  // kernels/surface.h
+struct SquaresApart;
+struct SurfacePairs;
+
+// block_bounds: how a block lies and moves; block_edges: and its edges. near_boxes, meeting_pairs, squares_within:
+// return how many are. near_pairs: who is in range of whom. surface_pairs: returns how many contacts there are.
+#define WEFT_SHEET_KERNELS(KERNEL)                        \
+  KERNEL(void, block_bounds, (const BlockRows&))          \
+  KERNEL(void, block_edges, (const BlockRows&))           \
+  KERNEL(int, near_boxes, (const NearBoxes&))             \
+  KERNEL(void, cell_keys, (const CellKeys&))              \
+  KERNEL(NearFound, near_pairs, (const NearSearch&))      \
+  KERNEL(BesideFound, beside_pairs, (const BesidePairs&)) \
+  KERNEL(void, gather_bodies, (const BodyBlock&))         \
+  KERNEL(int, meeting_pairs, (const MeetingPairs&))       \
+  KERNEL(int, squares_within, (const SquaresWithin&))     \
+  KERNEL(int, squares_not_apart, (const SquaresApart&))   \
+  KERNEL(int, surface_pairs, (const SurfacePairs&))
+
+// Of contact between sheets.
+struct SheetKernels {
+  WEFT_SHEET_KERNELS(WEFT_KERNEL_MEMBER)
+  ContactKernels<2> contacts_of_two;
+  ContactKernels<4> contacts_of_four;
 };
 
 }  // namespace weft::physics

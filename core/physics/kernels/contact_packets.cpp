@@ -182,6 +182,9 @@ float separate(const ContactPackets<N>& given) {
 
 }  // namespace
 
+// Declared first, as constants are known to this file alone otherwise.
+extern const physics::ContactKernels<2> kContactsOfTwo;
+extern const physics::ContactKernels<4> kContactsOfFour;
 const physics::ContactKernels<2> kContactsOfTwo{prepare<2>, sweep<2>, separate<2>};
 const physics::ContactKernels<4> kContactsOfFour{prepare<4>, sweep<4>, separate<4>};
 

@@ -4,7 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/kernel_list.h"
+#include "physics/kernels/rows.h"
 
 namespace weft::physics {
 
@@ -44,6 +45,20 @@ struct LineBatch {
   float* lambda;   // multipliers, laid out as x; null for a single sweep [kg·m; of squares kg]
   bool fresh;      // the multipliers are still zero, whatever the memory says
   float* scratch;  // particles * kBatchScratch floats
+};
+
+struct TransposeRows;  // kernels/transpose.h
+
+// A batch of lines, each solved as a whole: of lengths, or of squared lengths; rows that become lanes for that,
+// and rows again.
+#define WEFT_LINE_KERNELS(KERNEL)                       \
+  KERNEL(void, line_batch, (const LineBatch&))          \
+  KERNEL(void, membrane_line_batch, (const LineBatch&)) \
+  KERNEL(void, rows_to_lanes, (const TransposeRows&))   \
+  KERNEL(void, lanes_to_rows, (const TransposeRows&))
+
+struct LineKernels {
+  WEFT_LINE_KERNELS(WEFT_KERNEL_MEMBER)
 };
 
 }  // namespace weft::physics

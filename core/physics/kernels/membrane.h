@@ -1,7 +1,7 @@
 // What the kernels of the membrane work on (kernels/membrane.cpp, membrane_squares.cpp).
 #pragma once
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/lattice.h"
 
 namespace weft::physics {
 

@@ -3,6 +3,8 @@
 // is one load then.
 #pragma once
 
+#include "physics/kernels/kernel_list.h"
+#include "physics/kernels/particles.h"
 #include "physics/kernels/wind.h"
 
 namespace weft::physics {
@@ -61,6 +63,32 @@ struct MeshWind : Air {
   int count;
   ConstRow3 x, v;  // of all vertices
   AirRow sums;
+};
+
+struct RecordRow;  // kernels/mesh_sweep.h
+struct EdgeSweep;
+struct HingeSweep;
+struct StrainSweep;
+struct TearEdges;  // kernels/tear.h
+
+// mesh_load: positions and velocities into records, forces <- 0; mesh_forces: of triangles, added to the records
+// of their corners; mesh_move: leapfrog step from the forces of the records; mesh_wind: of triangles, added to the
+// sums of their corners. load_records: positions and inverse masses, corrections <- 0; store_records: positions,
+// and velocities, gain the corrections. tear_edges: returns whether any is too long.
+#define WEFT_MESH_KERNELS(KERNEL)                   \
+  KERNEL(void, mesh_load, (const MeshRow&))         \
+  KERNEL(void, mesh_forces, (const MeshForces&))    \
+  KERNEL(void, mesh_move, (const MeshRow&))         \
+  KERNEL(void, mesh_wind, (const MeshWind&))        \
+  KERNEL(void, load_records, (const RecordRow&))    \
+  KERNEL(void, store_records, (const RecordRow&))   \
+  KERNEL(void, sweep_edges, (const EdgeSweep&))     \
+  KERNEL(void, sweep_hinges, (const HingeSweep&))   \
+  KERNEL(void, sweep_strains, (const StrainSweep&)) \
+  KERNEL(bool, tear_edges, (const TearEdges&))
+
+struct MeshKernels {
+  WEFT_MESH_KERNELS(WEFT_KERNEL_MEMBER)
 };
 
 }  // namespace weft::physics

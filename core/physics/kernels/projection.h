@@ -18,7 +18,7 @@ enum class Rule { rigid, compliant, multipliers, limit, carry, hold, settle };
 constexpr bool displaced(Rule r) {
   return r == Rule::compliant || r == Rule::multipliers;
 }
-// The rules of the strain limit (kernels.h, LimitSweep).
+// The rules of the strain limit (lattice.h, LimitSweep).
 constexpr bool limits(Rule r) {
   return r >= Rule::limit;
 }

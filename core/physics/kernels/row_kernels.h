@@ -1,25 +1,14 @@
-// Shared by the kernel sources: wide loads of a row, the leapfrog move, and the declarations that
-// table.cpp collects.
+// Shared by the kernel sources: wide loads of a row, and the leapfrog move.
 #pragma once
 
 #include <cstddef>
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/lattice.h"
 #include "physics/kernels/wide.h"
 
 namespace weft::WEFT_KERNELS {
 
-using physics::Advance;
-using physics::AdvanceRow;
-using physics::CollideRow;
-using physics::ConstRow3;
-using physics::FacesRow;
-using physics::ProjectRows;
-using physics::Row3;
-using physics::RowReach;
-using physics::SpringConstants;
-using physics::SpringRows;
-using physics::StencilRow;
+using namespace physics;
 
 WEFT_INLINE Wide3 load3(ConstRow3 r, std::ptrdiff_t i) {
   return {load(r.x + i), load(r.y + i), load(r.z + i)};
@@ -104,64 +93,5 @@ WEFT_INLINE void leapfrog(const physics::LeapfrogRows& r, float* x, int left, Wi
   store_planes(r.v.x + lane, plane, velocity);
   store_planes(x, plane, fma(velocity, wide(r.advance.dt), load_planes(x, plane)));
 }
-
-void spring_rows(const SpringRows&);
-void membrane_rows(const physics::MembraneRows&);
-void spring_stencil(const StencilRow&);
-void damped_spring_stencil(const StencilRow&);
-int tear(const physics::TearRow&);
-bool tear_edges(const physics::TearEdges&);
-void integrate(const AdvanceRow&);
-void predict(const AdvanceRow&);
-void velocity(const AdvanceRow&);
-void project(const physics::Projection&);
-void jacobi_rows(const physics::JacobiRows&);
-void jacobi_stencil(const ProjectRows&, int row, Row3 sum, Row3 sum_far);
-void apply_corrections(const AdvanceRow&);
-void line_batch(const physics::LineBatch&);
-void membrane_line_batch(const physics::LineBatch&);
-void membrane_squares(const physics::MembraneSquares&);
-void rows_to_lanes(const physics::TransposeRows&);
-void lanes_to_rows(const physics::TransposeRows&);
-void predict_second_order(const physics::SecondOrderRow&);
-void velocity_second_order(const physics::SecondOrderRow&);
-void tethers(const physics::TetherRow&);
-void bend_row(const physics::BendRow&);
-void bend_line(const physics::BendLine&);
-void bend_twist(const physics::TwistRow&);
-
-float greatest(const float* values, std::ptrdiff_t count);
-physics::EnergySum energy_sum(const physics::EnergyRow&);
-float greatest_square(const physics::FarRows&);
-double stretch_energy(const physics::StretchRow&);
-void tangent(const physics::TangentRow&);
-void mesh_load(const physics::MeshRow&);
-void mesh_forces(const physics::MeshForces&);
-void mesh_move(const physics::MeshRow&);
-void load_records(const physics::RecordRow&);
-void store_records(const physics::RecordRow&);
-void sweep_edges(const physics::EdgeSweep&);
-void sweep_hinges(const physics::HingeSweep&);
-void sweep_strains(const physics::StrainSweep&);
-void wind(const physics::WindRow&);
-void mesh_wind(const physics::MeshWind&);
-void push(const physics::PushRow&);
-void block_bounds(const physics::BlockRows&);
-void block_edges(const physics::BlockRows&);
-int near_boxes(const physics::NearBoxes&);
-void cell_keys(const physics::CellKeys&);
-physics::NearFound near_pairs(const physics::NearSearch&);
-physics::BesideFound beside_pairs(const physics::BesidePairs&);
-void gather_bodies(const physics::BodyBlock&);
-int meeting_pairs(const physics::MeetingPairs&);
-int squares_within(const physics::SquaresWithin&);
-int squares_not_apart(const physics::SquaresApart&);
-int surface_pairs(const physics::SurfacePairs&);
-extern const physics::ContactKernels<2> kContactsOfTwo;
-extern const physics::ContactKernels<4> kContactsOfFour;
-
-#define WEFT_KERNELS_OF_SHAPE(Type, name) extern const physics::ColliderKernels k##Type;
-WEFT_SHAPES(WEFT_KERNELS_OF_SHAPE)
-#undef WEFT_KERNELS_OF_SHAPE
 
 }  // namespace weft::WEFT_KERNELS

@@ -2,7 +2,7 @@
 // (kernels/second_order.cpp, kernels/tethers.cpp).
 #pragma once
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/rows.h"
 
 namespace weft::physics {
 

@@ -1,4 +1,6 @@
 // Which instruction set to run: the names, what this machine has, and the kernels built for it.
+#include <initializer_list>
+
 #include "physics/kernels/kernels.h"
 
 namespace weft {

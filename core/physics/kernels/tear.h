@@ -1,7 +1,7 @@
 // Constraints that may tear, as kernels see them.
 #pragma once
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/rows.h"
 
 namespace weft::physics {
 

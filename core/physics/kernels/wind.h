@@ -1,7 +1,7 @@
 // What the kernels of the wind work on (kernels/wind.cpp).
 #pragma once
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/rows.h"
 
 namespace weft::physics {
 

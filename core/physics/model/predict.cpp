@@ -37,7 +37,7 @@ class Predict final : public RowStage {
       a.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
       if (corrections_) a.f = corrections_->row(begin);
     }
-    parts_.kernels.predict(a);
+    parts_.kernels.particles.predict(a);
     if (multipliers_) multipliers_->clear(begin, end);
   }
 
@@ -63,7 +63,7 @@ class Velocity final : public RowStage {
     if (!velocity_from_positions(parts_.scene.solver, compliant_, s.dt)) return;
     AdvanceRow a = rows_of(parts_, begin, end);
     a.inverse_dt = float(1 / s.dt);
-    parts_.kernels.velocity(a);
+    parts_.kernels.particles.velocity(a);
   }
 
  private:
@@ -86,7 +86,7 @@ class Corrections final : public RowStage {
     a.w = nullptr;  // they are weighed already
     a.f = corrections_.row(begin);
     a.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
-    parts_.kernels.apply_corrections(a);
+    parts_.kernels.particles.apply_corrections(a);
   }
 
  private:

@@ -67,7 +67,7 @@ class Predict final : public RowStage {
     r.gx = float(g[0]);
     r.gy = float(g[1]);
     r.gz = float(g[2]);
-    parts_.kernels.predict_second_order(r);
+    parts_.kernels.particles.predict_second_order(r);
   }
 
   ClothParts parts_;
@@ -89,7 +89,7 @@ class Velocity final : public RowStage {
   }
   void run(int begin, int end, const Substep& s) override {
     if (s.velocities_wanted)
-      parts_.kernels.velocity_second_order(rows_of(parts_, history_, begin, end, s.dt));
+      parts_.kernels.particles.velocity_second_order(rows_of(parts_, history_, begin, end, s.dt));
   }
 
  private:

@@ -64,7 +64,7 @@ class Tethers final : public RowStage {
         r.tethers[t] = {slot.pin.row(slot.row[std::size_t(j)]),
                         slot.reach.data() + std::size_t(j) * std::size_t(p.stride)};
       }
-      parts_.kernels.tethers(r);
+      parts_.kernels.particles.tethers(r);
     }
   }
 

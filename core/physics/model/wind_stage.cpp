@@ -59,8 +59,8 @@ void WindStage::run(int j, const Substep& s) {
   Particles& p = parts_.particles;
   blow(j, s);
   const Push pushed = push_of(parts_, s.dt);
-  parts_.kernels.push({p.count(j), p.x.row(j), p.v.row(j), p.w(j), sums(j, s),
-                       float(steps * pushed.dt), float(pushed.dt), pushed.velocities});
+  parts_.kernels.particles.push({p.count(j), p.x.row(j), p.v.row(j), p.w(j), sums(j, s),
+                                 float(steps * pushed.dt), float(pushed.dt), pushed.velocities});
 }
 
 // For how many substeps this one pushes; 0: another one does. It is the one whose end, where it

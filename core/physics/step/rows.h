@@ -8,6 +8,7 @@
 #include <span>
 
 #include "physics/kernels/kernels.h"
+#include "physics/kernels/particles.h"
 #include "physics/step/aligned_array.h"
 
 namespace weft::physics {
@@ -55,7 +56,7 @@ class Rows {
   }
   // The greatest size of a value, padding included; infinite if one is not a number.
   float greatest(const KernelTable& kernels) const {
-    return kernels.greatest(data_.data(), static_cast<std::ptrdiff_t>(data_.size()));
+    return kernels.particles.greatest(data_.data(), static_cast<std::ptrdiff_t>(data_.size()));
   }
 
  private:

@@ -3,7 +3,7 @@
 // below. Everything is about the shape's place: the point that its keys move.
 #pragma once
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/colliders.h"
 #include "physics/model/vector.h"
 #include "weft/scene.h"
 #include "weft/shape.h"

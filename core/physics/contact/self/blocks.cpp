@@ -138,7 +138,7 @@ void Blocks::measure_edges(std::size_t b) {
   if (const auto& patches = patches_[std::size_t(block.sheet)])
     patches->measure(block.row, bounds_[b]);
   else
-    kernels_.block_edges(rows_of(b));
+    kernels_.sheets.block_edges(rows_of(b));
 }
 
 // Of all squares, or of those that were nearly flat before.
@@ -184,7 +184,7 @@ BlockRows Blocks::rows_of(std::size_t b) {
 }
 
 void Blocks::measure_block(std::size_t b) {
-  kernels_.block_bounds(rows_of(b));
+  kernels_.sheets.block_bounds(rows_of(b));
   const Spread now = bounds_[b].x;
   bounds_[b].x = both(before_[b], now);
   before_[b] = now;
@@ -268,7 +268,7 @@ void Blocks::for_each_near(float distance, Visit&& visit) {
   for (std::size_t a = 0; a < blocks_.size(); ++a) {
     boxes.begin = int(a);
     boxes.box = bounds_[a].x;
-    const int count = kernels_.near_boxes(boxes);
+    const int count = kernels_.sheets.near_boxes(boxes);
     for (int n = 0; n < count; ++n) visit(a, std::size_t(near_[n]), near_squared_[n]);
   }
 }

@@ -46,8 +46,8 @@ void SelfContact::find_among_particles(Threads& threads) {
     meeting.count = 0;
     if (pairs.count == 0) return;
     meeting.count =
-        kernels_.meeting_pairs({place_.data(), moved_.data(), int(pairs.count), pairs.owner,
-                                pairs.neighbour, kReach, meeting.room(pairs.count)});
+        kernels_.sheets.meeting_pairs({place_.data(), moved_.data(), int(pairs.count), pairs.owner,
+                                       pairs.neighbour, kReach, meeting.room(pairs.count)});
   };
   threads.share(chunks + blocks, chunks + blocks < kFewLists, [&](std::size_t k) {
     if (k < chunks) return meet(search_.pairs(k), meeting_[k]);
@@ -97,7 +97,7 @@ void SelfContact::measure_surfaces(const SquarePairs& pairs, SurfaceSearch searc
     const std::size_t first = k * kAtOnce, count = std::min(pairs.count - first, kAtOnce);
     Measured& found = measured_[k];
     if (found.room.size() < count * kKindsOfPair) found.room.resize(count * kKindsOfPair);
-    found.count = std::size_t(kernels_.surface_pairs(
+    found.count = std::size_t(kernels_.sheets.surface_pairs(
         {place_.data(), moved_.data(), rest_.data(), near_->squares().data(), int(count),
          pairs.owner.data() + first, pairs.neighbour.data() + first, search, reach, kLeastApart,
          found.room.data()}));

@@ -307,9 +307,9 @@ void NearSquares::find_in(std::size_t chunk) {
   const PairSearch::Pairs near = search_.pairs(chunk);
   SquarePairs& found = found_[chunk];
   found.reserve(near.count);
-  found.count = std::size_t(
-      kernels_.squares_within({boxes_.data(), int(near.count), near.owner, near.neighbour,
-                               most_ + beyond_, found.owner.data(), found.neighbour.data()}));
+  found.count = std::size_t(kernels_.sheets.squares_within(
+      {boxes_.data(), int(near.count), near.owner, near.neighbour, most_ + beyond_,
+       found.owner.data(), found.neighbour.data()}));
   std::size_t kept = 0;
   for (std::size_t i = 0; i < found.count; ++i) {
     const auto [p, q] =

@@ -145,7 +145,7 @@ void PairSearch::find_chunk(std::size_t k, float range, Room& room) {
     s.owner = c.owner.data() + c.found;
     s.neighbour = c.neighbour.data() + c.found;
     s.pairs_room = int(c.owner.size() - c.found);
-    const NearFound found = kernels_.near_pairs(s);
+    const NearFound found = kernels_.sheets.near_pairs(s);
     s.begin = found.next;
     c.found += std::size_t(found.pairs);
     needed = std::size_t(found.needed);

@@ -115,13 +115,13 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool sur
   for (std::size_t n = 0; n < sheets_.size(); ++n) place_at_rest(n);
   if (surfaces) {
     near_ = std::make_unique<NearSquares>(sheets_, named_, rest_, kernels);
-    surfaces_ = std::make_unique<ContactSolver<4>>(bodies_, kernels.contacts_of_four);
+    surfaces_ = std::make_unique<ContactSolver<4>>(bodies_, kernels.sheets.contacts_of_four);
     zone_.resize(bodies_);
     std::iota(zone_.begin(), zone_.end(), 0);
   } else {
     for (std::size_t n = 0; n < sheets_.size(); ++n)
       if (sheets_[n].mesh) list_neighbours(n);
-    spheres_ = std::make_unique<ContactSolver<2>>(bodies_, kernels.contacts_of_two);
+    spheres_ = std::make_unique<ContactSolver<2>>(bodies_, kernels.sheets.contacts_of_two);
   }
   begin_.resize(bodies_ + 1);
 }
@@ -193,7 +193,7 @@ BodyBlock SelfContact::bodies_of(const Block& block) {
 void SelfContact::gather(Threads& threads) {
   copy_meshes(sheets_, threads);
   threads.share(blocks_.all().size(), particles_ < kFew,
-                [&](std::size_t b) { kernels_.gather_bodies(bodies_of(blocks_.all()[b])); });
+                [&](std::size_t b) { kernels_.sheets.gather_bodies(bodies_of(blocks_.all()[b])); });
 }
 
 void SelfContact::begin(Threads& threads) {
@@ -294,7 +294,7 @@ void SelfContact::list_beside(std::size_t block, float range) {
     p.block_rows = b.rows - done;
     p.pairs = found.room(std::size_t(found.count + most_in_row)).from(found.count);
     p.most = int(found.owner.size() - kNearPadding) - found.count - most_in_row;
-    const BesideFound some = kernels_.beside_pairs(p);
+    const BesideFound some = kernels_.sheets.beside_pairs(p);
     done += some.rows;
     found.count += some.pairs;
   }

@@ -102,17 +102,17 @@ std::size_t SpatialHash::share_begin(std::size_t share) const {
 void SpatialHash::count(ConstRow3 x, int share) {
   const std::size_t begin = share_begin(std::size_t(share)),
                     end = share_begin(std::size_t(share) + 1);
-  kernels_.cell_keys({x,
-                      int(begin),
-                      int(end),
-                      {low_[0], low_[1], low_[2]},
-                      {last_[0], last_[1], last_[2]},
-                      inverse_,
-                      stride_y_,
-                      stride_z_,
-                      table_,
-                      wraps_,
-                      key_.data()});
+  kernels_.sheets.cell_keys({x,
+                             int(begin),
+                             int(end),
+                             {low_[0], low_[1], low_[2]},
+                             {last_[0], last_[1], last_[2]},
+                             inverse_,
+                             stride_y_,
+                             stride_z_,
+                             table_,
+                             wraps_,
+                             key_.data()});
   // By turns: particles beside each other are often in the same part, and what was just written is slow
   // to read.
   constexpr std::size_t kTurns = 4;

@@ -60,9 +60,9 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
     found.reserve(count);
     std::int32_t *const owner = found.owner.data(), *const neighbour = found.neighbour.data();
     const int near =
-        kernels_.squares_within({boxes_.data(), int(count), listed_.owner.data() + first,
-                                 listed_.neighbour.data() + first, range, owner, neighbour});
-    found.count = std::size_t(kernels_.squares_not_apart(
+        kernels_.sheets.squares_within({boxes_.data(), int(count), listed_.owner.data() + first,
+                                        listed_.neighbour.data() + first, range, owner, neighbour});
+    found.count = std::size_t(kernels_.sheets.squares_not_apart(
         {place, moved, squares_.data(), near, owner, neighbour, range, owner, neighbour}));
   });
   within_.count = 0;
@@ -81,7 +81,7 @@ const SquarePairs& NearSquares::still_within(float range, const Place* place,
     const std::size_t first = k * kAtOnce, count = std::min(within_.count - first, kAtOnce);
     SquarePairs& found = found_[k];
     found.reserve(count);
-    found.count = std::size_t(kernels_.squares_not_apart(
+    found.count = std::size_t(kernels_.sheets.squares_not_apart(
         {place, moved, squares_.data(), int(count), within_.owner.data() + first,
          within_.neighbour.data() + first, range, found.owner.data(), found.neighbour.data()}));
   });

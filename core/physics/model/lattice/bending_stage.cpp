@@ -57,7 +57,7 @@ class BendingForce final : public RowStage {
     // The leapfrog step that follows takes drag off the velocity that it finds, but not off forces.
     const double kept = 1 - s.kick * parts_.cloth.drag;
     r.dt = float(kept > 0.01 ? s.kick / kept : s.kick);
-    parts_.kernels.bend_row(r);
+    parts_.kernels.lattice.bend_row(r);
   }
 
  private:
@@ -136,7 +136,7 @@ class BendingConstraints final : public WholeStage {
                              p.compliance = rows_.data() + group * kBatchLines + first;
                              if (turned) p.left = turned + first;
                              p.scratch = memory.scratch.data();
-                             parts_.kernels.bend_line(p);
+                             parts_.kernels.lattice.bend_line(p);
                            }
                          });
                        });
@@ -158,7 +158,7 @@ class BendingConstraints final : public WholeStage {
                          p.compliance = columns_.data() + first;
                          p.left = left(parts_, &BendLinks::across, std::size_t(first));
                          p.scratch = memory.scratch.data();
-                         parts_.kernels.bend_line(p);
+                         parts_.kernels.lattice.bend_line(p);
                        });
   }
 
@@ -180,7 +180,7 @@ class BendingConstraints final : public WholeStage {
         r.left = left(parts_, &BendLinks::twist, std::size_t(j) * l.stride);
         for (const bool odd : {false, true}) {
           r.odd = odd;
-          parts_.kernels.bend_twist(r);
+          parts_.kernels.lattice.bend_twist(r);
         }
       });
   }

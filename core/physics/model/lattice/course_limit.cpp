@@ -59,7 +59,7 @@ class CourseLimit final : public RowStage {
       if (row < f.dj) continue;
       const FarRows all = far_rows(f, parts_.lattice.x, parts_.lattice.columns, row - f.dj);
       const float longest = longest_[n] * longest_[n] * (1 - kRounding);
-      if (!(parts_.kernels.greatest_square(all) > longest)) continue;
+      if (!(parts_.kernels.lattice.greatest_square(all) > longest)) continue;
       any = true;
       for (int a = 0; a < all.count; ++a)
         look[a + f.far()] |= std::uint8_t(square(all, a) > longest);

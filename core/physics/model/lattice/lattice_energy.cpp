@@ -102,7 +102,8 @@ double LatticeModel::limited_strain() const {
   for (const Stencil& f : stencils_)
     for (int j = 0; f.kind != Kind::bend && j + f.dj < lattice_.rows; ++j) {
       const FarRows ends = far_rows(f, lattice_.x, lattice_.columns, j);
-      most = std::max(most, double(parts_.kernels.greatest_square(ends)) / (f.rest * f.rest));
+      most =
+          std::max(most, double(parts_.kernels.lattice.greatest_square(ends)) / (f.rest * f.rest));
     }
   return std::sqrt(most) - 1;
 }
@@ -141,7 +142,7 @@ double LatticeModel::stretch_energy(const Rows& x, double dt) const {
       r.stiffness =
           method_ == Method::positional ? kInfinite : float(f.stiffness * row_factor(cloth, f, j));
       r.factor = column_factors(lattice_, f);
-      sum += parts_.kernels.stretch_energy(r);
+      sum += parts_.kernels.lattice.stretch_energy(r);
     }
   }
   return sum;
@@ -189,7 +190,8 @@ float LatticeModel::greatest_stretch(const Rows& x) const {
   for (const Stencil& f : stencils_) {
     if (f.kind == Kind::bend || (f.kind == Kind::shear && !is_membrane())) continue;
     for (int j = 0; j + f.dj < lattice_.rows; j += 4) {
-      const float longest = parts_.kernels.greatest_square(far_rows(f, x, lattice_.columns, j));
+      const float longest =
+          parts_.kernels.lattice.greatest_square(far_rows(f, x, lattice_.columns, j));
       most = std::max(most, longest / float(f.rest * f.rest));
     }
   }

@@ -47,7 +47,7 @@ void LineBatches::turn(const float* from, int group, float* lanes) const {
     t.rows =
         const_cast<float*>(from) + std::ptrdiff_t(group * kBatchLines + half) * lattice_.stride;
     t.lanes = lanes + half;
-    kernels_.rows_to_lanes(t);
+    kernels_.lines.rows_to_lanes(t);
   }
 }
 
@@ -64,7 +64,7 @@ void LineBatches::turn_back(int begin, int rows, BatchMemory& memory, float inve
       t.lanes = lanes + half;
       t.rows = row;
       t.rates = inverse_dt > 0 ? rates : nullptr;
-      kernels_.lanes_to_rows(t);
+      kernels_.lines.lanes_to_rows(t);
     }
   }
 }

@@ -54,7 +54,8 @@ class Line final : public WholeStage {
             parts.constraints() * options.iterations, "constraints"),
         parts_(parts),
         options_(options),
-        solve_(options.membrane ? parts.kernels.membrane_line_batch : parts.kernels.line_batch),
+        solve_(options.membrane ? parts.kernels.lines.membrane_line_batch
+                                : parts.kernels.lines.line_batch),
         batches_(parts.lattice, parts.kernels, kBatchScratch) {
     for (const Stencil& f : parts.stencils) {
       LineStencil& l = (f.dj == 0   ? along_rows_

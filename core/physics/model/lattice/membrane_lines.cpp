@@ -107,7 +107,7 @@ void MembraneLines::look(LineBatches& batches) {
       (all + kRowsTogether - 1) / kRowsTogether, kParticleNs * kRowsTogether * columns,
       [&](int n, BatchMemory&) {
         const int begin = n * kRowsTogether;
-        parts_.kernels.membrane_squares(rows(begin, std::min(begin + kRowsTogether, all)));
+        parts_.kernels.lattice.membrane_squares(rows(begin, std::min(begin + kRowsTogether, all)));
       });
 }
 

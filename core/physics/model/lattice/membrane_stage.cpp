@@ -34,7 +34,7 @@ class MembraneStage final : public PlainRowsStage {
     r.half_u = float(1 / (2 * hu * hu));
     r.half_v = float(1 / (2 * hv * hv));
     r.damping = float(parts_.cloth.membrane.damping);
-    for_alike(r, begin, end, s, parts_.kernels.membrane_rows);
+    for_alike(r, begin, end, s, parts_.kernels.lattice.membrane_rows);
   }
 
  private:

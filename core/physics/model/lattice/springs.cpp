@@ -40,7 +40,7 @@ class PlainSprings final : public PlainRowsStage {
     r.damped = damped_;
     r.overlong = parts_.overlong;
     if (r.overlong) std::fill(r.overlong + begin, r.overlong + end, std::uint8_t{0});
-    for_alike(r, begin, end, s, parts_.kernels.spring_rows);
+    for_alike(r, begin, end, s, parts_.kernels.lattice.spring_rows);
   }
 
  private:
@@ -57,7 +57,8 @@ class StencilSprings final : public RowStage {
                      (damped ? " with damping" : "") + ", leapfrog step",
                  reach, parts.constraints(), "constraints"),
         parts_(parts),
-        kernel_(damped ? parts.kernels.damped_spring_stencil : parts.kernels.spring_stencil) {}
+        kernel_(damped ? parts.kernels.lattice.damped_spring_stencil
+                       : parts.kernels.lattice.spring_stencil) {}
 
   void reserve_slots(int slots) override {
     force_ = Rows((reach + 1) * slots, parts_.lattice.stride);
@@ -93,7 +94,7 @@ class StencilSprings final : public RowStage {
     a.w = l.w(j);
     a.f = force(j);
     a.advance = advance_of(parts_, s);
-    parts_.kernels.integrate(a);
+    parts_.kernels.particles.integrate(a);
   }
 
  private:

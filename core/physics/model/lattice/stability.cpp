@@ -82,7 +82,7 @@ struct Operator {
     r.stiffness = float(damping ? f.damping : f.stiffness) * float(row_factor(cloth, f, j));
     r.factor = column_factors(l, f);
     r.sideways = !damping;
-    kernels.tangent(r);
+    kernels.lattice.tangent(r);
   }
 
   void apply_bending(Rows& y) {

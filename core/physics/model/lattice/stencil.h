@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "physics/kernels/kernels.h"
+#include "physics/kernels/lattice.h"
 #include "physics/model/lattice/lattice.h"
 #include "weft/scene.h"
 

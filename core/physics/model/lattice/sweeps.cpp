@@ -135,7 +135,7 @@ class GaussSeidel final : public RowStage {
               std::unique_ptr<ProjectedStencils> stencils)
       : RowStage(name, stencils->names() + (dj > 0 ? ", colour " + std::to_string(colour + 1) : ""),
                  dj, stencils->constraints() / (dj > 0 ? kColours : 1), "constraints"),
-        project_(parts.kernels.project),
+        project_(parts.kernels.lattice.project),
         stencils_(std::move(stencils)),
         colour_(colour) {}
   std::size_t bytes() const override { return stencils_->bytes(); }
@@ -223,7 +223,7 @@ class PlainJacobi final : public PlainRowsStage {
         r.rest[f] = float(parts_.stencils[std::size_t(f)].rest);
       r.weight = weight_;
       r.inverse_dt = inverse_dt_;
-      parts_.kernels.jacobi_rows(r);
+      parts_.kernels.lattice.jacobi_rows(r);
       first = last;
     }
   }
@@ -290,7 +290,7 @@ class Jacobi final : public RowStage {
       for (ProjectRows rows : stencils.rows()) {
         if (j + rows.dj >= l.rows) continue;
         rows.weight /= relaxation_;
-        parts_.kernels.jacobi_stencil(rows, j, sum(j), sum(j + rows.dj));
+        parts_.kernels.lattice.jacobi_stencil(rows, j, sum(j), sum(j + rows.dj));
       }
     AdvanceRow a{};
     a.columns = l.columns;
@@ -299,7 +299,7 @@ class Jacobi final : public RowStage {
     a.w = l.w(j);
     a.f = sum(j);
     a.inverse_dt = velocity_share(parts_, options_, s.dt);
-    parts_.kernels.apply_corrections(a);
+    parts_.kernels.particles.apply_corrections(a);
   }
 
  private:

@@ -1,6 +1,7 @@
 // Stage "tear": constraints beyond their tear strain end.
 #include <cmath>
 
+#include "physics/kernels/lattice.h"
 #include "physics/kernels/tear.h"
 #include "physics/model/lattice/stages.h"
 #include "physics/model/lattice/tearing.h"
@@ -26,9 +27,9 @@ class TearStage final : public RowStage {
     };
     for (const Stencil& f : parts_.stencils) {
       if (j + f.dj >= l.rows) continue;
-      const int torn =
-          parts_.kernels.tear({f.per_row(l.columns), from(j, f.near()), from(j + f.dj, f.far()),
-                               f.links->row(j), tear_length(parts_.cloth, f)});
+      const int torn = parts_.kernels.lattice.tear({f.per_row(l.columns), from(j, f.near()),
+                                                    from(j + f.dj, f.far()), f.links->row(j),
+                                                    tear_length(parts_.cloth, f)});
       if (torn > 0) tearing_.died(j, torn);
     }
   }

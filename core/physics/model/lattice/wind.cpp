@@ -25,7 +25,7 @@ class SheetWind final : public WindStage {
     r.v_next = l.v.row(j + 1);
     r.air = sums(j, s);
     r.air_next = sums(j + 1, s);
-    parts_.kernels.wind(r);
+    parts_.kernels.lattice.wind(r);
   }
 
   LatticeParts parts_;

@@ -27,7 +27,7 @@ class LoadRecords final : public RowStage {
     if (j == 0) loaded = 0;
     const int end = std::min(j + reach + 1, parts_.particles.rows);
     for (loaded = std::max(loaded, j); loaded < end; ++loaded)
-      parts_.kernels.load_records(record_row_of(parts_, records_, loaded, 0));
+      parts_.kernels.mesh.load_records(record_row_of(parts_, records_, loaded, 0));
   }
 
  protected:
@@ -51,7 +51,7 @@ class StoreRecords final : public RowStage {
     return gain(dt) > 0 ? Velocities::used : Velocities::left_alone;
   }
   void run(int j, const Substep& s) override {
-    parts_.kernels.store_records(record_row_of(parts_, records_, j, gain(s.dt)));
+    parts_.kernels.mesh.store_records(record_row_of(parts_, records_, j, gain(s.dt)));
   }
 
  private:

@@ -40,7 +40,7 @@ class SweepEdges final : public RowStage {
     sweep.longest = float(options_.longest);
     if (colour_.lambda.size() > 0 && options_.longest == 0)
       sweep.lambda = colour_.lambda.data() + std::ptrdiff_t(kBatch) * first;
-    parts_.kernels.sweep_edges(sweep);
+    parts_.kernels.mesh.sweep_edges(sweep);
   }
 
  private:
@@ -78,8 +78,9 @@ class SweepHinges final : public RowStage, private TornParts {
   }
   void run(int begin, int end, const Substep&) override {
     const int first = colour_.first[std::size_t(begin)];
-    parts_.kernels.sweep_hinges({colour_.batches.data() + first,
-                                 colour_.first[std::size_t(end)] - first, records_.data(), bows_});
+    parts_.kernels.mesh.sweep_hinges({colour_.batches.data() + first,
+                                      colour_.first[std::size_t(end)] - first, records_.data(),
+                                      bows_});
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <bit>
 #include <limits>
 
+#include "physics/kernels/mesh.h"
 #include "physics/kernels/tear.h"
 
 namespace weft::physics {
@@ -29,7 +30,7 @@ class MeshTearStage final : public RowStage, private TornParts {
     const auto first = std::size_t(first_[std::size_t(j)]);
     const int count = first_[std::size_t(j) + 1] - int(first);
     std::uint16_t* const overlong = overlong_.data() + first;
-    if (!parts_.kernels.tear_edges(
+    if (!parts_.kernels.mesh.tear_edges(
             {batches_.data() + first, count, parts_.particles.x.row(0), overlong}))
       return;
     const std::vector<int>& edges = tearing_.edges_of_row(j);

@@ -60,7 +60,7 @@ class MeshWindStage final : public WindStage, private TornParts {
     r.x = parts_.particles.x.row(0);
     r.v = parts_.particles.v.row(0);
     r.sums = sums(0, s);
-    parts_.kernels.mesh_wind(r);
+    parts_.kernels.mesh.mesh_wind(r);
   }
 
   ClothParts parts_;

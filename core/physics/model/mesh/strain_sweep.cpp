@@ -40,7 +40,7 @@ class SweepStrains final : public RowStage {
     sweep.fresh = fresh_;
     if (colour_.stress.size() > 0)
       sweep.stress = colour_.stress.data() + std::ptrdiff_t(kStrains * kBatch) * first;
-    parts_.kernels.sweep_strains(sweep);
+    parts_.kernels.mesh.sweep_strains(sweep);
   }
 
  private:

@@ -183,7 +183,7 @@ class StrandSweeps::Solver : private TornParts {
 
   void solve_springs(const StrandBatch& b, LineBatch& p) const {
     p.rests = b.rest.data();
-    parts_.kernels.line_batch(p);
+    parts_.kernels.lines.line_batch(p);
   }
 
   // Every sweep goes on from what the triangles hold, with multipliers of its own.
@@ -195,7 +195,7 @@ class StrandSweeps::Solver : private TornParts {
     p.squares = b.rest.data();
     p.steps = kSteps;
     p.fresh = true;
-    parts_.kernels.membrane_line_batch(p);
+    parts_.kernels.lines.membrane_line_batch(p);
     for (std::size_t n = 0; n < b.edges.size(); ++n)
       if (b.edges[n] >= 0) membrane_->add(b.edges[n], b.lambda[n], float(1 / (h * h)));
   }

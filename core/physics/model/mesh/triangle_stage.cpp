@@ -56,15 +56,15 @@ class TriangleStage final : public RowStage, private TornParts {
     int& loaded = loaded_[std::size_t(s.slot)];
     if (j == 0) loaded = 0;
     for (loaded = std::max(loaded, j); loaded < std::min(j + ring_, p.rows); ++loaded)
-      parts_.kernels.mesh_load(row(loaded, s));
+      parts_.kernels.mesh.mesh_load(row(loaded, s));
     MeshForces f = forces_;
     f.batches = batches_.data() + first_[std::size_t(j)];
     f.count = first_[std::size_t(j) + 1] - first_[std::size_t(j)];
     f.position = records(position_, s);
     f.velocity = damped_ ? records(velocity_, s) : nullptr;
     f.force = records(force_, s);
-    parts_.kernels.mesh_forces(f);
-    parts_.kernels.mesh_move(row(j, s));
+    parts_.kernels.mesh.mesh_forces(f);
+    parts_.kernels.mesh.mesh_move(row(j, s));
   }
 
  private:
