@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "weft/mesh.h"
 #include "weft/read_scene.h"
 
 namespace bench {
@@ -94,6 +95,56 @@ Scene ppf_curtain() {
   return s;
 }
 
+// A tube of 20 000 vertices along z, every second ring turned by half a step.
+std::shared_ptr<weft::TriangleMesh> tube(int around, int rings, double radius, double length) {
+  auto mesh = std::make_shared<weft::TriangleMesh>();
+  for (int j = 0; j < rings; ++j)
+    for (int i = 0; i < around; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + 0.5 * (j % 2)) / around;
+      mesh->vertices.push_back({radius * std::cos(angle), radius * std::sin(angle),
+                                length * j / (rings - 1) - length / 2});
+    }
+  for (int j = 0; j + 1 < rings; ++j)
+    for (int i = 0; i < around; ++i) {
+      const int next = (i + 1) % around, a = j * around + i, b = j * around + next;
+      const int c = a + around, d = (j + 1) * around + next;
+      if (j % 2 == 0) {
+        mesh->triangles.push_back({a, b, c});
+        mesh->triangles.push_back({b, d, c});
+      } else {
+        mesh->triangles.push_back({a, d, c});
+        mesh->triangles.push_back({a, b, d});
+      }
+    }
+  return mesh;
+}
+
+// Both ends turn by a whole turn a second, against each other.
+Scene ppf_twist() {
+  constexpr int kAround = 125, kRings = 160;
+  constexpr double kSeconds = 430.0 / 60, kDegrees = 360;
+  Scene s;
+  s.time.seconds = kSeconds;
+  Cloth c;
+  c.mesh.shape = tube(kAround, kRings, 0.5, 2);
+  c.density = 1;
+  c.membrane = {1500, 1500, 500, 500};  // what those springs amount to
+  c.bending = 1e-3;
+  c.self_collision.mode = SelfCollisionMode::surface;
+  c.self_collision.thickness = 1e-3;
+  c.self_collision.friction = 0;
+  for (const int ring : {0, kRings - 1}) {
+    weft::Pin end;
+    for (int i = 0; i < kAround; ++i) end.vertices.push_back(ring * kAround + i);
+    end.rotate.axis = {0, 0, ring == 0 ? -1.0 : 1.0};
+    end.rotate.keys = {{0, 0}, {kSeconds, kDegrees * kSeconds}};
+    c.pins.push_back(end);
+  }
+  s.gravity = {0, 0, 0};
+  s.cloths.push_back(c);
+  return s;
+}
+
 Scene pile() {
   Scene s;
   s.time.seconds = 8;
@@ -173,6 +224,7 @@ const std::vector<Made>& made() {
       {{"ppf_hang", "one sheet by two corners, gravity turns over and back, limit 1 %"}, ppf_hang},
       {{"ppf_drape", "five sheets over a ball, limit 5 %"}, ppf_drape},
       {{"ppf_curtain", "a ball through fifteen curtains, limit 5 %"}, ppf_curtain},
+      {{"ppf_twist", "a tube of 20 000 vertices, its ends turned against each other"}, ppf_twist},
       {{"pile", "ten sheets let fall on a plane"}, pile},
       {{"layers", "fifty layers pressed by a plane"}, layers},
       {{"ring", "a sheet pulled through a ring by its middle"}, ring},

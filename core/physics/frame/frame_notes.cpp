@@ -54,11 +54,14 @@ void FrameNotes::note_stretch(const EndedFrame& frame, std::vector<std::string>&
   }
 }
 
-// Sweeps that leave strain keep energy that nothing put in. A look takes about as long as a sweep.
+// Sweeps that leave strain keep energy that nothing put in; so do sheets that are put apart faster than they give
+// way. A look takes about as long as a sweep.
 void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::string>& notes) {
   constexpr int kFramesBetweenLooks = 8;
   constexpr double kInstant = 1e-9;  // s; in substeps so short all stiffness is felt
-  if (left_strain_ || frame.method != Method::compliant || frame.number % kFramesBetweenLooks != 0)
+  driven_ |= frame.driven;
+  if (left_strain_ || driven_ || frame.method != Method::compliant ||
+      frame.number % kFramesBetweenLooks != 0)
     return;
   double held = 0;
   for (std::size_t c = 0; c < frame.cloths.size(); ++c)
@@ -68,7 +71,8 @@ void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::stri
     }
   if (!frame.energy.is_made(held)) return;
   left_strain_ = true;
-  notes.push_back("frame " + std::to_string(frame.number) + ": the sweeps leave strain of " +
+  notes.push_back("frame " + std::to_string(frame.number) + ": the sweeps" +
+                  (frame.contact ? ", or sheets put apart," : "") + " leave strain of " +
                   number(held) + " J that nothing put in; more substeps or iterations leave less");
 }
 

@@ -22,12 +22,15 @@ struct EndedFrame {
   const Sleeping* sleeping;     // or null
   const SheetContact* contact;  // or null
   const EnergyGuard& energy;
+  bool driven;  // something but gravity and contact between sheets did work
 };
 
 class FrameNotes {
  public:
   explicit FrameNotes(std::size_t cloths) : overlong_(cloths), stretched_(cloths) {}
 
+  // The energy that is there is counted anew.
+  void begin_anew() { driven_ = false; }
   // Looks at a frame, and adds what it finds. What is read only when somebody asks waits for tell(): frames
   // allocate nothing for it.
   void look(const EndedFrame& frame, std::vector<std::string>& notes);
@@ -50,6 +53,7 @@ class FrameNotes {
   std::vector<Overlong> overlong_;       // of every cloth
   std::vector<std::uint8_t> stretched_;  // of every cloth: told of
   bool clamps_ = false, left_strain_ = false;
+  bool driven_ = false;  // in any frame since the energy was counted anew
   std::vector<std::string> seams_;
 };
 
