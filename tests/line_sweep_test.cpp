@@ -11,6 +11,7 @@
 #include "physics/model/lattice/stages.h"
 #include "physics/model/random.h"
 #include "physics/step/threads.h"
+#include "weft/simulation.h"
 
 namespace weft::physics {
 namespace {
