@@ -83,7 +83,7 @@ void ClothStep::choose_stages() {
 void ClothStep::choose_contact() {
   const auto& colliders = parts().scene.colliders;
   LatticeParts* const lattice = model_->lattice();
-  bool pushed = false, cut = false, damped = false;
+  bool pushed = false, small = false, stretched = false, cut = false, damped = false;
   for (std::size_t k = 0; k < colliders.size(); ++k)
     if (auto layer = make_friction_layer(parts(), colliders[k], starts_[k])) {
       list_.stages.push_back(std::move(layer));
@@ -98,16 +98,16 @@ void ClothStep::choose_contact() {
       auto faces = lattice ? make_collider_triangles(*lattice, colliders[k], starts_[k], far)
                            : make_collider_triangles(parts(), colliders[k], starts_[k], far);
       list_.stages.push_back(std::move(particles));
-      if (faces) list_.stages.push_back(std::move(faces));
+      if (faces) {
+        (resolves(cloth(), colliders[k]) ? stretched : small) = true;
+        list_.stages.push_back(std::move(faces));
+      }
       pushed = true;
     }
-  const auto runs = [&](const char* name) {
-    return std::any_of(stages().begin(), stages().end(), [&](auto& s) { return s->name == name; });
-  };
   if (!pushed) list_.skip("collider", "the scene has none");
-  if (pushed && !runs("collider_faces"))
+  if (pushed && !small)
     list_.skip("collider_faces", "no collider is small against the mesh at rest");
-  if (pushed && !runs("stretched_faces"))
+  if (pushed && !stretched)
     list_.skip("stretched_faces", "no collider is curved and large against the mesh");
   MeshTearing* const mesh = model_->mesh_tearing();
   for (std::size_t k = 0; (lattice || mesh) && k < colliders.size(); ++k) {

@@ -102,6 +102,7 @@ BodyMoment::Point BodyMoment::nearest_among(std::span<const int> triangles, cons
                   ->last;
     Candidate nearest;
     for (; n < triangles.size() && triangles[n] < last; ++n) look_at(triangles[n], p, nearest);
+    if (nearest.triangle < 0) continue;
     const Point one = point_of(nearest, p);
     if (one.distance < best.distance) best = one;
   }

@@ -1,6 +1,7 @@
 #include "physics/contact/body/body_pose.h"
 
 #include <algorithm>
+#include <limits>
 #include <numbers>
 
 namespace weft::physics {
@@ -30,10 +31,10 @@ double small_angle(const Vec3& u, const Vec3& v) {
 // from it. One that bends by more than kSharp is no approximation of something round; neither is a corner
 // that much of a full turn is missing at. What bends inward does not stick out; a surface without an inside
 // has no inward, and all of its border sticks out.
-std::vector<double> radii_of(const BodyForm& form, const BodyPose& pose) {
+std::vector<double> radii_of(const BodyForm& form, const std::vector<Vec3>& x,
+                             const std::vector<Vec3>& face_normals) {
   constexpr double kSharp = 0.35, kSharpCorner = 0.38, kFlat = 1e-4;  // rad
   constexpr double kHardly = 1;  // rad, of all edges: where they bend less, no corner is sharp
-  const std::vector<Vec3>& x = pose.vertices;
   const double infinite = std::numeric_limits<double>::infinity();
   std::vector<double> radii, at_corners(x.size(), infinite), bends(x.size());
   radii.reserve(form.features.size());
@@ -53,8 +54,8 @@ std::vector<double> radii_of(const BodyForm& form, const BodyPose& pose) {
           if (v != f.a && v != f.b) return x[std::size_t(v)];
         return a;
       };
-      const Vec3 &n = pose.face_normals[std::size_t(f.triangle)],
-                 &m = pose.face_normals[std::size_t(f.other)], side = minus(b, a);
+      const Vec3 &n = face_normals[std::size_t(f.triangle)],
+                 &m = face_normals[std::size_t(f.other)], side = minus(b, a);
       const Vec3 &near = tip(f.triangle), &far = tip(f.other);
       const double angle = small_angle(n, m);
       const bool inward = form.closed() && dot(minus(far, a), n) > 0;
@@ -72,7 +73,22 @@ std::vector<double> radii_of(const BodyForm& form, const BodyPose& pose) {
   return radii;
 }
 
+std::vector<Vec3> face_normals_of(const BodyForm& form, const std::vector<Vec3>& x) {
+  std::vector<Vec3> normals;
+  normals.reserve(form.triangles.size());
+  for (const auto& [a, b, c] : form.triangles)
+    normals.push_back(unit(normal_of(x[std::size_t(a)], x[std::size_t(b)], x[std::size_t(c)])));
+  return normals;
+}
+
 }  // namespace
+
+double least_radius_of(const BodyForm& form, const std::vector<Vec3>& vertices) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double radius : radii_of(form, vertices, face_normals_of(form, vertices)))
+    least = std::min(least, radius);
+  return least;
+}
 
 // Halved three times, then by the series of the arc tangent.
 double angle_between(const Vec3& u, const Vec3& v) {
@@ -86,11 +102,9 @@ double angle_between(const Vec3& u, const Vec3& v) {
   return 16 * t * sum;
 }
 
-BodyPose::BodyPose(const BodyForm& form, std::vector<Vec3> at) : vertices(std::move(at)) {
-  face_normals.reserve(form.triangles.size());
+BodyPose::BodyPose(const BodyForm& form, std::vector<Vec3> at)
+    : vertices(std::move(at)), face_normals(face_normals_of(form, vertices)) {
   const auto corner = [&](int vertex) -> const Vec3& { return vertices[std::size_t(vertex)]; };
-  for (const auto& [a, b, c] : form.triangles)
-    face_normals.push_back(unit(normal_of(corner(a), corner(b), corner(c))));
   for (const BodyForm::Part& part : form.parts) {
     boxes.push_back(part.tree.refitted([&](int n) {
       AlignedBox box;
@@ -105,7 +119,7 @@ BodyPose::BodyPose(const BodyForm& form, std::vector<Vec3> at) : vertices(std::m
     box.add(corner(form.features[std::size_t(n)].b));
     return box;
   });
-  radii = radii_of(form, *this);
+  radii = radii_of(form, vertices, face_normals);
   least_radii = form.feature_tree.least_of(radii);
 }
 

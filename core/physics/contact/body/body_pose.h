@@ -28,6 +28,9 @@ struct BodyPose {
   AlignedBox bounds;
 };
 
+// The least radius of a feature with the vertices there, without a pose.
+double least_radius_of(const BodyForm& form, const std::vector<Vec3>& vertices);
+
 inline Vec3 unit(const Vec3& a) {
   return times(a, 1 / std::max(std::sqrt(dot(a, a)), 1e-300));
 }

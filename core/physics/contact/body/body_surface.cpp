@@ -43,17 +43,17 @@ BodySurface::BodySurface(const MeshSource& about, std::shared_ptr<const PointCac
   least_radius_ = std::numeric_limits<double>::infinity();
   std::vector<Vec3> last;
   for (int n = 0; n < motion_->samples(); ++n) {
-    const BodyPose here(form_, vertices(n));
-    least_radius_ = std::min(least_radius_, here.least_radius());
+    std::vector<Vec3> here = vertices(n);
+    least_radius_ = std::min(least_radius_, least_radius_of(form_, here));
     if (n > 0) {
       double square = 0;
       for (std::size_t v = 0; v < last.size(); ++v) {
-        const Vec3 d = minus(here.vertices[v], last[v]);
+        const Vec3 d = minus(here[v], last[v]);
         square = std::max(square, dot(d, d));
       }
       travelled_.push_back(travelled_.back() + std::sqrt(square));
     }
-    last = here.vertices;
+    last = std::move(here);
   }
   if (!times_.empty()) fastest_ = fastest(times_.front(), times_.back());
 }
