@@ -40,7 +40,10 @@ void note_unmoved(const Cloths& cloths, double dt, std::vector<std::string>& not
   float farthest = 0;
   for (const auto& step : cloths) {
     const Particles& p = step->particles();
-    farthest = std::max(farthest, p.x.greatest(step->parts().kernels));
+    p.for_each([&](int j, int i) {
+      for (int k = 0; k < 3 && p.w(j, i) > 0; ++k)
+        farthest = std::max(farthest, std::abs(p.x.at(k, j, i)));
+    });
   }
   const double unit = std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
   const double slowest = unit / 2 / dt;
