@@ -9,11 +9,11 @@
 
 namespace weft::physics {
 
-inline constexpr int kMostSubsteps =
-    100000;  // per frame, flat; stretch may ask for 1.4 times as many
-inline constexpr double kLeastSubstep = 1e-6;  // s; below, single precision loses speeds of cm/s
-inline constexpr double kLeastStretched = 2.5e-7;  // s; the same, for what stretch has made stiffer
-inline constexpr double kLimitShare = 0.9;         // of the stability limit, in automatic substeps
+// A frame takes no more for the flat sheet; stretch may ask for 1.4 times as many.
+inline constexpr int kMostSubsteps = 100000;
+// s; below, single precision loses speeds of cm/s. The second is for substeps that stretch has made shorter.
+inline constexpr double kLeastSubstep = 1e-6, kLeastStretched = 2.5e-7;
+inline constexpr double kLimitShare = 0.9;  // of the stability limit, in automatic substeps
 
 struct TimeStep {
   Method method;     // the scene's, or the stable one put in its place

@@ -27,18 +27,13 @@
 // surface that it entered by.
 #pragma once
 
-#include "physics/kernels/colliders.h"
 #include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
+#include "physics/kernels/shape_kernels.h"
 
 namespace weft::WEFT_KERNELS {
 
-#define WEFT_DECLARE(Type, name) extern const physics::ColliderKernels k##Type;
-WEFT_SHAPES(WEFT_DECLARE)
-#undef WEFT_DECLARE
-
-constexpr float kTinySquare = 1e-30f;
-constexpr float kFar = 1e30f;
+constexpr float kTinySquare = 1e-30f, kFar = 1e30f;
 
 struct Surface {
   Wide distance;

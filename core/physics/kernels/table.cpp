@@ -1,10 +1,10 @@
 // The tables of this instruction set's kernels.
-#include "physics/kernels/collide.h"
 #include "physics/kernels/contact.h"
 #include "physics/kernels/kernels.h"
 #include "physics/kernels/lattice.h"
 #include "physics/kernels/line.h"
 #include "physics/kernels/mesh.h"
+#include "physics/kernels/shape_kernels.h"
 
 namespace weft::WEFT_KERNELS {
 
