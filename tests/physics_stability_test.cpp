@@ -296,5 +296,32 @@ TEST(ProjectionSubstep, IsNoShorterThanNeedBe) {
   EXPECT_EQ(projection_substep(scene), 1.0 / 960);
 }
 
+// Springs of a sheet that folds freely come to pull the same way, and so do their dampers.
+TEST(StabilityLimit, HoldsForDampedSpringsOfASheetThatFolds) {
+  for (const double sleep : {0.0, 0.005})
+    for (const double size : {0.0025, 0.1})
+      for (const double damping : {0.003, 0.03}) {
+        Scene scene;
+        scene.time.frame = 1.0 / 60;
+        scene.solver.method = Method::spring_friction;
+        scene.solver.sleep = sleep;
+        Cloth& c = scene.cloths.emplace_back();
+        c.grid = {5, 9, {0, 0, 0}, {size, 0, 0}, {0, 0, 10 * size}, 1e-3 * size};
+        c.density = 0.3;
+        c.stiffness = {0, 1e-42, 1100};
+        c.spring_damping = {0, damping, 0};
+        c.bending = 1.2e-5;
+        c.spin = {0.2, 0.2, 0};
+        Simulation simulation(scene);
+        const auto start = simulation.report().energy;
+        for (int n = 0; n < 4; ++n) simulation.advance_frame();
+        const auto now = simulation.report().energy;
+        EXPECT_LT(now.kinetic + now.elastic,
+                  2 * (start.kinetic + start.elastic + start.gravity - now.gravity))
+            << sleep << " " << size << " " << damping;
+        EXPECT_FALSE(simulation.plan().fallback) << sleep << " " << size << " " << damping;
+      }
+}
+
 }  // namespace
 }  // namespace weft::physics

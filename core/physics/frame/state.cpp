@@ -179,8 +179,10 @@ void Simulation::State::wake(int cloth) {
     if (cloth < 0 || std::size_t(cloth) == c) sleeping->wake(int(c));
 }
 
+// What falls asleep takes its energy out of the sum, and brings it back.
 bool Simulation::State::driven() const {
-  return hands_.act() || contact || sleeping || is_driven(scene, cloths);
+  return hands_.act() || contact || (sleeping && sleeping->asleep() > 0) ||
+         is_driven(scene, cloths);
 }
 
 void Simulation::State::open_guard() {

@@ -15,7 +15,7 @@ namespace {
 constexpr double kGrabbed = 1.6;  // on ω², at least: room for what a hand may do in a frame
 
 // What folds onto a line that stretches nothing has up to twice the flat sheet's ω², and no stretch adds
-// to that (a sheet without shear springs, or with nothing else).
+// to that (a sheet without shear springs, or with nothing else); and up to twice its damping along springs.
 constexpr double kFolded = 2;
 
 }  // namespace
@@ -26,7 +26,10 @@ StableSubsteps stable_substeps(const Cloths& cloths, std::span<const Spectrum> s
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     stable.largest = std::min(stable.largest, spectra[c].largest_substep());
     Spectrum folded = spectra[c];
-    if (cloths[c]->model().folds_freely()) folded.omega_squared *= kFolded;
+    if (cloths[c]->model().folds_freely()) {
+      folded.omega_squared *= kFolded;
+      folded.damping *= kFolded;
+    }
     stable.safe = std::min(stable.safe, folded.largest_substep());
   }
   return stable;
@@ -42,7 +45,9 @@ double stretched_limit(const Cloths& cloths, std::span<const Spectrum> spectra, 
     double more = step.model().stiffening(std::sqrt(double(most)));
     if (grabbed) more = std::max(more, kGrabbed);
     Spectrum stretched = spectra[c];
-    stretched.omega_squared *= step.model().folds_freely() ? kFolded : more;
+    const bool folds = step.model().folds_freely();
+    stretched.omega_squared *= folds ? kFolded : more;
+    if (folds) stretched.damping *= kFolded;
     if (const Load* load = step.model().load()) stretched.load = load->omega_squared();
     limit = std::min(limit, stretched.largest_substep());
   }
