@@ -33,6 +33,23 @@ inline double distance_from(const Capsule& s, const Vec3& p) {
   const double t = std::clamp(product(d, e) / product(e, e), 0.0, 1.0);
   return length({d[0] - t * e[0], d[1] - t * e[1], d[2] - t * e[2]}) - s.radius;
 }
+// The least over all balls between the two: a convex function of where the ball is, whose least is searched for.
+inline double distance_from(const TaperedCapsule& s, const Vec3& p) {
+  const Vec3 e = difference(s.b, s.a), d = difference(p, s.a);
+  const auto from_ball = [&](double t) {
+    return length({d[0] - t * e[0], d[1] - t * e[1], d[2] - t * e[2]}) - s.radius_a -
+           t * (s.radius_b - s.radius_a);
+  };
+  double low = 0, high = 1;
+  for (int n = 0; n < 80; ++n) {
+    const double third = (high - low) / 3;
+    if (from_ball(low + third) < from_ball(high - third))
+      high -= third;
+    else
+      low += third;
+  }
+  return std::min({from_ball(0), from_ball(1), from_ball(low)});
+}
 inline double distance_from(const Cylinder& s, const Vec3& p) {
   const Vec3 e = difference(s.b, s.a), d = difference(p, s.a);
   const double size = length(e), z = product(d, e) / size;

@@ -21,6 +21,7 @@ const std::vector<Shape>& drapes() {
   static const std::vector<Shape> all = {Sphere{{0, 0, 0}, 0.3},
                                          Capsule{{-0.3, 0.05, 0}, {0.3, 0, 0.1}, 0.2},
                                          Cylinder{{0, -0.2, 0}, {0, 0.05, 0.02}, 0.3, 0.05},
+                                         TaperedCapsule{{-0.25, -0.1, 0}, {0.3, 0, 0.1}, 0.2, 0.08},
                                          Box{{0, 0, 0}, {0.25, 0.2, 0.25}, {0, 30, 0}, 0.02},
                                          Box{{0, 0, 0}, {0.25, 0.2, 0.25}, {0, 30, 0}, 0}};
   return all;

@@ -21,6 +21,10 @@ const std::vector<Shape>& shapes() {
       Cylinder{{-0.3, 0, 0.1}, {0.4, 0.2, 0}, 0.25, 0},
       Cylinder{{-0.3, 0, 0.1}, {0.4, 0.2, 0}, 0.25, 0.1},
       Cylinder{{0, 0, 0}, {0.02, 0.06, 0}, 0.4, 0.02},
+      TaperedCapsule{{-0.3, 0, 0.1}, {0.4, 0.2, 0}, 0.3, 0.1},
+      TaperedCapsule{{-0.3, 0, 0.1}, {0.4, 0.2, 0}, 0.02, 0.4},
+      TaperedCapsule{{0.1, 0, 0.1}, {0.2, 0.1, 0}, 0.4, 0.1},  // the one ball within the other
+      TaperedCapsule{{0.1, 0, 0.1}, {0.2, 0.1, 0}, 0.1, 0.4},
   };
   return all;
 }
@@ -61,6 +65,17 @@ double volume_of(const Shape& shape) {
   if (const auto* c = std::get_if<Capsule>(&shape)) {
     const double r = c->radius, l = std::sqrt(0.7 * 0.7 + 0.2 * 0.2 + 0.1 * 0.1);
     return 4 / 3. * M_PI * r * r * r + M_PI * r * r * l;
+  }
+  if (const auto* c = std::get_if<TaperedCapsule>(&shape)) {
+    // Caps of both balls and the frustum between the circles where they touch the side.
+    const Vec3 e = physics::minus(c->b, c->a);
+    const double l = std::sqrt(physics::dot(e, e)), a = c->radius_a, b = c->radius_b;
+    if (std::abs(a - b) >= l) return 4 / 3. * M_PI * std::pow(std::max(a, b), 3);
+    const double k = (a - b) / l, side = std::sqrt(1 - k * k), height = l + k * (b - a);
+    const auto cap = [](double r, double share) {  // of the height (1 + share) r
+      return M_PI * std::pow(r * (1 + share), 2) * (3 * r - r * (1 + share)) / 3;
+    };
+    return cap(a, k) + cap(b, -k) + M_PI / 3 * height * side * side * (a * a + a * b + b * b);
   }
   if (const auto* c = std::get_if<Cylinder>(&shape)) {
     const Vec3 e = physics::minus(c->b, c->a);

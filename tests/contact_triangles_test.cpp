@@ -25,15 +25,52 @@ double deepest(const Simulation& simulation, std::size_t collider = 0) {
 const std::vector<Method> kMethods{Method::spring, Method::spring_friction, Method::compliant,
                                    Method::positional};
 
+// How far a triangle that cuts a core is told to move: no further than along the best of many random directions,
+// and not at all where one of them shows that the two are apart.
+TEST(ContactTriangles, LeaveACoreTheShortestWay) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::normal_distribution<double> any;
+  int cuts = 0;
+  const auto compare = [&](const auto& shape) {
+    for (int n = 0; n < 300; ++n) {
+      const Vec3 middle{unit(random) / 4, unit(random) / 4, unit(random) / 4};
+      physics::Triangle t;
+      for (Vec3& x : t)
+        for (std::size_t k = 0; k < 3; ++k) x[k] = middle[k] + 0.2 * unit(random);
+      double least = 1e300;
+      Vec3 best{};
+      const auto look = [&](const Vec3& way) {
+        const Vec3 way_out = physics::times(way, 1 / std::sqrt(physics::dot(way, way)));
+        double low = 1e300;
+        for (const Vec3& x : t) low = std::min(low, physics::dot(way_out, x));
+        const double depth = physics::dot(way_out, physics::support_of(shape, way_out)) - low;
+        if (depth < least) least = depth, best = way_out;
+      };
+      for (int k = 0; k < 1500; ++k) look({any(random), any(random), any(random)});
+      for (double h = 0.05; h > 1e-4; h *= 0.7)
+        for (int k = 0; k < 20; ++k)
+          look({best[0] + h * any(random), best[1] + h * any(random), best[2] + h * any(random)});
+      const double told = physics::overlap_of(shape, t).depth;
+      cuts += least > 0;
+      EXPECT_LE(told, std::max(least, 0.0) * 1.05 + 1e-6) << Shape(shape).index();
+    }
+  };
+  compare(Box{{}, {0.1, 0.05, 0.2}, {20, 0, 50}, 0.01});
+  compare(TaperedCapsule{{}, {0.3, 0.1, 0.2}, 0.03, 0.1});
+  compare(TaperedCapsule{{}, {0.2, 0, 0.1}, 0.2, 0.05});
+  EXPECT_GT(cuts, 150);
+}
+
 // The nearest points of triangles and cores of any proportions, against minimisation.
 TEST(ContactTriangles, FindsTheDeepestPointOfAnyTriangle) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(-1, 1);
   const double offset = 0.01;
-  const std::vector<Shape> shapes{Box{{}, {0.1, 0.05, 0.2}, {}, 0.01},
-                                  Box{{}, {0.3, 0.001, 0.2}, {}, 0},
-                                  Capsule{{}, {0.3, 0.1, 0.2}, 0.03}, Sphere{{}, 0.1},
-                                  Cylinder{{}, {0.1, 0.2, 0.1}, 0.15, 0.02}};
+  const std::vector<Shape> shapes{
+      Box{{}, {0.1, 0.05, 0.2}, {}, 0.01},       Box{{}, {0.3, 0.001, 0.2}, {}, 0},
+      Capsule{{}, {0.3, 0.1, 0.2}, 0.03},        Sphere{{}, 0.1},
+      Cylinder{{}, {0.1, 0.2, 0.1}, 0.15, 0.02}, TaperedCapsule{{}, {0.3, 0.1, 0.2}, 0.03, 0.1}};
   for (const Shape& shape : shapes)
     for (const double size : {0.05, 0.3, 1.0, 5.0, 20.0})
       for (int n = 0; n < 300; ++n) {
@@ -46,7 +83,8 @@ TEST(ContactTriangles, FindsTheDeepestPointOfAnyTriangle) {
         });
         const auto compare = [&](const auto& s) {
           // A round core is known to what deepest_on() promises, others end exactly.
-          const bool round = std::holds_alternative<Cylinder>(shape);
+          const bool round = std::holds_alternative<Cylinder>(shape) ||
+                             std::holds_alternative<TaperedCapsule>(shape);
           const double found = physics::deepest_on(s, c, offset, size).nearest.distance;
           const double core = -physics::core_of(s, c.x[0]).radius;
           if (truth > offset)

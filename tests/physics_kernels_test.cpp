@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "kernel_patch.h"
-#include "physics/kernels/colliders.h"
+#include "physics/contact/colliders/shapes.h"
 #include "physics/kernels/kernels.h"
 #include "physics/kernels/lattice.h"
 
@@ -231,7 +231,6 @@ void add_projections(std::vector<Case>& cases) {
 }
 
 // In the order of weft::Shape.
-constexpr int kPlane = 1, kBox = 3, kMesh = 5;
 
 // A ball's surface as it is found for a row: distances and normals where its particles are, and where they
 // come from.
@@ -259,6 +258,27 @@ class FoundBall {
   std::array<std::vector<float>, 8> lists_;
 };
 
+// Of a shape about as large, askew; of a mesh there are none.
+template <class Shape>
+ShapeConstants constants_askew(float size) {
+  if constexpr (requires { Shape::of_size(1.0); }) {
+    Shape shape = Shape::of_size(2 * double(size));
+    Shape::values(shape, [&](const char*, auto& value, ShapeValue is) {
+      if constexpr (std::is_same_v<decltype(value), Vec3&>) {
+        if (is == ShapeValue::point) value = {0.3 * value[1], 0.8 * value[1], 0.5 * value[1]};
+        if (is == ShapeValue::direction) value = {0.36, 0.8, 0.48};
+        if (is == ShapeValue::angles) value = {20, 30, 40};
+      }
+    });
+    return constants_of(shape);
+  } else {
+    return {};
+  }
+}
+#define WEFT_CONSTANTS(Type, name) constants_askew<Type>,
+constexpr ShapeConstants (*kConstants[])(float) = {WEFT_SHAPES(WEFT_CONSTANTS)};
+#undef WEFT_CONSTANTS
+
 void add_contacts(std::vector<Case>& cases) {
   // Model kFrictionModels: the layer in which sliding is damped.
   const auto touch = [](int shape, int model, float friction, bool moving) {
@@ -278,13 +298,8 @@ void add_contacts(std::vector<Case>& cases) {
       const float size = 1 + float(p.columns) / 4;
       FoundBall ball(r, size);
       const FoundSurface found = ball.surface();
-      r.shape = {.found = shape == kMesh ? &found : nullptr,
-                 .radius = shape == kBox ? 0.1f : size,
-                 .thin = shape == kPlane ? std::numeric_limits<float>::infinity() : size,
-                 .axis = {0.36f, 0.8f, 0.48f},
-                 .inverse_square = 1 / (0.36f * 0.36f + 0.8f * 0.8f + 0.48f * 0.48f),
-                 .half = {size, 0.5f * size, size},
-                 .turn = {0.8f, 0.6f, 0, -0.6f, 0.8f, 0, 0, 0, 1}};
+      r.shape = kConstants[shape](size);
+      r.shape.found = &found;  // of a mesh
       r.offset = 0.01f;
       if (moving) r.ux = 0.3f, r.uy = -0.2f, r.uz = 0.1f;
       r.friction_static = friction;

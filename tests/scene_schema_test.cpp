@@ -29,7 +29,8 @@ weft::Scene full_scene() {
   cloth.pins.push_back({.keys = {}, .box = weft::BoxCorners{}});
   for (const weft::Shape& shape :
        {weft::Shape(weft::Sphere{}), weft::Shape(weft::Plane{}), weft::Shape(weft::Capsule{}),
-        weft::Shape(weft::Box{}), weft::Shape(weft::Cylinder{}), weft::Shape(weft::MeshBody{})})
+        weft::Shape(weft::Box{}), weft::Shape(weft::Cylinder{}),
+        weft::Shape(weft::TaperedCapsule{}), weft::Shape(weft::MeshBody{})})
     scene.colliders.push_back({shape, {}, 0, {{0, {0, 0, 0}}}, false});
   scene.colliders[1].friction = {weft::FrictionModel::coulomb, 0.5, 0.4};
   scene.colliders[2].friction = {weft::FrictionModel::course, 0.5, 0.5};

@@ -75,7 +75,7 @@ TEST_F(Window, BodiesAreAddedTurnedSizedCopiedAndTakenAway) {
   EXPECT_GT(std::abs(screen.now()["bodies"][1][0].get<double>() -
                      screen.now()["bodies"][0][0].get<double>()),
             0.1);
-  for (const char* shape : {"sphere", "plane", "capsule", "cylinder"}) {
+  for (const char* shape : {"sphere", "plane", "capsule", "cylinder", "tapered_capsule"}) {
     const std::size_t count = screen.now()["bodies"].size();
     screen.click(std::string("add ") + shape);
     wait_for_bodies(screen, count + 1);

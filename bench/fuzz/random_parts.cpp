@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "weft/shape.h"
+
 namespace fuzz {
 
 using namespace weft;
@@ -296,30 +298,28 @@ Cloth Parts::layer(const Cloth& below) {
   return c;
 }
 
+// Any that is not of a file, by what its values are to it.
 Shape Parts::shape(const Vec3& at, double size) {
-  const double radius = std::clamp(size * draw_.decades(0.02, 1), 1e-6, kFarthest);
-  switch (draw_.between(0, 4)) {
-    case 0:
-      return Sphere{at, radius};
-    case 1:
-      return Plane{at, draw_.chance(0.7) ? Vec3{0, 1, 0} : draw_.vector(1)};
-    case 2:
-      return Capsule{at, plus(at, draw_.vector(size)), radius};
-    case 3: {
-      Cylinder cylinder{at, plus(at, draw_.vector(size)), radius, 0};
-      const double half = std::min(radius, 0.5 * length(plus(cylinder.b, cylinder.a, -1)));
-      if (draw_.chance(0.5)) cylinder.rounding = half * draw_.uniform(0, 1);
-      return cylinder;
+  const std::vector<Shape> all = shapes_of_size(size);
+  Shape shape = all[std::size_t(draw_.between(0, int(all.size()) - 1))];
+  const auto length = [&] { return std::clamp(size * draw_.decades(0.02, 1), 1e-6, kFarthest); };
+  for_each_value(shape, [&](const char*, auto& value, ShapeValue is) {
+    if constexpr (std::is_same_v<decltype(value), Vec3&>) {
+      if (is == ShapeValue::place) value = at;
+      if (is == ShapeValue::point) value = plus(at, draw_.vector(size));
+      if (is == ShapeValue::direction && draw_.chance(0.3)) value = draw_.vector(1);
+      if (is == ShapeValue::angles)
+        value = draw_.chance(0.5) ? draw_.vector(draw_.of({90.0, 360.0, 3600.0})) : Vec3{};
+      if (is == ShapeValue::length)
+        for (double& one : value) one = length();
+    } else if (is == ShapeValue::rounding) {
+      const double most = std::visit([](const auto& s) { return s.half_thickness(); }, shape);
+      value = draw_.chance(0.5) ? most * draw_.uniform(0, 1) : 0;
+    } else {
+      value = length();
     }
-    default:
-      break;
-  }
-  Box box{at, {}, {}, 0};
-  for (double& h : box.half) h = std::clamp(size * draw_.decades(0.02, 1), 1e-6, kFarthest);
-  if (draw_.chance(0.5)) box.rotation = draw_.vector(draw_.of({90.0, 360.0, 3600.0}));
-  if (draw_.chance(0.5))
-    box.rounding = std::min({box.half[0], box.half[1], box.half[2]}) * draw_.uniform(0, 1);
-  return box;
+  });
+  return shape;
 }
 
 Friction Parts::friction() {

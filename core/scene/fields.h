@@ -172,39 +172,13 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("pressure", cloth.pressure);
 }
 
-template <class Walk>
-void fields(Walk& walk, Sphere& sphere) {
-  walk("center", sphere.center);
-  walk("radius", sphere.radius);
+// Of the shapes of colliders (weft/shapes/value.h).
+template <class Walk, class Shape>
+requires requires {
+  &Shape::half_thickness;
 }
-
-template <class Walk>
-void fields(Walk& walk, Plane& plane) {
-  walk("point", plane.point);
-  walk("normal", plane.normal);
-}
-
-template <class Walk>
-void fields(Walk& walk, Capsule& capsule) {
-  walk("a", capsule.a);
-  walk("b", capsule.b);
-  walk("radius", capsule.radius);
-}
-
-template <class Walk>
-void fields(Walk& walk, Cylinder& cylinder) {
-  walk("a", cylinder.a);
-  walk("b", cylinder.b);
-  walk("radius", cylinder.radius);
-  walk("rounding", cylinder.rounding);
-}
-
-template <class Walk>
-void fields(Walk& walk, Box& box) {
-  walk("center", box.center);
-  walk("half", box.half);
-  walk("rotation", box.rotation);
-  walk("rounding", box.rounding);
+void fields(Walk& walk, Shape& shape) {
+  Shape::values(shape, [&](const char* key, auto& value, ShapeValue) { walk(key, value); });
 }
 
 template <class Walk>

@@ -209,7 +209,8 @@ class Together {
                 number_words(friction.bias),
             "both above 0, or neither");
     if (sound({place + "/keys"})) check_keys(collider.keys, place + "/keys", result_);
-    std::visit([&](const auto& shape) { this->shape(shape, place); }, collider.shape);
+    const std::string shape = place + "/" + kShapeNames[collider.shape.index()];
+    std::visit([&](const auto& one) { this->shape(one, shape); }, collider.shape);
     if (sound({place + "/animation"})) check_animation(collider, place + "/animation", result_);
     if (sound({place + "/offset"})) offset(collider, place);
     if (collider.cuts && sound({place})) cutter(collider, place);
@@ -229,7 +230,7 @@ class Together {
       spacing = std::min({spacing, spacing_u(grid), spacing_v(grid)});
     }
     const double reach =
-        std::visit([](const auto& shape) { return half_of(shape); }, collider.shape) +
+        std::visit([](const auto& shape) { return shape.half_thickness(); }, collider.shape) +
         collider.offset;
     if (reach < kMinReach * spacing)
       fault(place + "/cuts", "the cutter reaches " + number_words(reach) + " m",
@@ -238,67 +239,34 @@ class Together {
                 "edge of the mesh");
   }
 
-  // Half of the least thickness.
-  static double half_of(const Sphere& s) { return s.radius; }
-  static double half_of(const Plane&) { return std::numeric_limits<double>::infinity(); }
-  static double half_of(const Capsule& c) { return c.radius; }
-  static double half_of(const Cylinder& c) { return std::min(c.radius, 0.5 * length(axis_of(c))); }
-  static double half_of(const Box& b) { return std::min({b.half[0], b.half[1], b.half[2]}); }
-  // Of an open one the offset is all.
-  static double half_of(const MeshBody& b) {
-    const bool open = b.surface && !open_edges(*b.surface).empty();
-    return open ? 0 : std::numeric_limits<double>::infinity();
-  }
-
-  void shape(const Sphere&, const std::string&) {}
-
-  void shape(const Plane& plane, const std::string& place) {
-    if (sound({place + "/plane/normal"}) && length(plane.normal) < kMinSpacing)
-      fault(place + "/plane/normal", "normal is zero", "a direction at least 1e-6 long");
-  }
-
+  // By what its values are to the shape.
   template <class Shape>
-  static Vec3 axis_of(const Shape& s) {
-    return {s.b[0] - s.a[0], s.b[1] - s.a[1], s.b[2] - s.a[2]};
-  }
-
-  // Whether the ends of an axis are apart.
-  template <class Shape>
-  bool has_axis(const Shape& shape, const std::string& place, const char* otherwise) {
-    if (!sound({place + "/a", place + "/b"})) return false;
-    if (length(axis_of(shape)) >= kMinSpacing) return true;
-    fault(place, "a and b are the same point",
-          std::string("an axis at least 1e-6 m long") + otherwise);
-    return false;
-  }
-
-  void shape(const Capsule& capsule, const std::string& place) {
-    has_axis(capsule, place + "/capsule", ", or a sphere");
-  }
-
-  void shape(const Cylinder& cylinder, const std::string& place) {
-    if (!has_axis(cylinder, place + "/cylinder", "")) return;
-    const double most = half_of(cylinder);
-    if (sound({place + "/cylinder/radius", place + "/cylinder/rounding"}) &&
-        cylinder.rounding > most)
-      fault(place + "/cylinder/rounding", "rounding is " + number_words(cylinder.rounding),
-            "0 to " + number_words(most) + " m, the radius or half of the length");
-  }
-
-  void shape(const Box& box, const std::string& place) {
-    const double most = std::min({box.half[0], box.half[1], box.half[2]});
-    if (sound({place + "/box/half", place + "/box/rounding"}) && box.rounding > most)
-      fault(place + "/box/rounding", "rounding is " + number_words(box.rounding),
-            "0 to " + number_words(most) + " m, the smallest half side");
+  void shape(const Shape& shape, const std::string& place) {
+    if (!sound({place})) return;
+    std::string first;  // the key of its place, which comes before other points
+    Vec3 from{};
+    Shape::values(shape, [&](const char* key, const auto& value, ShapeValue is) {
+      const std::string at = place + "/" + key;
+      if constexpr (std::is_same_v<decltype(value), const Vec3&>) {
+        if (is == ShapeValue::place) first = key, from = value;
+        const Vec3 axis{value[0] - from[0], value[1] - from[1], value[2] - from[2]};
+        if (is == ShapeValue::point && length(axis) < kMinSpacing)
+          fault(at, key + (" is where " + first) + " is", "at least 1e-6 m from " + first);
+        if (is == ShapeValue::direction && length(value) < kMinSpacing)
+          fault(at, std::string(key) + " is zero", "a direction at least 1e-6 long");
+      } else if (is == ShapeValue::rounding && value > shape.half_thickness()) {
+        fault(at, std::string(key) + " is " + number_words(value),
+              "0 to " + number_words(shape.half_thickness()) + " m, half of the least thickness");
+      }
+    });
   }
 
   void shape(const MeshBody& body, const std::string& place) {
-    if (!sound({place + "/mesh"})) return;
+    if (!sound({place})) return;
     if (!body.given())
-      return fault(place + "/mesh/file", "file is empty", "a mesh file (.obj, .ply, .glb, .gltf)");
+      return fault(place + "/file", "file is empty", "a mesh file (.obj, .ply, .glb, .gltf)");
     if (!body.shape) return;
-    if (const auto wrong = fault_of(body, place + "/mesh"))
-      fault(wrong->place, wrong->what, wrong->allowed);
+    if (const auto wrong = fault_of(body, place)) fault(wrong->place, wrong->what, wrong->allowed);
   }
 
   // What is without an inside would let through what lies on it.

@@ -52,19 +52,11 @@ double density_of(const Cloth& cloth) {
   return particle_mass(cloth, g.nx / 2, g.ny / 2) / (spacing_u(g) * spacing_v(g));
 }
 
-Shape made(std::size_t shape, const Vec3& at, double size) {
-  const double r = size / 2;
-  const Vec3 low = plus(at, {0, -r, 0}), high = plus(at, {0, r, 0});
-  const Shape all[] = {Sphere{at, r}, Plane{low, {0, 1, 0}}, Capsule{low, high, r / 2},
-                       Box{at, {r, r, r}, {}, r / 10}, Cylinder{low, high, r, r / 10}};
-  return all[shape];
-}
-
 }  // namespace
 
-Scene with_body(Scene scene, std::size_t shape, const Vec3& at, double size) {
+Scene with_body(Scene scene, const Shape& shape, const Vec3& at, double size) {
   Collider body;
-  body.shape = made(shape, at, size);
+  body.shape = moved(shape, at);
   body.friction = {FrictionModel::coulomb, 0.3, 0.3};
   body.offset = 0.01 * size;
   scene.colliders.push_back(body);
@@ -142,44 +134,48 @@ Scene without(Scene scene, const Part& part) {
 
 Shape turned(Shape shape, std::size_t axis, double angle) {
   const Matrix turn = rotation(axis, angle);
-  const auto about = [&](const Vec3& p, const Vec3& place) {
-    return plus(place, times(turn, Vec3{p[0] - place[0], p[1] - place[1], p[2] - place[2]}));
-  };
-  if (auto* plane = std::get_if<Plane>(&shape)) plane->normal = times(turn, plane->normal);
-  if (auto* box = std::get_if<Box>(&shape))
-    box->rotation = angles_of(times(turn, matrix_of(box->rotation)));
-  if (auto* mesh = std::get_if<MeshBody>(&shape))
-    mesh->rotate = angles_of(times(turn, matrix_of(mesh->rotate)));
-  if (auto* capsule = std::get_if<Capsule>(&shape)) capsule->b = about(capsule->b, capsule->a);
-  if (auto* cylinder = std::get_if<Cylinder>(&shape)) cylinder->b = about(cylinder->b, cylinder->a);
+  const Vec3 place = place_of(shape);
+  for_each_value(shape, [&](const char*, auto& value, ShapeValue is) {
+    if constexpr (std::is_same_v<decltype(value), Vec3&>) {
+      if (is == ShapeValue::point) {
+        const Vec3 from{value[0] - place[0], value[1] - place[1], value[2] - place[2]};
+        value = plus(place, times(turn, from));
+      }
+      if (is == ShapeValue::direction) value = times(turn, value);
+      if (is == ShapeValue::angles) value = angles_of(times(turn, matrix_of(value)));
+    }
+  });
   return shape;
 }
 
 Shape sized(Shape shape, double factor) {
-  const auto longer = [&](const Vec3& a, Vec3& b) {
-    for (std::size_t k = 0; k < 3; ++k) b[k] = a[k] + factor * (b[k] - a[k]);
-  };
-  if (auto* sphere = std::get_if<Sphere>(&shape)) sphere->radius *= factor;
-  if (auto* mesh = std::get_if<MeshBody>(&shape)) mesh->scale *= factor;
-  if (auto* capsule = std::get_if<Capsule>(&shape))
-    longer(capsule->a, capsule->b), capsule->radius *= factor;
-  if (auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    longer(cylinder->a, cylinder->b);
-    cylinder->radius *= factor;
-    cylinder->rounding *= factor;
-  }
-  if (auto* box = std::get_if<Box>(&shape)) {
-    for (double& half : box->half) half *= factor;
-    box->rounding *= factor;
-  }
+  const Vec3 place = place_of(shape);
+  for_each_value(shape, [&](const char*, auto& value, ShapeValue is) {
+    if constexpr (std::is_same_v<decltype(value), Vec3&>) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (is == ShapeValue::point) value[k] = place[k] + factor * (value[k] - place[k]);
+        if (is == ShapeValue::length) value[k] *= factor;
+      }
+    } else {
+      value *= factor;
+    }
+  });
   return shape;
 }
 
 bool can_turn(const Shape& shape) {
-  return !std::holds_alternative<Sphere>(shape);
+  bool can = false;
+  for_each_value(shape, [&](const char*, const auto&, ShapeValue is) {
+    can = can || is == ShapeValue::point || is == ShapeValue::direction || is == ShapeValue::angles;
+  });
+  return can;
 }
 bool can_size(const Shape& shape) {
-  return !std::holds_alternative<Plane>(shape);
+  bool can = false;
+  for_each_value(shape, [&](const char*, const auto&, ShapeValue is) {
+    can = can || is == ShapeValue::length || is == ShapeValue::radius;
+  });
+  return can;
 }
 
 }  // namespace weft::viewer

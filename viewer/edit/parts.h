@@ -12,8 +12,8 @@ struct Part {
   std::size_t number = 0;
 };
 
-// A body of the shape [0 … 4, as kShapeNames; no mesh, which is of a file] about `at`, some `size` [m] across.
-Scene with_body(Scene scene, std::size_t shape, const Vec3& at, double size);
+// A body of a shape about the origin, `size` [m] across, moved to `at`.
+Scene with_body(Scene scene, const Shape& shape, const Vec3& at, double size);
 // A level sheet about `at` of sides of `size` [m], of the first cloth's material.
 Scene with_cloth(Scene scene, const Vec3& at, double size);
 // A body, or a cloth of the first cloth's material, of a mesh that is read.

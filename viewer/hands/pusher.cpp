@@ -5,18 +5,9 @@
 
 #include "edit/cloth_place.h"
 #include "panel/theme.h"
+#include "weft/shape.h"
 
 namespace weft::viewer {
-
-namespace {
-
-std::string place_key(const Shape& shape) {
-  constexpr const char* keys[] = {"sphere/center", "plane/point", "capsule/a",
-                                  "box/center",    "cylinder/a",  "mesh/translate"};
-  return keys[shape.index()];
-}
-
-}  // namespace
 
 // A scene whose pins move is about its cloth, others about their first body.
 void Pusher::follow_scene(const Workspace& workspace) {
@@ -148,15 +139,17 @@ void Pusher::let_go(Workspace& workspace) {
   const Collider& collider = workspace.document().scene().colliders[chosen_->number];
   const std::string place = "/colliders/" + std::to_string(chosen_->number);
   const Vec3 to = workspace.in_scene(now_);
-  std::vector<Document::Change> changes{{place + "/" + place_key(collider.shape), to},
-                                        {place + "/keys", text::Json::array()}};
+  const std::string shape = place + "/" + kShapeNames[collider.shape.index()] + "/";
+  std::vector<Document::Change> changes{{place + "/keys", text::Json::array()}};
   // The other end of an axis comes along.
   const Vec3 from = place_of(collider.shape);
   const Shape there = moved(collider.shape, {to[0] - from[0], to[1] - from[1], to[2] - from[2]});
-  if (const Capsule* capsule = std::get_if<Capsule>(&there))
-    changes.push_back({place + "/capsule/b", capsule->b});
-  if (const Cylinder* cylinder = std::get_if<Cylinder>(&there))
-    changes.push_back({place + "/cylinder/b", cylinder->b});
+  for_each_value(there, [&](const char* key, const auto& value, ShapeValue is) {
+    if constexpr (std::is_same_v<decltype(value), const Vec3&>) {
+      if (is == ShapeValue::place) changes.push_back({shape + key, to});
+      if (is == ShapeValue::point) changes.push_back({shape + key, value});
+    }
+  });
   workspace.edit(changes, false, std::string("move ") + kShapeNames[collider.shape.index()]);
 }
 

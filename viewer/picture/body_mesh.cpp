@@ -168,10 +168,9 @@ BodyMesh make_body(const Shape& shape, float size, int tessellation) {
   if (const Capsule* c = std::get_if<Capsule>(&shape))
     return revolve(to_float(c->a), to_float(c->b), static_cast<float>(c->radius), tessellation);
   if (const Box* b = std::get_if<Box>(&shape)) return box_mesh(*b, tessellation);
-  if (std::holds_alternative<Cylinder>(shape) || std::holds_alternative<MeshBody>(shape))
-    return plain_mesh(triangulate(shape));
-  const Plane& plane = std::get<Plane>(shape);
-  return square(to_float(plane.point), normalized(to_float(plane.normal)), size);
+  if (const Plane* plane = std::get_if<Plane>(&shape))
+    return square(to_float(plane->point), normalized(to_float(plane->normal)), size);
+  return plain_mesh(triangulate(shape));
 }
 
 BodyMesh make_floor(Vec3f center, float half) {

@@ -30,27 +30,6 @@ Vec3 negative(const Vec3& p) {
   return {-p[0], -p[1], -p[2]};
 }
 
-void add_bounds(const Sphere& s, Bounds& bounds) {
-  bounds.add_ball(to_float(s.center), static_cast<float>(s.radius));
-}
-void add_bounds(const Plane&, Bounds&) {}
-void add_bounds(const Capsule& c, Bounds& bounds) {
-  bounds.add_ball(to_float(c.a), static_cast<float>(c.radius));
-  bounds.add_ball(to_float(c.b), static_cast<float>(c.radius));
-}
-void add_bounds(const Cylinder& c, Bounds& bounds) {
-  const auto reach = static_cast<float>(c.radius);
-  bounds.add_ball(to_float(c.a), reach);
-  bounds.add_ball(to_float(c.b), reach);
-}
-void add_bounds(const Box& b, Bounds& bounds) {
-  bounds.add_ball(to_float(b.center), length(to_float(b.half)));
-}
-
-void add_bounds(const MeshBody& body, Bounds& bounds) {
-  for (const Vec3& p : triangulate(body).positions) bounds.add(to_float(p));
-}
-
 }  // namespace
 
 void copy_view(const View& view, const Scene& scene, FrameData& to) {
@@ -98,15 +77,18 @@ Collider collider_at(const Collider& collider, double time) {
 
 Shape about_its_place(const Shape& shape) {
   Shape about = moved(shape, negative(place_of(shape)));
-  if (Capsule* capsule = std::get_if<Capsule>(&about)) capsule->b = to_double(to_float(capsule->b));
-  if (Cylinder* c = std::get_if<Cylinder>(&about)) c->b = to_double(to_float(c->b));
+  for_each_value(about, [](const char*, auto& value, ShapeValue is) {
+    if constexpr (std::is_same_v<decltype(value), Vec3&>)
+      if (is == ShapeValue::point) value = to_double(to_float(value));
+  });
   return about;
 }
 
 Bounds collider_bounds(const std::vector<Collider>& bodies) {
   Bounds bounds;
   for (const Collider& body : bodies)
-    std::visit([&](const auto& shape) { add_bounds(shape, bounds); }, body.shape);
+    if (const auto corners = bounds_of(body.shape))
+      for (const Vec3& corner : *corners) bounds.add(to_float(corner));
   return bounds;
 }
 

@@ -28,8 +28,10 @@ void shrink(Collider& body, double s) {
   const auto less = [&](double r) {
     return std::max(0.95 * r, r - std::max(0.0, s * s / (2 * r) - body.offset));
   };
-  if (Sphere* sphere = std::get_if<Sphere>(&body.shape)) sphere->radius = less(sphere->radius);
-  if (Capsule* capsule = std::get_if<Capsule>(&body.shape)) capsule->radius = less(capsule->radius);
+  for_each_value(body.shape, [&](const char*, auto& value, ShapeValue is) {
+    if constexpr (std::is_same_v<decltype(value), double&>)
+      if (is == ShapeValue::radius) value = less(value);
+  });
 }
 
 // Of a sheet along u and v; of a mesh, whose texture coordinates are its file's or span its two longest sides,

@@ -9,6 +9,7 @@
 #include "film/film.h"
 #include "headless.h"
 #include "weft/printable.h"
+#include "weft/shape.h"
 
 namespace weft::viewer {
 
@@ -152,9 +153,11 @@ bool Workspace::add_cloth() {
   return edit(with_cloth(document_.scene(), in_scene(over), 0.4 * setting_.size), "add cloth");
 }
 
-bool Workspace::add_body(std::size_t shape) {
-  return edit(with_body(document_.scene(), shape, in_scene(camera.target()), 0.2 * setting_.size),
-              std::string("add ") + kShapeNames[shape]);
+bool Workspace::add_body(std::size_t number) {
+  const double size = 0.2 * setting_.size;
+  const Shape shape = shapes_of_size(size)[number];
+  return edit(with_body(document_.scene(), shape, in_scene(camera.target()), size),
+              std::string("add ") + kShapeNames[shape.index()]);
 }
 
 bool Workspace::add_mesh(Kind kind, const MeshSource& mesh) {

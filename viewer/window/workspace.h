@@ -35,9 +35,9 @@ class Workspace {
             const std::string& name = "");
   // The same for the scene as a whole.
   bool edit(const Scene& scene, const std::string& name, bool joined = false);
-  // Puts a cloth, or a body of the shape (kShapeNames), where the camera looks.
+  // Puts a cloth, or a body of the shape (shapes_of_size()), where the camera looks.
   bool add_cloth();
-  bool add_body(std::size_t shape);
+  bool add_body(std::size_t number);
   // Puts in what a file of a mesh has, which is read (weft/mesh.h).
   bool add_mesh(Kind kind, const MeshSource& mesh);
   // Puts the part beside itself once more, or takes it away.

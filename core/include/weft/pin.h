@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace weft {
+#include "weft/vec3.h"
 
-using Vec3 = std::array<double, 3>;
+namespace weft {
 
 // One point of a path: at `time` [s] the thing is at `position` [m]; linear in between, held
 // before the first key and after the last. Times increase strictly.

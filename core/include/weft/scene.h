@@ -13,6 +13,7 @@
 
 #include "weft/pin.h"
 #include "weft/pressure.h"
+#include "weft/shapes/list.h"
 
 namespace weft {
 
@@ -26,24 +27,6 @@ struct Grid {
   Vec3 v{0, 0, 1};    // whole side, m
   double jitter = 0;  // m; each particle starts up to this far off the sheet along its normal
   friend bool operator==(const Grid&, const Grid&) = default;
-};
-
-struct TriangleMesh;  // weft/mesh.h
-
-// The triangles of a mesh file: of cloth, whose particles are the vertices in the file's order, or of a body.
-// What is read is scaled, turned and then moved.
-struct MeshSource {
-  std::string file;  // .obj, .ply, .glb or .gltf; beside the scene file, or absolute
-  double scale = 1;  // > 0; m for each unit of the file
-  Vec3 rotate{};     // degrees, about x, then y, then z
-  Vec3 translate{};  // m
-  std::shared_ptr<const TriangleMesh> shape{};  // as read (load_meshes()), or made by a program
-  bool given() const { return !file.empty() || shape; }
-  // What comes from the same file is equal, read or not.
-  friend bool operator==(const MeshSource& a, const MeshSource& b) {
-    return a.file == b.file && a.scale == b.scale && a.rotate == b.rotate &&
-           a.translate == b.translate && (!a.file.empty() || a.shape == b.shape);
-  }
 };
 
 // What the triangles of a mesh are like at rest: `shape`, as the mesh is, curvature included; `flat`, of its
@@ -169,60 +152,6 @@ struct Cloth {
   friend bool operator==(const Cloth&, const Cloth&) = default;
 };
 
-struct Sphere {
-  Vec3 center{};
-  double radius = 0.1;  // m
-  friend bool operator==(const Sphere&, const Sphere&) = default;
-};
-
-struct Plane {
-  Vec3 point{};
-  Vec3 normal{0, 1, 0};  // need not be a unit vector; the cloth stays on its side
-  friend bool operator==(const Plane&, const Plane&) = default;
-};
-
-struct Capsule {
-  Vec3 a{}, b{0, 1, 0};  // ends of the axis
-  double radius = 0.1;   // m
-  friend bool operator==(const Capsule&, const Capsule&) = default;
-};
-
-// All points within `radius` of the axis from a to b, between its ends: a disc where it is short. Its
-// edges are rounded by `rounding` [m] (0 <= rounding <= radius and half of the length).
-struct Cylinder {
-  Vec3 a{}, b{0, 1, 0};  // ends of the axis
-  double radius = 0.1;   // m
-  double rounding = 0;
-  friend bool operator==(const Cylinder&, const Cylinder&) = default;
-};
-
-// A box of half-sizes `half` about `center`, turned by `rotation` [degrees, about x then y then z],
-// its edges rounded by `rounding` [m] (0 <= rounding <= the smallest half-size).
-struct Box {
-  Vec3 center{};
-  Vec3 half{0.1, 0.1, 0.1};
-  Vec3 rotation{};
-  double rounding = 0;
-  friend bool operator==(const Box&, const Box&) = default;
-};
-
-class BodySurface;  // of a mesh, made ready for questions about distances (load_meshes())
-struct PointCache;  // weft/point_cache.h
-
-// A body of any shape: the triangles of a mesh file. Where every edge has two triangles, it is closed, and
-// the cloth is kept out of it, whichever way its faces look; else it is a surface without an inside, which
-// cloth does not cross: what is on one side of it stays there. Its place is `translate`. Parts of a closed
-// one may overlap. At least one triangle, edges of at least 1e-6 m.
-struct MeshBody : MeshSource {
-  std::shared_ptr<const PointCache> motion{};  // of its vertices, as read; null: it keeps its form
-  std::shared_ptr<const BodySurface> surface{};  // of both, scaled and turned (load_meshes())
-  double time = 0;  // s; what is asked of the shape by itself is asked of it as it is then
-  friend bool operator==(const MeshBody& a, const MeshBody& b) {
-    return static_cast<const MeshSource&>(a) == static_cast<const MeshSource&>(b) &&
-           a.time == b.time && (!a.file.empty() || a.motion == b.motion);
-  }
-};
-
 // `coulomb`: a particle in contact sticks while the tangential motion is within `statik` times the
 // normal correction, else slides with `dynamic`. `course`: the whole correction from the previous
 // position is multiplied by 1 - dynamic (seeds 001 and 004).
@@ -231,7 +160,6 @@ enum class FrictionModel { coulomb, course };
 // Damping acts on what is nearer than `bias` to the surface on which cloth is kept, whether it touches or
 // not: its velocity along the surface, as seen from there, is multiplied by 1 - dt*damping each substep
 // (seed 003). With `coulomb` alone, and only if both are above 0.
-
 struct Friction {
   FrictionModel model = FrictionModel::coulomb;
   double statik = 0;   // >= dynamic
@@ -242,31 +170,11 @@ struct Friction {
   friend bool operator==(const Friction&, const Friction&) = default;
 };
 
-// The shapes of colliders: the type, and the name that scene files and messages have for it. All that goes
-// by shape is made from this list: the variant, the reader and the kernels.
-#define WEFT_SHAPES(apply)                                                          \
-  apply(Sphere, sphere) apply(Plane, plane) apply(Capsule, capsule) apply(Box, box) \
-      apply(Cylinder, cylinder) apply(MeshBody, mesh)
-
-template <class, class... Shapes>
-struct OneOf {
-  using type = std::variant<Shapes...>;
-};
-#define WEFT_TYPE_OF_SHAPE(Type, name) , Type
-using Shape = OneOf<void WEFT_SHAPES(WEFT_TYPE_OF_SHAPE)>::type;
-#undef WEFT_TYPE_OF_SHAPE
-
-// Their names, in the order of Shape.
-#define WEFT_NAME_OF_SHAPE(Type, name) #name,
-inline constexpr std::array<const char*, std::variant_size_v<Shape>> kShapeNames{
-    WEFT_SHAPES(WEFT_NAME_OF_SHAPE)};
-#undef WEFT_NAME_OF_SHAPE
-
 struct Collider {
   Shape shape;
   Friction friction;
   double offset = 0;  // m; the cloth is kept this far off the surface
-  // Path of the sphere's or box's center, the plane's point, the capsule's or cylinder's a, the mesh's translate.
+  // Path of its place: a center, a plane's point, the end a of an axis, a mesh's translate.
   std::vector<Key> keys;
   bool cuts = false;  // cuts the constraints that pass through it instead of pushing
   // Of a mesh: where its vertices are over time, placed as it is: .pc2 or .mdd, beside the scene file or absolute.

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "weft/scene.h"
@@ -18,9 +20,19 @@ struct ShapeMesh {
 };
 ShapeMesh triangulate(const Shape& shape);
 
-// The point that a collider's keys move: the sphere's or box's center, the plane's point, the capsule's
-// or cylinder's a, the mesh's translate.
+// Calls visit(key, value, ShapeValue) for each value of a shape (weft/shapes/value.h).
+template <class AnyShape, class Visit>
+void for_each_value(AnyShape& shape, Visit&& visit) {
+  std::visit([&](auto& one) { std::decay_t<decltype(one)>::values(one, visit); }, shape);
+}
+
+// One of each shape that does not come from a file, about the origin, `size` [m] across.
+std::vector<Shape> shapes_of_size(double size);
+
+// The point that a collider's keys move: ShapeValue::place.
 Vec3 place_of(const Shape& shape);
+// The corners of the least box about the shape [m]; none of a plane.
+std::optional<std::array<Vec3, 2>> bounds_of(const Shape& shape);
 // The shape moved by so much [m].
 Shape moved(Shape shape, const Vec3& by);
 

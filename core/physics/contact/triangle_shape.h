@@ -238,9 +238,9 @@ struct Upright {
 
   explicit Upright(const Shape& given) : shape(given) {
     if (auto* box = std::get_if<Box>(&shape)) {
-      const ShapeConstants turned = constants_of(*box);
-      for (int k = 0; k < 3; ++k)
-        axes[k] = {turned.turn[3 * k], turned.turn[3 * k + 1], turned.turn[3 * k + 2]};
+      axes = axes_of(*box);
+      for (Vec3& axis : axes)  // as the kernels have them
+        for (double& value : axis) value = float(value);
       box->rotation = {};
     }
   }

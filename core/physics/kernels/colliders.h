@@ -1,6 +1,9 @@
 // Kernels of colliders. A shape's own file in contact/colliders defines them by WEFT_COLLIDER (collide.h).
 #pragma once
 
+#include <cstring>
+#include <type_traits>
+
 #include "physics/kernels/rows.h"
 #include "weft/scene.h"
 
@@ -18,12 +21,21 @@ struct FoundSurface {
 // Constants of a collider's shape, about its place (colliders/).
 struct ShapeConstants {
   const FoundSurface* found = nullptr;  // of a mesh
-  float radius = 0;                     // sphere, capsule; the box's rounding [m]
-  float thin = 0;                       // half of the least thickness; infinite for the plane [m]
-  float axis[3] = {0, 1, 0};            // plane: unit normal; capsule: from a to b [m]
-  float inverse_square = 0;             // capsule: 1/|axis|² [1/m²]
-  float half[3] = {};                   // box: half-sizes less the rounding [m]
-  float turn[9] = {};                   // box: its axes as rows
+  float radius = 0;                     // by which the core is grown (colliders/shapes.h) [m]
+  float thin = 0;                       // Shape::half_thickness() [m]
+  // What the shape's own kernel needs besides: a struct of floats that both halves of its file know.
+  template <class Own>
+  void set(const Own& values) {
+    static_assert(std::is_trivially_copyable_v<Own> && sizeof(Own) <= sizeof(own));
+    std::memcpy(own, &values, sizeof(Own));
+  }
+  template <class Own>
+  Own get() const {
+    Own values;
+    std::memcpy(&values, own, sizeof(Own));
+    return values;
+  }
+  float own[12] = {};
 };
 
 // One collider and one row: particles below the surface are put onto it, with friction.

@@ -1,6 +1,19 @@
 // Collider box: a core of half-sizes h about its center, turned, and grown by the rounding r.
 //   q = |Rᵀp| - h,  d(p) = |max(q, 0)| + min(max(q_x, q_y, q_z), 0) - r
 // The normal is that of the nearest point outside the core, and of the nearest face inside it.
+#include "physics/kernels/colliders.h"
+
+namespace weft::physics {
+namespace {
+
+struct BoxNumbers {
+  float half[3];     // of the core [m]
+  float axes[3][3];  // its own, unit
+};
+
+}  // namespace
+}  // namespace weft::physics
+
 #ifdef WEFT_LANES
 
 #include "physics/kernels/collide.h"
@@ -10,10 +23,10 @@ namespace {
 
 struct BoxSurface {
   static constexpr bool kFlat = false;
-  explicit BoxSurface(const physics::ShapeConstants& c)
-      : radius(wide(c.radius)), half(wide3(c.half[0], c.half[1], c.half[2])) {
-    for (int k = 0; k < 3; ++k)
-      axis[k] = wide3(c.turn[3 * k], c.turn[3 * k + 1], c.turn[3 * k + 2]);
+  explicit BoxSurface(const physics::ShapeConstants& c) : radius(wide(c.radius)) {
+    const auto own = c.get<physics::BoxNumbers>();
+    half = wide3(own.half[0], own.half[1], own.half[2]);
+    for (int k = 0; k < 3; ++k) axis[k] = wide3(own.axes[k][0], own.axes[k][1], own.axes[k][2]);
   }
   WEFT_INLINE Surface at(Wide3 p) const {
     const Wide3 local{dot(p, axis[0]), dot(p, axis[1]), dot(p, axis[2])};
@@ -51,9 +64,7 @@ WEFT_COLLIDER(kBox, BoxSurface)
 #include "physics/contact/colliders/shapes.h"
 
 namespace weft::physics {
-namespace {
 
-// The box's own axes in the scene: turned about x, then y, then z.
 std::array<Vec3, 3> axes_of(const Box& box) {
   std::array<Vec3, 3> axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
   if (box.rotation == Vec3{}) return axes;
@@ -70,26 +81,18 @@ std::array<Vec3, 3> axes_of(const Box& box) {
   return axes;
 }
 
-}  // namespace
-
 ShapeConstants constants_of(const Box& box) {
   const std::array<Vec3, 3> axes = axes_of(box);
   ShapeConstants c;
   c.radius = float(box.rounding);
-  c.thin = float(std::min({box.half[0], box.half[1], box.half[2]}));
+  c.thin = float(box.half_thickness());
+  BoxNumbers own{};
   for (int k = 0; k < 3; ++k) {
-    c.half[k] = float(box.half[k] - box.rounding);
-    for (int m = 0; m < 3; ++m) c.turn[3 * k + m] = float(axes[k][m]);
+    own.half[k] = float(box.half[k] - box.rounding);
+    for (int m = 0; m < 3; ++m) own.axes[k][m] = float(axes[k][m]);
   }
+  c.set(own);
   return c;
-}
-
-Vec3 place_of(const Box& box) {
-  return box.center;
-}
-
-void move(Box& box, const Vec3& by) {
-  box.center = plus(box.center, by);
 }
 
 Core core_of(const Box& box, const Vec3& p) {

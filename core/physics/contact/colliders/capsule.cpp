@@ -1,5 +1,18 @@
 // Collider capsule: all points within `radius` of the segment from a to b.
 //   q = e clamp(p·e/|e|², 0, 1),  d(p) = |p - q| - r,  n = (p - q)/|p - q|,  e = b - a
+#include "physics/kernels/colliders.h"
+
+namespace weft::physics {
+namespace {
+
+struct CapsuleNumbers {
+  float axis[3];         // from a to b [m]
+  float inverse_square;  // 1/|axis|² [1/m²]
+};
+
+}  // namespace
+}  // namespace weft::physics
+
 #ifdef WEFT_LANES
 
 #include "physics/kernels/collide.h"
@@ -9,10 +22,11 @@ namespace {
 
 struct CapsuleSurface {
   static constexpr bool kFlat = false;
-  explicit CapsuleSurface(const physics::ShapeConstants& c)
-      : radius(wide(c.radius)),
-        inverse_square(wide(c.inverse_square)),
-        axis(wide3(c.axis[0], c.axis[1], c.axis[2])) {}
+  explicit CapsuleSurface(const physics::ShapeConstants& c) : radius(wide(c.radius)) {
+    const auto own = c.get<physics::CapsuleNumbers>();
+    inverse_square = wide(own.inverse_square);
+    axis = wide3(own.axis[0], own.axis[1], own.axis[2]);
+  }
   WEFT_INLINE Surface at(Wide3 p) const {
     const Wide t = min(max(dot(p, axis) * inverse_square, Wide{}), wide(1));
     return around(fnma(axis, t, p), radius);
@@ -29,7 +43,6 @@ WEFT_COLLIDER(kCapsule, CapsuleSurface)
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "physics/contact/colliders/shapes.h"
 
@@ -39,19 +52,9 @@ ShapeConstants constants_of(const Capsule& capsule) {
   const Vec3 e = minus(capsule.b, capsule.a);
   ShapeConstants c;
   c.radius = float(capsule.radius);
-  c.thin = c.radius;
-  for (int k = 0; k < 3; ++k) c.axis[k] = float(e[k]);
-  c.inverse_square = float(1 / dot(e, e));
+  c.thin = float(capsule.half_thickness());
+  c.set(CapsuleNumbers{{float(e[0]), float(e[1]), float(e[2])}, float(1 / dot(e, e))});
   return c;
-}
-
-Vec3 place_of(const Capsule& capsule) {
-  return capsule.a;
-}
-
-void move(Capsule& capsule, const Vec3& by) {
-  capsule.a = plus(capsule.a, by);
-  capsule.b = plus(capsule.b, by);
 }
 
 Core core_of(const Capsule& capsule, const Vec3& p) {
@@ -93,31 +96,7 @@ double feature_of(const Capsule& capsule) {
 }
 
 ShapeMesh mesh_of(const Capsule& capsule) {
-  const Vec3 e = minus(capsule.b, capsule.a);
-  const Vec3 along = times(e, 1 / std::sqrt(dot(e, e)));
-  const Vec3 axis = std::abs(along[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
-  const Vec3 s0 = minus(axis, times(along, dot(axis, along)));
-  const Vec3 s = times(s0, 1 / std::hypot(s0[0], s0[1], s0[2]));
-  // s turned by a quarter about the axis: s, t and `along` are right-handed.
-  const Vec3 t{along[1] * s[2] - along[2] * s[1], along[2] * s[0] - along[0] * s[2],
-               along[0] * s[1] - along[1] * s[0]};
-  constexpr int kCap = 16;  // rings of each cap; one more band joins the two
-  const auto normal = [&](double u, double v) {
-    const double ring = v * (2 * kCap + 1);
-    const double step = ring <= kCap ? ring : ring - 1;
-    const double rise = std::numbers::pi / 2 * (step / kCap - 1), turn = 2 * std::numbers::pi * u;
-    return plus(times(along, std::sin(rise)),
-                times(plus(times(s, std::cos(turn)), times(t, std::sin(turn))), std::cos(rise)));
-  };
-  ShapeMesh mesh;
-  add_patch(
-      mesh, 48, 2 * kCap + 1,
-      [&](double u, double v) {
-        const Vec3 off = times(normal(u, v), capsule.radius);
-        return v > 0.5 ? plus(e, off) : off;
-      },
-      normal);
-  return mesh;
+  return mesh_of(TaperedCapsule{capsule.a, capsule.b, capsule.radius, capsule.radius});
 }
 
 }  // namespace weft::physics

@@ -3,6 +3,19 @@
 //   d(p) = |max(q, 0)| + min(max(q_1, q_2), 0) - r
 // n is the unit axis. The normal is that of the nearest point outside the core, and of the nearer of
 // side and end inside it.
+#include "physics/kernels/colliders.h"
+
+namespace weft::physics {
+namespace {
+
+struct CylinderNumbers {
+  float across, along;                 // the core's radius and half-length [m]
+  float axis[3], middle[3], aside[3];  // unit axis; middle seen from a [m]; a unit vector across
+};
+
+}  // namespace
+}  // namespace weft::physics
+
 #ifdef WEFT_LANES
 
 #include "physics/kernels/collide.h"
@@ -12,13 +25,14 @@ namespace {
 
 struct CylinderSurface {
   static constexpr bool kFlat = false;
-  explicit CylinderSurface(const physics::ShapeConstants& c)
-      : radius(wide(c.radius)),
-        across(wide(c.half[0])),
-        along(wide(c.half[1])),
-        axis(wide3(c.axis[0], c.axis[1], c.axis[2])),
-        middle(wide3(c.turn[0], c.turn[1], c.turn[2])),
-        aside(wide3(c.turn[3], c.turn[4], c.turn[5])) {}
+  explicit CylinderSurface(const physics::ShapeConstants& c) : radius(wide(c.radius)) {
+    const auto own = c.get<physics::CylinderNumbers>();
+    across = wide(own.across);
+    along = wide(own.along);
+    axis = wide3(own.axis[0], own.axis[1], own.axis[2]);
+    middle = wide3(own.middle[0], own.middle[1], own.middle[2]);
+    aside = wide3(own.aside[0], own.aside[1], own.aside[2]);
+  }
   WEFT_INLINE Surface at(Wide3 p) const {
     const Wide3 local = p - middle;
     const Wide z = dot(local, axis);
@@ -60,18 +74,16 @@ namespace {
 // About the middle of the axis.
 struct Frame {
   Vec3 middle, axis, aside, third;  // seen from a; unit vectors, right-handed
-  double across, along;             // the core's radius and half-length [m]
+  double radius, along;             // the core's radius and half-length [m]
 
   explicit Frame(const Cylinder& c) {
     const Vec3 e = minus(c.b, c.a);
     const double length = std::sqrt(dot(e, e));
     middle = times(e, 0.5);
     axis = times(e, 1 / length);
-    const Vec3 other = std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
-    const Vec3 square = minus(other, times(axis, dot(axis, other)));
-    aside = times(square, 1 / std::sqrt(dot(square, square)));
-    third = cross(axis, aside);
-    across = c.radius - c.rounding;
+    aside = across(axis)[0];
+    third = across(axis)[1];
+    radius = c.radius - c.rounding;
     along = length / 2 - c.rounding;
   }
 };
@@ -95,31 +107,24 @@ ShapeConstants constants_of(const Cylinder& cylinder) {
   const Frame f(cylinder);
   ShapeConstants c;
   c.radius = float(cylinder.rounding);
-  c.thin = float(std::min(cylinder.radius, f.along + cylinder.rounding));
-  c.half[0] = float(f.across);
-  c.half[1] = float(f.along);
+  c.thin = float(cylinder.half_thickness());
+  CylinderNumbers own{};
+  own.across = float(f.radius);
+  own.along = float(f.along);
   for (int k = 0; k < 3; ++k) {
-    c.axis[k] = float(f.axis[k]);
-    c.turn[k] = float(f.middle[k]);
-    c.turn[3 + k] = float(f.aside[k]);
+    own.axis[k] = float(f.axis[k]);
+    own.middle[k] = float(f.middle[k]);
+    own.aside[k] = float(f.aside[k]);
   }
+  c.set(own);
   return c;
-}
-
-Vec3 place_of(const Cylinder& cylinder) {
-  return cylinder.a;
-}
-
-void move(Cylinder& cylinder, const Vec3& by) {
-  cylinder.a = plus(cylinder.a, by);
-  cylinder.b = plus(cylinder.b, by);
 }
 
 Core core_of(const Cylinder& cylinder, const Vec3& p) {
   const Frame f(cylinder);
   const Polar at = polar_of(f, p);
   const Vec3 along = times(f.axis, std::clamp(at.z, -f.along, f.along));
-  return {plus(f.middle, plus(along, times(at.side, std::min(at.distance, f.across)))),
+  return {plus(f.middle, plus(along, times(at.side, std::min(at.distance, f.radius)))),
           cylinder.rounding};
 }
 
@@ -127,7 +132,7 @@ Nearest nearest_of(const Cylinder& cylinder, const Vec3& p) {
   const Frame f(cylinder);
   const Polar at = polar_of(f, p);
   const Vec3 end = times(f.axis, at.z < 0 ? -1 : 1);
-  const double q1 = at.distance - f.across, q2 = std::abs(at.z) - f.along;
+  const double q1 = at.distance - f.radius, q2 = std::abs(at.z) - f.along;
   const double out1 = std::max(q1, 0.0), out2 = std::max(q2, 0.0), length = std::hypot(out1, out2);
   if (length == 0) return {std::max(q1, q2) - cylinder.rounding, q1 >= q2 ? at.side : end};
   return {length - cylinder.rounding,
@@ -139,7 +144,7 @@ Vec3 support_of(const Cylinder& cylinder, const Vec3& way) {
   const double along = dot(way, f.axis);
   const Vec3 across = minus(way, times(f.axis, along));
   const double size = std::sqrt(dot(across, across));
-  const Vec3 rim = size > 0 ? times(across, f.across / size) : Vec3{};
+  const Vec3 rim = size > 0 ? times(across, f.radius / size) : Vec3{};
   return plus(f.middle, plus(times(f.axis, along < 0 ? -f.along : f.along), rim));
 }
 
@@ -155,7 +160,7 @@ Overlap overlap_of(const Cylinder& cylinder, const Triangle& t) {
     const Vec3 n = times(direction, 1 / size);
     const double along = dot(n, f.axis);
     const double reach =
-        f.along * std::abs(along) + f.across * std::sqrt(std::max(0.0, 1 - along * along));
+        f.along * std::abs(along) + f.radius * std::sqrt(std::max(0.0, 1 - along * along));
     double low = 1e300, high = -1e300;
     for (const Vec3& x : t) {
       low = std::min(low, dot(n, minus(x, f.middle)));
@@ -191,7 +196,7 @@ ShapeMesh mesh_of(const Cylinder& cylinder) {
     for (int n = 0; n <= std::max(bands, 1); ++n) {
       const double share = double(n) / std::max(bands, 1);
       const double rise = kQuarter * (end < 0 ? share - 1 : share);
-      outline.push_back({f.across + cylinder.rounding * std::cos(rise),
+      outline.push_back({f.radius + cylinder.rounding * std::cos(rise),
                          end * f.along + cylinder.rounding * std::sin(rise), rise});
     }
   outline.push_back({0, f.along + cylinder.rounding, kQuarter});

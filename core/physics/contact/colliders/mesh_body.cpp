@@ -41,22 +41,23 @@ const physics::ColliderKernels kMeshBody = {{coulomb, course}, nullptr, damp_sli
 #else
 
 #include <cmath>
+#include <limits>
 
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/colliders/shapes.h"
+#include "weft/mesh.h"
 
-namespace weft::physics {
+namespace weft {
+
+double MeshBody::half_thickness() const {
+  const bool open = surface && !open_edges(*surface).empty();
+  return open ? 0 : std::numeric_limits<double>::infinity();
+}
+
+namespace physics {
 
 ShapeConstants constants_of(const MeshBody&) {
   return {};
-}
-
-Vec3 place_of(const MeshBody& body) {
-  return body.translate;
-}
-
-void move(MeshBody& body, const Vec3& by) {
-  body.translate = plus(body.translate, by);
 }
 
 Nearest nearest_of(const MeshBody& body, const Vec3& p) {
@@ -94,6 +95,8 @@ ShapeMesh mesh_of(const MeshBody& body) {
   return mesh;
 }
 
-}  // namespace weft::physics
+}  // namespace physics
+
+}  // namespace weft
 
 #endif

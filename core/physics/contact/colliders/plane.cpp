@@ -2,6 +2,18 @@
 //
 // The course's plane differs from the other shapes': a particle whose path crossed it goes to the
 // crossing, less the offset along its path (seeds 001 and 004).
+#include "physics/kernels/colliders.h"
+
+namespace weft::physics {
+namespace {
+
+struct PlaneNumbers {
+  float normal[3];
+};
+
+}  // namespace
+}  // namespace weft::physics
+
 #ifdef WEFT_LANES
 
 #include "physics/kernels/collide.h"
@@ -11,8 +23,10 @@ namespace {
 
 struct PlaneSurface {
   static constexpr bool kFlat = true;
-  explicit PlaneSurface(const physics::ShapeConstants& c)
-      : normal(wide3(c.axis[0], c.axis[1], c.axis[2])) {}
+  explicit PlaneSurface(const physics::ShapeConstants& c) {
+    const auto own = c.get<physics::PlaneNumbers>();
+    normal = wide3(own.normal[0], own.normal[1], own.normal[2]);
+  }
   WEFT_INLINE Surface at(Wide3 p) const { return {dot(p, normal), normal}; }
   Wide3 normal;
 };
@@ -30,7 +44,7 @@ RowReach damp_sliding(const CollideRow& r) {
 // What something else pushed below is corrected as by other shapes.
 RowReach course(const CollideRow& r) {
   const Wide3 point = wide3(r.cx, r.cy, r.cz);
-  const Wide3 n = wide3(r.shape.axis[0], r.shape.axis[1], r.shape.axis[2]);
+  const Wide3 n = PlaneSurface(r.shape).normal;
   Wide clearance = wide(kFar), fastest{};
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide3 x = load3(r.x, i), v = load3(r.v, i), path = v * wide(r.dt), before = x - path;
@@ -77,17 +91,9 @@ Vec3 unit_normal(const Plane& plane) {
 ShapeConstants constants_of(const Plane& plane) {
   const Vec3 n = unit_normal(plane);
   ShapeConstants c;
-  c.thin = std::numeric_limits<float>::infinity();
-  for (int k = 0; k < 3; ++k) c.axis[k] = float(n[k]);
+  c.thin = float(plane.half_thickness());
+  c.set(PlaneNumbers{{float(n[0]), float(n[1]), float(n[2])}});
   return c;
-}
-
-Vec3 place_of(const Plane& plane) {
-  return plane.point;
-}
-
-void move(Plane& plane, const Vec3& by) {
-  plane.point = plus(plane.point, by);
 }
 
 Nearest nearest_of(const Plane& plane, const Vec3& p) {
@@ -116,15 +122,11 @@ double feature_of(const Plane&) {
 
 ShapeMesh mesh_of(const Plane& plane) {
   const Vec3 n = unit_normal(plane);
-  // Two directions in the plane, by way of the axis least along the normal (u × v = n).
-  const Vec3 axis = std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
-  const Vec3 u0 = minus(axis, times(n, dot(axis, n)));
-  const Vec3 u = times(u0, 1 / std::hypot(u0[0], u0[1], u0[2]));
-  const Vec3 v = cross(n, u);
+  const auto [u, v] = across(n);
   ShapeMesh mesh;
   add_patch(
       mesh, 8, 8,
-      [&](double a, double b) {
+      [&, u = u, v = v](double a, double b) {
         return plus(times(u, kDrawn * (2 * a - 1)), times(v, kDrawn * (2 * b - 1)));
       },
       [&](double, double) { return n; });

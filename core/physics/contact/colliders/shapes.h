@@ -3,6 +3,8 @@
 // below. Everything is about the shape's place: the point that its keys move.
 #pragma once
 
+#include <cmath>
+
 #include "physics/kernels/colliders.h"
 #include "physics/model/vector.h"
 #include "weft/scene.h"
@@ -32,21 +34,32 @@ struct Core {
 
 #define WEFT_SHAPE(Shape, name)                              \
   ShapeConstants constants_of(const Shape& shape);           \
-  Vec3 place_of(const Shape& shape);                         \
-  void move(Shape& shape, const Vec3& by);                   \
   Nearest nearest_of(const Shape& shape, const Vec3& p);     \
   Core core_of(const Shape& shape, const Vec3& p);           \
   Vec3 support_of(const Shape& shape, const Vec3& way);      \
   Overlap overlap_of(const Shape& shape, const Triangle& t); \
   double feature_of(const Shape& shape);                     \
   ShapeMesh mesh_of(const Shape& shape);
-// constants_of: for the kernels; place_of: where it stands without keys; move: to elsewhere;
-// nearest_of, core_of: seen from p, in double; support_of: the point of the core that lies
+// constants_of: for the kernels; nearest_of, core_of: seen from p, in double; support_of: the point of the core that lies
 // furthest along `way`; overlap_of: of the core and a triangle; feature_of: its smallest radius of
 // curvature, infinite for a plane [m]; mesh_of: triangles for drawing. A mesh has no core: instead of these,
 // its edges and corners are looked at (body/body_triangle.h).
 WEFT_SHAPES(WEFT_SHAPE)
 #undef WEFT_SHAPE
+
+// The box's own axes in the scene: turned about x, then y, then z.
+std::array<Vec3, 3> axes_of(const Box& box);
+
+// Where it stands without keys.
+template <class One>
+Vec3 place_of(const One& shape) {
+  Vec3 place{};
+  One::values(shape, [&](const char*, const auto& value, ShapeValue is) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vec3>)
+      if (is == ShapeValue::place) place = value;
+  });
+  return place;
+}
 
 // The surface of a collider that is a mesh; null of others.
 inline const BodySurface* surface_of(const Collider& collider) {
@@ -56,6 +69,14 @@ inline const BodySurface* surface_of(const Collider& collider) {
 
 // Of a collider that stands at its place, by how it is at a time [s].
 Nearest nearest_at(const Shape& shape, double time, const Vec3& p);
+
+// Two unit vectors across a unit one; after it they are right-handed.
+inline std::array<Vec3, 2> across(const Vec3& axis) {
+  const Vec3 other = std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
+  const Vec3 square = minus(other, times(axis, dot(axis, other)));
+  const Vec3 aside = times(square, 1 / std::sqrt(dot(square, square)));
+  return {aside, cross(axis, aside)};
+}
 
 // Adds a surface of `across` by `along` quads between points point(u, v), 0 <= u, v <= 1, with
 // normals normal(u, v); seen from outside, u runs to the right and v up.

@@ -29,16 +29,8 @@ namespace weft::physics {
 ShapeConstants constants_of(const Sphere& sphere) {
   ShapeConstants c;
   c.radius = float(sphere.radius);
-  c.thin = c.radius;
+  c.thin = float(sphere.half_thickness());
   return c;
-}
-
-Vec3 place_of(const Sphere& sphere) {
-  return sphere.center;
-}
-
-void move(Sphere& sphere, const Vec3& by) {
-  sphere.center = plus(sphere.center, by);
 }
 
 Nearest nearest_of(const Sphere& sphere, const Vec3& p) {

@@ -1,0 +1,221 @@
+// Collider tapered capsule: the convex hull of two balls, of radius R about the end a and of R + g about b.
+// The normal at its side leans to the smaller ball by k = -g/|e|, so that the ball through whose centre it runs
+// is
+//   t = clamp((p·e - k/√(1-k²) |e| |p - e p·e/|e|²|)/|e|², 0, 1),  e = b - a
+//   d(p) = |p - t e| - (R + t g),  n = (p - t e)/|p - t e|
+#include "physics/kernels/colliders.h"
+
+namespace weft::physics {
+namespace {
+
+struct TaperedNumbers {
+  float from[3], axis[3];  // the first ball; from there to the second [m]
+  float inverse_square;    // 1/|axis|² [1/m²]
+  float lean;              // k/(√(1-k²) |e|) [1/m]
+  float radius, growth;    // R, g [m]
+};
+
+}  // namespace
+}  // namespace weft::physics
+
+#ifdef WEFT_LANES
+
+#include "physics/kernels/collide.h"
+
+namespace weft::WEFT_KERNELS {
+namespace {
+
+struct TaperedSurface {
+  static constexpr bool kFlat = false;
+  explicit TaperedSurface(const physics::ShapeConstants& c) {
+    const auto own = c.get<physics::TaperedNumbers>();
+    from = wide3(own.from[0], own.from[1], own.from[2]);
+    axis = wide3(own.axis[0], own.axis[1], own.axis[2]);
+    inverse_square = wide(own.inverse_square);
+    lean = wide(own.lean);
+    radius = wide(own.radius);
+    growth = wide(own.growth);
+  }
+  WEFT_INLINE Surface at(Wide3 p) const {
+    const Wide3 d = p - from;
+    const Wide along = dot(d, axis) * inverse_square;
+    const Wide3 radial = fnma(axis, along, d);
+    const Wide t = min(max(fnma(sqrt(dot(radial, radial)), lean, along), Wide{}), wide(1));
+    return around(fnma(axis, t, d), fma(growth, t, radius));
+  }
+  Wide3 from, axis;
+  Wide inverse_square, lean, radius, growth;
+};
+
+}  // namespace
+WEFT_COLLIDER(kTaperedCapsule, TaperedSurface)
+}  // namespace weft::WEFT_KERNELS
+
+#else
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "physics/contact/colliders/shapes.h"
+
+namespace weft::physics {
+namespace {
+
+// The hull, seen from a. Of two balls of which one holds the other, that one twice.
+struct Hull {
+  Vec3 from{}, axis{};
+  double radius, growth = 0;
+  double inverse_square = 0, lean = 0;
+  double rise = 0;  // of the side's normal above the plane across the axis [rad]
+
+  explicit Hull(const TaperedCapsule& c) : radius(std::max(c.radius_a, c.radius_b)) {
+    const Vec3 e = minus(c.b, c.a);
+    const double square = dot(e, e), length = std::sqrt(square), change = c.radius_b - c.radius_a;
+    if (std::abs(change) >= length) {
+      if (change > 0) from = e;
+      return;
+    }
+    axis = e;
+    radius = c.radius_a;
+    growth = change;
+    inverse_square = 1 / square;
+    rise = std::asin(-change / length);
+    lean = std::tan(rise) / length;
+  }
+  double least() const { return std::min(radius, radius + growth); }
+};
+
+// The centre of the ball that p is nearest to, and its radius.
+Core ball_near(const Hull& hull, const Vec3& p) {
+  const Vec3 d = minus(p, hull.from);
+  const double along = dot(d, hull.axis) * hull.inverse_square;
+  const Vec3 radial = minus(d, times(hull.axis, along));
+  const double t = std::clamp(along - hull.lean * std::sqrt(dot(radial, radial)), 0.0, 1.0);
+  return {plus(hull.from, times(hull.axis, t)), hull.radius + t * hull.growth};
+}
+
+}  // namespace
+
+ShapeConstants constants_of(const TaperedCapsule& capsule) {
+  const Hull hull(capsule);
+  ShapeConstants c;
+  c.radius = float(hull.least());
+  c.thin = float(capsule.half_thickness());
+  TaperedNumbers own{};
+  own.inverse_square = float(hull.inverse_square);
+  own.lean = float(hull.lean);
+  own.radius = float(hull.radius);
+  own.growth = float(hull.growth);
+  for (int k = 0; k < 3; ++k) {
+    own.from[k] = float(hull.from[k]);
+    own.axis[k] = float(hull.axis[k]);
+  }
+  c.set(own);
+  return c;
+}
+
+Nearest nearest_of(const TaperedCapsule& capsule, const Vec3& p) {
+  const Core ball = ball_near(Hull(capsule), p);
+  const Vec3 d = minus(p, ball.nearest);
+  const double length = std::hypot(d[0], d[1], d[2]);
+  return {length - ball.radius, length > 0 ? times(d, 1 / length) : Vec3{0, 1, 0}};
+}
+
+// The core is the hull of the balls less the smaller one's radius: a cone from a point to a ball.
+Core core_of(const TaperedCapsule& capsule, const Vec3& p) {
+  const Nearest n = nearest_of(capsule, p);
+  const double radius = Hull(capsule).least();
+  return {minus(p, times(n.normal, std::max(n.distance + radius, 0.0))), radius};
+}
+
+Vec3 support_of(const TaperedCapsule& capsule, const Vec3& way) {
+  const Hull hull(capsule);
+  const double size = std::sqrt(dot(way, way));
+  const double reach = hull.radius - hull.least(), reach_b = reach + hull.growth;
+  const bool second = dot(hull.axis, way) + hull.growth * size > 0;
+  const Vec3 center = second ? plus(hull.from, hull.axis) : hull.from;
+  return size > 0 ? plus(center, times(way, (second ? reach_b : reach) / size)) : center;
+}
+
+// Any direction along which core and triangle overlap leads out, by so much; one along which they do not shows
+// that they are apart. The least lies along the triangle's normal, along the core's above a corner, or across an
+// edge: there directions are tried all around, and the best of them is refined.
+Overlap overlap_of(const TaperedCapsule& capsule, const Triangle& t) {
+  if (capsule.radius_a == capsule.radius_b)
+    return overlap_of(Capsule{capsule.a, capsule.b, capsule.radius_a}, t);
+  Overlap best{1e300, {}};
+  const auto depth_along = [&](const Vec3& n) {
+    double low = 1e300;
+    for (const Vec3& x : t) low = std::min(low, dot(n, x));
+    const double depth = dot(n, support_of(capsule, n)) - low;
+    if (depth < best.depth) best = {depth, n};
+    return depth;
+  };
+  const Vec3 normal = normal_of(t[0], t[1], t[2]);
+  if (const double size = std::sqrt(dot(normal, normal)); size > 0)
+    for (const double side : {-1.0, 1.0}) depth_along(times(normal, side / size));
+  for (std::size_t k = 0; k < 3; ++k) {
+    depth_along(nearest_of(capsule, t[k]).normal);
+    const Vec3 edge = minus(t[(k + 1) % 3], t[k]);
+    const double length = std::sqrt(dot(edge, edge));
+    if (length == 0) continue;
+    const auto [one, other] = across(times(edge, 1 / length));
+    const auto depth_at = [&, one = one, other = other](double turn) {
+      return depth_along(plus(times(one, std::cos(turn)), times(other, std::sin(turn))));
+    };
+    constexpr int kTries = 24, kThirds = 12;
+    constexpr double kStep = 2 * std::numbers::pi / kTries;
+    double middle = 0, least = 1e300;
+    for (int n = 0; n < kTries; ++n)
+      if (const double depth = depth_at(n * kStep); depth < least) {
+        least = depth;
+        middle = n * kStep;
+      }
+    double low = middle - kStep, high = middle + kStep;
+    for (int n = 0; n < kThirds; ++n) {
+      const double third = (high - low) / 3;
+      if (depth_at(low + third) < depth_at(high - third))
+        high -= third;
+      else
+        low += third;
+    }
+  }
+  return best.depth > 0 ? best : Overlap{};
+}
+
+double feature_of(const TaperedCapsule& capsule) {
+  return Hull(capsule).least();
+}
+
+ShapeMesh mesh_of(const TaperedCapsule& capsule) {
+  const Hull hull(capsule);
+  const bool ball = hull.inverse_square == 0;
+  const Vec3 along = ball ? Vec3{0, 1, 0} : times(hull.axis, std::sqrt(hull.inverse_square));
+  const auto [s, t] = across(along);
+  constexpr int kCap = 16;  // rings of each cap; one more band joins the two
+  constexpr double kQuarter = std::numbers::pi / 2;
+  const auto normal = [&, s = s, t = t](double u, double v) {
+    const double ring = v * (2 * kCap + 1);
+    const double rise = ring <= kCap
+                            ? -kQuarter + (hull.rise + kQuarter) * ring / kCap
+                            : hull.rise + (kQuarter - hull.rise) * (ring - 1 - kCap) / kCap;
+    const double turn = 2 * std::numbers::pi * u;
+    return plus(times(along, std::sin(rise)),
+                times(plus(times(s, std::cos(turn)), times(t, std::sin(turn))), std::cos(rise)));
+  };
+  ShapeMesh mesh;
+  add_patch(
+      mesh, 48, 2 * kCap + 1,
+      [&](double u, double v) {
+        const double end = v > 0.5 ? 1 : 0;
+        return plus(plus(hull.from, times(hull.axis, end)),
+                    times(normal(u, v), hull.radius + end * hull.growth));
+      },
+      normal);
+  return mesh;
+}
+
+}  // namespace weft::physics
+
+#endif
