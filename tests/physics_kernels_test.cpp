@@ -199,8 +199,8 @@ void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Featur
   if (has.multipliers) r.lambda = p.lambda.data();
   r.limit = has.limit ? physics::LimitSweep::once : physics::LimitSweep::none;
   if (has.limit) r.inverse_dt = 100;
-  // Gauss–Seidel gathers what compliant constraints find.
-  if (has.compliance > 0 && !jacobi) r.u = p.previous.row(0);
+  // Gauss–Seidel gathers what constraints find.
+  if (!has.limit && !jacobi) r.u = p.previous.row(0);
   if (has.alike) {
     p.weigh_alike();
     r.row_w = p.row_w.data();

@@ -34,11 +34,9 @@ void note_projection(const Scene& scene, int count, std::vector<std::string>& no
 }
 
 // Positions are rounded once a substep: what goes less far in it than half of a unit in the last place stays
-// where it is. Positional sweeps round them at every constraint, and velocities follow: momentum strays, at random,
-// by about a unit over dt in each substep.
-void note_rounding(const Cloths& cloths, Method method, double dt,
-                   std::vector<std::string>& notes) {
-  constexpr double kSlow = 0.01, kStrays = 0.1;  // m/s
+// where it is.
+void note_rounding(const Cloths& cloths, double dt, std::vector<std::string>& notes) {
+  constexpr double kSlow = 0.01;  // m/s
   float farthest = 0;
   for (const auto& step : cloths) {
     const Particles& p = step->particles();
@@ -48,14 +46,10 @@ void note_rounding(const Cloths& cloths, Method method, double dt,
     });
   }
   const double unit = std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
-  const std::string such = "substeps of " + number(dt) + " s are so short that ";
   if (const double slowest = unit / 2 / dt; slowest >= kSlow)
-    notes.push_back(such + "single precision does not move what is slower than " + number(slowest) +
-                    " m/s; longer ones are more exact");
-  if (const double strays = unit / dt / std::sqrt(dt);
-      method == Method::positional && strays >= kStrays)
-    notes.push_back(such + "positional sweeps, which round positions, change speeds by about " +
-                    number(strays) + " m/s in a second; longer ones, or method compliant, do not");
+    notes.push_back("substeps of " + number(dt) +
+                    " s are so short that single precision does not move what is slower than " +
+                    number(slowest) + " m/s; longer ones are more exact");
 }
 
 }  // namespace
@@ -74,7 +68,7 @@ void Simulation::State::choose_method_and_substeps() {
     count = projection_substeps(scene);
     note_projection(scene, count, notes);
   }
-  note_rounding(cloths, time_step.method, scene.time.frame / count, notes);
+  note_rounding(cloths, scene.time.frame / count, notes);
   note_models(notes);
   plan = describe_stages();
   plan.dt_limit = std::isfinite(time_step.limit) ? time_step.limit : 0;

@@ -12,7 +12,7 @@ void apply_corrections(const AdvanceRow& r) {
     Wide3 change = positive_zeros(load3(r.f, i));
     if (r.w) change = change * load(r.w + i);
     store3(r.x, i, load3(r.x, i) + change);
-    if (r.inverse_dt > 0) store3(r.v, i, load3(r.v, i) + change * wide(r.inverse_dt));
+    store3(r.v, i, load3(r.v, i) + change * wide(r.inverse_dt));
     store3(r.f, i, Wide3{});
   }
 }

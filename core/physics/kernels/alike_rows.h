@@ -145,24 +145,24 @@ class BetweenRowsAlike {
 
   WEFT_INLINE void run() {
     const int end = count_ + (kNear | kFar);
-    if constexpr (kShifted) next_ = position<kDisplaced>(kNear ? near_ : far_, 0);
+    if constexpr (kShifted) next_ = corrected(kNear ? near_ : far_, 0);
     for (int a = 0; a < end; a += kLanes) block(a, end);
   }
 
  private:
-  static constexpr bool kMultipliers = R == Rule::multipliers, kDisplaced = displaced(R);
+  static constexpr bool kMultipliers = R == Rule::multipliers;
   static constexpr bool kShifted = kNear + kFar > 0;
 
   WEFT_INLINE Wide3 edge(int a, int end) {
     if constexpr (kShifted) {
       const Wide3 b = next_;
-      if (a + kLanes < end) next_ = position<kDisplaced>(kNear ? near_ : far_, a + kLanes);
+      if (a + kLanes < end) next_ = corrected(kNear ? near_ : far_, a + kLanes);
       const Wide3 shifted{following<1>(b.x, next_.x), following<1>(b.y, next_.y),
                           following<1>(b.z, next_.z)};
-      const Wide3 other = position<kDisplaced>(kNear ? far_ : near_, a);
+      const Wide3 other = corrected(kNear ? far_ : near_, a);
       return kNear ? other - shifted : shifted - other;
     }
-    return position<kDisplaced>(far_, a) - position<kDisplaced>(near_, a);
+    return corrected(far_, a) - corrected(near_, a);
   }
 
   WEFT_INLINE void block(int a, int end) {
@@ -189,8 +189,8 @@ class BetweenRowsAlike {
       past_e = edges_.next(e);
       past_scale = scales_.next(kNear ? ends.near : ends.far);
     }
-    float* const near = movable<kDisplaced>(near_) + a;
-    float* const far = movable<kDisplaced>(far_) + a;
+    float* const near = near_.u + a;
+    float* const far = far_.u + a;
     const std::ptrdiff_t plane = near_.plane;
     store_planes(near, plane,
                  fma(kNear ? past_e : e, kNear ? past_scale : ends.near, load_planes(near, plane)));
@@ -234,7 +234,7 @@ class AlongRowAlike {
   static constexpr int kChains = kLanes == 1 ? N : 1, kNext = kLanes == 1 ? N : kLanes;
   static constexpr int kStep = kRows ? kLanes : 2 * kNext;    // lanes from pair to pair
   static constexpr int kGroup = kRows ? kLanes / 2 : kLanes;  // ends of one row
-  static constexpr bool kMultipliers = R == Rule::multipliers, kDisplaced = displaced(R);
+  static constexpr bool kMultipliers = R == Rule::multipliers;
 
   // Two blocks, parted: where their first colour has put them, by how much it has moved near ends, and how
   // many times as much the far ones, the other way.
@@ -288,7 +288,7 @@ class AlongRowAlike {
 
   WEFT_INLINE Blocks first_colour(int a) const {
     Blocks b;
-    const Wide3 one = position<kDisplaced>(row_, a), two = position<kDisplaced>(row_, a + apart_);
+    const Wide3 one = corrected(row_, a), two = corrected(row_, a + apart_);
     b.at[0] = {one.x, two.x};
     b.at[1] = {one.y, two.y};
     b.at[2] = {one.z, two.z};
@@ -317,16 +317,11 @@ class AlongRowAlike {
       const Wide back = preceding<N, kGroup>(carried_[k], far);
       carried_[k] = far;
       Parting<N> moved;
-      moved.near = (kDisplaced ? b.change[k] : b.at[k].near) - back;
-      moved.far = kDisplaced ? fnma(b.change[k], b.ratio, change) : b.at[k].far + change;
-      float* const at = movable<kDisplaced>(row_) + k * row_.plane + a;
-      Wide first = moved.first(), second = moved.second();
-      if constexpr (kDisplaced) {
-        first = load(at) + first;
-        second = load(at + apart_) + second;
-      }
-      store(at, first);
-      store(at + apart_, second);
+      moved.near = b.change[k] - back;
+      moved.far = fnma(b.change[k], b.ratio, change);
+      float* const at = row_.u + k * row_.plane + a;
+      store(at, load(at) + moved.first());
+      store(at + apart_, load(at + apart_) + moved.second());
     }
     if constexpr (kMultipliers) {
       store(lambdas_ + a, lambda.first());
@@ -352,7 +347,7 @@ WEFT_INLINE void along_row_alike(const ProjectRows& p, int j, int colour, const 
   LongDelay3 delay(p.far);
   for (int a = 0; a < p.count + p.far; a += kLanes) {
     const WideInt active = lanes_at(lanes + a);
-    const Wide3 e = position<displaced(R)>(far, a) - position<displaced(R)>(near, a);
+    const Wide3 e = corrected(far, a) - corrected(near, a);
     Wide lambda{}, before{};
     if constexpr (kMultipliers) lambda = before = load(lambdas + a);
     const Wide scale = scale_alike<kMultipliers>(c, e, lambda);
@@ -362,7 +357,7 @@ WEFT_INLINE void along_row_alike(const ProjectRows& p, int j, int colour, const 
                                     scale, before, lambda);
     if constexpr (kMultipliers) store(lambdas + a, select(active, lambda, before));
     const Wide3 change = e * select(active, ends.near, Wide{});
-    shift<displaced(R)>(near, a, change - delay.next(e * select(active, ends.far, Wide{})));
+    gather(near, a, change - delay.next(e * select(active, ends.far, Wide{})));
   }
 }
 

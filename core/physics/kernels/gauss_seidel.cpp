@@ -34,7 +34,7 @@ WEFT_INLINE Wide3 solve(const ProjectRows& p, Wide3 e, Wide wa, Wide wb, int j, 
   const Wide length = sqrt(squared_length(e));
   Wide violation = length - p.rest, inertia = (wa + wb) * p.weight;
   const Wide compliance = compliance_of(p, j, a);
-  if constexpr (displaced(R))
+  if constexpr (R == Rule::compliant || R == Rule::multipliers)
     inertia = inertia + compliance;
   else
     active = active & (inertia > 0.0f);  // two pinned ends have nothing to move
@@ -64,7 +64,7 @@ template <Rule R>
 WEFT_INLINE Wide3 limit_block(const ProjectRows& p, const ProjectedRow& near,
                               const ProjectedRow& far, Wide wa, Wide wb, int j, int a,
                               WideInt active) {
-  const Wide3 e = position<false>(far, a) - position<false>(near, a);
+  const Wide3 e = position(far, a) - position(near, a);
   const Wide square = dot(e, e), inertia = wa + wb, dt2 = wide(p.dt * p.dt);
   float* const forces = p.lambda + std::ptrdiff_t(j) * p.stride + a;
   Wide force = load(forces);
@@ -99,7 +99,8 @@ WEFT_INLINE Wide3 solve_block(const ProjectRows& p, const ProjectedRow& near,
                               WideInt active) {
   if constexpr (limits(R) && R != Rule::limit)
     return limit_block<R>(p, near, far, wa, wb, j, a, active);
-  const Wide3 e = position<displaced(R)>(far, a) - position<displaced(R)>(near, a);
+  const Wide3 e =
+      limits(R) ? position(far, a) - position(near, a) : corrected(far, a) - corrected(near, a);
   if constexpr (R == Rule::limit) {
     // Most blocks have nothing too long: the root is not worth taking there. Each lane is asked, so that
     // it does not matter which others are in its block.
@@ -131,7 +132,7 @@ WEFT_INLINE void move_end(const ProjectRows& p, const ProjectedRow& r, int i, Wi
       store_planes(v, r.plane, select(some, v0 + change * wide(p.inverse_dt), v0));
     store_planes(r.x + i, r.plane, select(some, x0 + change, x0));
   } else {
-    shift<displaced(R)>(r, i, change);
+    gather(r, i, change);
   }
 }
 
@@ -171,7 +172,7 @@ WEFT_INLINE bool any_to_limit(const ProjectRows& p, int j) {
   const ProjectedRow near = projected_row(p, j, p.near), far = projected_row(p, j + p.dj, p.far);
   WideInt over{};
   for (int a = 0; a < p.count; a += kLanes) {
-    const Wide3 e = position<false>(far, a) - position<false>(near, a);
+    const Wide3 e = position(far, a) - position(near, a);
     WideInt longer = dot(e, e) > p.rest * p.rest;
     if constexpr (R == Rule::carry || R == Rule::hold)
       longer = longer | (load(p.lambda + std::ptrdiff_t(j) * p.stride + a) > 0.0f);

@@ -9,9 +9,8 @@
 namespace weft::WEFT_KERNELS {
 namespace {
 
-// kAlike: all particles have one mass, but for columns at the sides where kSides is set, which stand for half;
-// kGains: velocities gain what positions do.
-template <bool kMayTear, bool kAlike, bool kGains, bool kSides>
+// kAlike: all particles have one mass, but for columns at the sides where kSides is set, which stand for half.
+template <bool kMayTear, bool kAlike, bool kSides>
 struct JacobiLaw {
   using Rows = physics::JacobiRows;
   using Constants = physics::JacobiConstants;
@@ -59,21 +58,15 @@ struct JacobiLaw {
     Wide3 change = sum * inverse_mass(r, b);
     if constexpr (kAlike) change = select(lanes_below(b.left), change, Wide3{});
     store_planes(b.x, plane, load_planes(b.x, plane) + change);
-    if constexpr (kGains) {
-      float* const v = r.v.x + lane;
-      store_planes(v, plane, fma(change, wide(r.inverse_dt), load_planes(v, plane)));
-    }
+    float* const v = r.v.x + lane;
+    store_planes(v, plane, fma(change, wide(r.inverse_dt), load_planes(v, plane)));
   }
 };
 
-template <bool kMayTear, bool kAlike, bool kSides>
-void jacobi_rows_of(const physics::JacobiRows& r) {
-  r.inverse_dt > 0 ? plain_rows<JacobiLaw<kMayTear, kAlike, true, kSides>>(r)
-                   : plain_rows<JacobiLaw<kMayTear, kAlike, false, kSides>>(r);
-}
 template <bool kMayTear, bool kAlike>
 void jacobi_rows_of(const physics::JacobiRows& r) {
-  r.sides ? jacobi_rows_of<kMayTear, kAlike, true>(r) : jacobi_rows_of<kMayTear, kAlike, false>(r);
+  r.sides ? plain_rows<JacobiLaw<kMayTear, kAlike, true>>(r)
+          : plain_rows<JacobiLaw<kMayTear, kAlike, false>>(r);
 }
 
 // The corrections of a block of constraints by unit inverse mass.
@@ -82,7 +75,7 @@ WEFT_INLINE Wide3 correction(const ProjectRows& p, const ProjectedRow& near,
                              const ProjectedRow& far, int j, int a) {
   Wide compliance = wide(p.compliance ? p.compliance[j] : 0);
   if (p.inverse_width) compliance = compliance * load(p.inverse_width + a);
-  const Wide3 e = position<false>(far, a) - position<false>(near, a);
+  const Wide3 e = position(far, a) - position(near, a);
   const Wide length = sqrt(squared_length(e));
   const Wide inertia = (load(near.w + a) + load(far.w + a)) * p.weight + compliance;
   Wide violation = length - p.rest;

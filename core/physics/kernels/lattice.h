@@ -65,7 +65,7 @@ struct JacobiRows : PlainRows {
   const JacobiConstants* constants;  // six for each row, as the springs
   float rest[kPlainStencils];        // m
   float weight;                      // of w_a + w_b: 1/relaxation
-  float inverse_dt;                  // > 0: the velocity gains the correction times it [1/s]
+  float inverse_dt;                  // velocities gain corrections times it [1/s]
 };
 
 // One stencil between row j and row j+dj: constraint a joins lane a+near of row j and lane a+far of
@@ -99,7 +99,7 @@ struct ProjectRows {
   int rows;
   int stride;
   Row3 x, v;       // row 0; v is used by strain limits alone
-  Row3 u;          // corrections of row 0, which compliant constraints change in place of x
+  Row3 u;          // corrections of row 0, which all but strain limits change in place of x
   const float* w;  // inverse mass of row 0 [1/kg]
   // Of the inner particles of each row, 0 where there is more than columns to their masses; or null.
   const float* row_w;

@@ -1,9 +1,9 @@
 // What the projection kernels share: where the ends of constraints lie, and their moves.
 //
-// The sweeps of method `positional` move the positions themselves. Those of `compliant` gather the
-// corrections u in arrays of their own and see positions x + u: a velocity must gain just what the
-// sweeps have moved a particle by, and the difference of rounded positions over a small dt is not
-// that. `Displaced` tells the two apart.
+// Sweeps gather the corrections u in arrays of their own and see positions x + u: a velocity must gain
+// just what the sweeps have moved a particle by, and the difference of rounded positions over a small dt
+// is not that. Rounded at every constraint, positions would lose momentum that ends give each other. Strain
+// limits move positions and velocities themselves.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,6 @@ namespace weft::WEFT_KERNELS {
 
 // What differs between the sweeps, so that each kernel holds just its own.
 enum class Rule { rigid, compliant, multipliers, limit, carry, hold, settle };
-constexpr bool displaced(Rule r) {
-  return r == Rule::compliant || r == Rule::multipliers;
-}
 // The rules of the strain limit (lattice.h, LimitSweep).
 constexpr bool limits(Rule r) {
   return r >= Rule::limit;
@@ -35,22 +32,16 @@ WEFT_INLINE ProjectedRow projected_row(const ProjectRows& p, int j, int first) {
   return {p.x.x + at, p.u.x ? p.u.x + at : nullptr, p.x.y - p.x.x, p.w + at};
 }
 
-template <bool Displaced>
 WEFT_INLINE Wide3 position(const ProjectedRow& r, std::ptrdiff_t i) {
-  if constexpr (Displaced) return load_planes(r.x + i, r.plane) + load_planes(r.u + i, r.plane);
   return load_planes(r.x + i, r.plane);
 }
-
-// What the sweeps change.
-template <bool Displaced>
-WEFT_INLINE float* movable(const ProjectedRow& r) {
-  return Displaced ? r.u : r.x;
+// With the corrections so far.
+WEFT_INLINE Wide3 corrected(const ProjectedRow& r, std::ptrdiff_t i) {
+  return position(r, i) + load_planes(r.u + i, r.plane);
 }
 
-template <bool Displaced>
-WEFT_INLINE void shift(const ProjectedRow& r, std::ptrdiff_t i, Wide3 change) {
-  float* const at = movable<Displaced>(r) + i;
-  store_planes(at, r.plane, load_planes(at, r.plane) + change);
+WEFT_INLINE void gather(const ProjectedRow& r, std::ptrdiff_t i, Wide3 change) {
+  store_planes(r.u + i, r.plane, load_planes(r.u + i, r.plane) + change);
 }
 
 // Constraints a … of row j that are not torn.

@@ -49,18 +49,17 @@ class Predict final : public RowStage {
 
 class Velocity final : public RowStage {
  public:
-  Velocity(const ClothParts& parts, bool compliant)
+  explicit Velocity(const ClothParts& parts)
       : RowStage("velocity", "by how far the sweeps moved particles", 0, parts.particles.count(),
                  "particles"),
-        parts_(parts),
-        compliant_(compliant) {}
+        parts_(parts) {}
   Velocities velocities(double dt) const override {
-    return velocity_from_positions(parts_.scene.solver, compliant_, dt) ? Velocities::from_sweeps
-                                                                        : Velocities::left_alone;
+    return velocity_from_positions(parts_.scene.solver, dt) ? Velocities::from_sweeps
+                                                            : Velocities::left_alone;
   }
   void run(int begin, int end, const Substep& s) override {
     if (!s.velocities_wanted) return;
-    if (!velocity_from_positions(parts_.scene.solver, compliant_, s.dt)) return;
+    if (!velocity_from_positions(parts_.scene.solver, s.dt)) return;
     AdvanceRow a = rows_of(parts_, begin, end);
     a.inverse_dt = float(1 / s.dt);
     parts_.kernels.particles.velocity(a);
@@ -68,10 +67,9 @@ class Velocity final : public RowStage {
 
  private:
   ClothParts parts_;
-  bool compliant_;
 };
 
-// What the sweeps of the compliant method have found goes into positions and velocities.
+// What coloured sweeps have found goes into positions and velocities.
 class Corrections final : public RowStage {
  public:
   Corrections(const ClothParts& parts, Rows& corrections)
@@ -119,8 +117,8 @@ std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& correc
   return std::make_unique<Corrections>(parts, corrections);
 }
 
-std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant) {
-  return std::make_unique<Velocity>(parts, compliant);
+std::unique_ptr<RowStage> make_velocity(const ClothParts& parts) {
+  return std::make_unique<Velocity>(parts);
 }
 
 }  // namespace weft::physics

@@ -22,7 +22,7 @@ struct Multipliers {
 // Either may be null.
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* multipliers,
                                        Rows* corrections);
-std::unique_ptr<RowStage> make_velocity(const ClothParts& parts, bool compliant);
+std::unique_ptr<RowStage> make_velocity(const ClothParts& parts);
 // After the sweeps: positions and velocities gain the corrections, which are then zero again.
 std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections);
 

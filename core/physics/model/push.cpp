@@ -7,23 +7,22 @@
 
 namespace weft::physics {
 
-bool velocity_from_positions(const Solver& solver, bool compliant, double dt) {
+bool velocity_from_positions(const Solver& solver, double dt) {
   // Rounding of a position of 1 m over 0.5 ms is 1e-4 m/s, two percent of what gravity adds. Measured:
   // no error gained down to here; at 0.26 ms none on hanging sheets, but cantilevers miss the elastica.
   constexpr double kLeastSubstep = 5e-4;  // s
-  return !compliant || (solver.sweep == Sweep::line && dt >= kLeastSubstep);
+  return solver.sweep == Sweep::line && dt >= kLeastSubstep;
 }
 
-float velocity_gain(const Solver& solver, bool compliant, double dt) {
-  if (velocity_from_positions(solver, compliant, dt)) return 0;
+float velocity_gain(const Solver& solver, double dt) {
+  if (velocity_from_positions(solver, dt)) return 0;
   return float(1 / (dt * implicit_share(solver)));
 }
 
 Push push_of(const ClothParts& parts, double dt) {
   const Solver& solver = parts.scene.solver;
   if (is_explicit(parts.method)) return {dt, true};
-  const bool waits = velocity_from_positions(solver, parts.method == Method::compliant, dt);
-  return {dt * implicit_share(solver), !waits};
+  return {dt * implicit_share(solver), !velocity_from_positions(solver, dt)};
 }
 
 double implicit_share(const Solver& solver) {

@@ -10,10 +10,10 @@ double implicit_share(const Solver& solver);
 
 // Where velocities get what the sweeps did from: from how far particles were moved, or, where rounding
 // of positions over dt would show, from every correction as it is computed (which costs a line sweep a
-// fourth more). `positional` always takes the positions, the coloured sweeps of `compliant` never do.
-bool velocity_from_positions(const Solver& solver, bool compliant, double dt);
+// fourth more). Coloured sweeps never take the positions.
+bool velocity_from_positions(const Solver& solver, double dt);
 // 1/s; what stages that move particles multiply corrections by to get their velocity: 0 = nothing.
-float velocity_gain(const Solver& solver, bool compliant, double dt);
+float velocity_gain(const Solver& solver, double dt);
 
 // How a force pushes particles that have just been moved (by springs or predict): as constraints do,
 // for the same share of the substep, and on velocities where these do not get it from positions.

@@ -14,7 +14,7 @@ SecondOrderRow rows_of(const ClothParts& parts, History& h, int j, int end, doub
   SecondOrderRow r{};
   r.columns = (end - j) * l.stride;
   r.dt = float(dt);
-  r.from_positions = velocity_from_positions(parts.scene.solver, true, dt);
+  r.from_positions = velocity_from_positions(parts.scene.solver, dt);
   r.x = l.x.row(j);
   r.v = l.v.row(j);
   r.previous = l.previous.row(j);
@@ -43,8 +43,8 @@ class Predict final : public RowStage {
   }
   // Where what the sweeps did is not in them yet, it adds that itself.
   Velocities velocities(double dt) const override {
-    return velocity_from_positions(parts_.scene.solver, true, dt) ? Velocities::left_alone
-                                                                  : Velocities::used;
+    return velocity_from_positions(parts_.scene.solver, dt) ? Velocities::left_alone
+                                                            : Velocities::used;
   }
   bool moves_particles() const override { return true; }
   void run(int begin, int end, const Substep& s) override {
@@ -84,8 +84,8 @@ class Velocity final : public RowStage {
         parts_(parts),
         history_(history) {}
   Velocities velocities(double dt) const override {
-    return velocity_from_positions(parts_.scene.solver, true, dt) ? Velocities::from_sweeps
-                                                                  : Velocities::used;
+    return velocity_from_positions(parts_.scene.solver, dt) ? Velocities::from_sweeps
+                                                            : Velocities::used;
   }
   void run(int begin, int end, const Substep& s) override {
     if (s.velocities_wanted)

@@ -12,12 +12,11 @@ constexpr float kFree = 1e18f;  // m; the reach of a particle without a tether
 
 class Tethers final : public RowStage {
  public:
-  Tethers(const ClothParts& parts, bool compliant, const std::vector<std::vector<Tether>>& slots,
+  Tethers(const ClothParts& parts, const std::vector<std::vector<Tether>>& slots,
           std::int64_t count)
       : RowStage("tethers", "to at most " + std::to_string(slots.size()) + " pins each", 0, count,
                  "tethers"),
         parts_(parts),
-        compliant_(compliant),
         moving_(std::size_t(parts.particles.count())) {
     for (const Pin& pin : parts.cloth.pins)
       if (pin.moves()) moving_[std::size_t(particle_number(parts.cloth, pin))] = &pin;
@@ -44,15 +43,14 @@ class Tethers final : public RowStage {
   }
 
   Velocities velocities(double dt) const override {
-    return velocity_gain(parts_.scene.solver, compliant_, dt) == 0 ? Velocities::left_alone
-                                                                   : Velocities::used;
+    return velocity_gain(parts_.scene.solver, dt) == 0 ? Velocities::left_alone : Velocities::used;
   }
   void run(int begin, int end, const Substep& s) override {
     // The way over a torn sheet is another.
     if (const Tearing* tearing = parts_.model.tearing(); tearing && tearing->torn() > 0) return;
     Particles& p = parts_.particles;
     TetherRow r{};
-    r.inverse_dt = velocity_gain(parts_.scene.solver, compliant_, s.dt);
+    r.inverse_dt = velocity_gain(parts_.scene.solver, s.dt);
     r.count = int(slots_.size());
     for (int j = begin; j < end; ++j) {
       r.columns = p.count(j);
@@ -132,7 +130,6 @@ class Tethers final : public RowStage {
   }
 
   ClothParts parts_;
-  bool compliant_;                  // velocities gain the corrections as computed
   std::vector<const Pin*> moving_;  // of every particle, null where it has no path
   std::vector<Slot> slots_;
 };
@@ -147,13 +144,13 @@ void add_tether(std::vector<std::vector<Tether>>& slots, int particles, int part
   slots[s][std::size_t(particle)] = tether;
 }
 
-std::unique_ptr<RowStage> make_tethers(const ClothParts& parts, bool compliant,
+std::unique_ptr<RowStage> make_tethers(const ClothParts& parts,
                                        const std::vector<std::vector<Tether>>& slots) {
   std::int64_t count = 0;
   for (const std::vector<Tether>& slot : slots)
     count += std::count_if(slot.begin(), slot.end(), [](const Tether& t) { return t.pin >= 0; });
   if (count == 0) return nullptr;
-  return std::make_unique<Tethers>(parts, compliant, slots, count);
+  return std::make_unique<Tethers>(parts, slots, count);
 }
 
 }  // namespace weft::physics

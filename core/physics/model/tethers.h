@@ -13,7 +13,7 @@ struct Tether {
 };
 
 // Slot s has the s-th tether of every particle, by its number; at most kTethers slots. Null: there is none.
-std::unique_ptr<RowStage> make_tethers(const ClothParts& parts, bool compliant,
+std::unique_ptr<RowStage> make_tethers(const ClothParts& parts,
                                        const std::vector<std::vector<Tether>>& slots);
 
 // Adds a tether to a particle of so many, in the first slot where it has none.

@@ -67,12 +67,11 @@ class BendingForce final : public RowStage {
 
 class BendingConstraints final : public WholeStage {
  public:
-  BendingConstraints(const LatticeParts& parts, bool compliant)
+  explicit BendingConstraints(const LatticeParts& parts)
       : WholeStage("bending", "curvature energy, rows and columns each solved as a whole, twist",
                    terms(parts.lattice), "constraints"),
         parts_(parts),
-        batches_(parts.lattice, parts.kernels, kBendScratch),
-        compliant_(compliant) {
+        batches_(parts.lattice, parts.kernels, kBendScratch) {
     if (parts.scene.solver.order == 2) batches_.follow_masses();
     if (left(parts, &BendLinks::along, 0))
       torn_ = TurnedLinks<float>(parts.lattice, batches_.row_groups());
@@ -85,15 +84,14 @@ class BendingConstraints final : public WholeStage {
   }
 
   Velocities velocities(double dt) const override {
-    return velocity_gain(parts_.scene.solver, compliant_, dt) == 0 ? Velocities::left_alone
-                                                                   : Velocities::used;
+    return velocity_gain(parts_.scene.solver, dt) == 0 ? Velocities::left_alone : Velocities::used;
   }
   void run(const Substep& s, Threads& threads) override {
     const BendingStiffness k = bending_stiffness(parts_.cloth);
     const double h = s.dt * implicit_share(parts_.scene.solver);
     const auto compliance = [&](double stiffness) { return float(1 / (stiffness * h * h)); };
     if (s.dt != dt_) set_compliance(compliance(k.along), compliance(k.across), s.dt);
-    inverse_dt_ = velocity_gain(parts_.scene.solver, compliant_, s.dt);
+    inverse_dt_ = velocity_gain(parts_.scene.solver, s.dt);
     batches_.begin(threads);
     along_rows();
     along_columns();
@@ -188,7 +186,6 @@ class BendingConstraints final : public WholeStage {
   LatticeParts parts_;
   LineBatches batches_;
   TurnedLinks<float> torn_;             // of the rows
-  bool compliant_;                      // velocities gain the corrections as computed
   float inverse_dt_ = 0;                // 1/s, or 0
   double dt_ = 0;                       // s, of the compliances
   AlignedArray<float> rows_, columns_;  // 1/kg, of the second differences along each
@@ -200,7 +197,7 @@ std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Method method) {
   if (!parts.cloth.bending.given()) return nullptr;
   if (method == Method::spring || method == Method::spring_friction)
     return std::make_unique<BendingForce>(parts);
-  return std::make_unique<BendingConstraints>(parts, method == Method::compliant);
+  return std::make_unique<BendingConstraints>(parts);
 }
 
 }  // namespace weft::physics

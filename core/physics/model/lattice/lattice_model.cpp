@@ -15,8 +15,7 @@ namespace {
 // Whether a stage asks where particles were before the substep: velocities from positions, and the
 // second order.
 bool keeps_previous(const Solver& solver, Method method) {
-  if (is_explicit(method)) return false;
-  return method == Method::positional || solver.sweep == Sweep::line || solver.order == 2;
+  return !is_explicit(method) && (solver.sweep == Sweep::line || solver.order == 2);
 }
 
 }  // namespace
@@ -93,7 +92,7 @@ void LatticeModel::append_projections(StageList& list) {
   if (sweep.compliant && !lines && solver.iterations > 1)
     multipliers_ = std::make_unique<Multipliers>(lattice_, stencils_.size());
   sweep.multipliers = multipliers_.get();
-  if (sweep.compliant && solver.sweep != Sweep::jacobi && !lines)
+  if (solver.sweep == Sweep::gauss_seidel)
     corrections_ = std::make_unique<Rows>(lattice_.rows, lattice_.stride);
   sweep.corrections = corrections_.get();
   if (solver.order == 2)
@@ -104,7 +103,7 @@ void LatticeModel::append_projections(StageList& list) {
                                  : make_predict(parts_, multipliers_.get(), corrections_.get()));
   list.choose("wind", make_wind(parts_, seed_), "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
-  list.choose("tethers", solver.tethers ? make_attachments(parts_, sweep.compliant) : nullptr,
+  list.choose("tethers", solver.tethers ? make_attachments(parts_) : nullptr,
               solver.tethers ? "nothing is pinned" : "off in the scene");
   if (lines) {
     const float share = sweep.compliant ? 1.0f : float(2 * parts_.cloth.positional_k);
@@ -125,8 +124,8 @@ void LatticeModel::append_projections(StageList& list) {
   list.choose("bending", make_bending(parts_, method_), "bending is 0");
   if (history_)
     list.stages.push_back(make_velocity_second_order(parts_, *history_));
-  else if (!sweep.compliant || lines)
-    list.stages.push_back(make_velocity(parts_, sweep.compliant));
+  else if (lines)
+    list.stages.push_back(make_velocity(parts_));
 }
 
 void LatticeModel::append_limits(StageList& list) {

@@ -100,8 +100,7 @@ class Line final : public WholeStage {
   }
 
   Velocities velocities(double dt) const override {
-    return velocity_gain(parts_.scene.solver, options_.compliant, dt) == 0 ? Velocities::left_alone
-                                                                           : Velocities::used;
+    return velocity_gain(parts_.scene.solver, dt) == 0 ? Velocities::left_alone : Velocities::used;
   }
   void run(const Substep& s, Threads& threads) override {
     if (s.dt != dt_) set_compliance(s.dt);
@@ -213,7 +212,7 @@ class Line final : public WholeStage {
     }
   }
 
-  float inverse_dt() const { return velocity_gain(parts_.scene.solver, options_.compliant, dt_); }
+  float inverse_dt() const { return velocity_gain(parts_.scene.solver, dt_); }
   void set_compliance(double dt) {
     dt_ = dt;
     for (auto* stencils : all())

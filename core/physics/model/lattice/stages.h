@@ -43,7 +43,7 @@ std::unique_ptr<RowStage> make_wind(const LatticeParts& parts, std::uint64_t see
 struct SweepOptions {
   bool compliant = false;
   Multipliers* multipliers = nullptr;
-  Rows* corrections = nullptr;  // the compliant Gauss–Seidel sweep gathers what it finds there
+  Rows* corrections = nullptr;  // the Gauss–Seidel sweeps of a substep gather what they find there
   double limit = 0;             // > 0: a sweep of the strain limit,
   double held = 0;              // what forces hold of it: as much or less,
   double strongest = 0;         // and the greatest that lasts to the next substep [N]
@@ -54,7 +54,7 @@ void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options,
 void append_held_limit(const LatticeParts& parts, Multipliers& forces, Stages& stages);
 // The strain limit, one constraint after the other.
 std::unique_ptr<RowStage> make_course_limit(const LatticeParts& parts);
-std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts, bool compliant);
+std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts);
 // The curvature energy, as a force on the velocities or as constraints.
 std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Method method);
 

@@ -53,7 +53,7 @@ class ProjectedStencils {
     return sum;
   }
 
-  // Compliant sweeps gather corrections, the strain limit changes both.
+  // Sweeps gather corrections, the strain limit changes both.
   Velocities velocities() const {
     return options_.limit > 0 ? Velocities::used : Velocities::left_alone;
   }
@@ -174,15 +174,6 @@ float relaxation(const std::vector<Stencil>& stencils, int sweeps) {
   return float(0.95 * std::floor(kParts * limit + 1e-6) / std::ceil(kParts * largest - 1e-6));
 }
 
-float velocity_share(const LatticeParts& parts, const SweepOptions& options, double dt) {
-  return options.compliant ? float(1 / (dt * implicit_share(parts.scene.solver))) : 0.0f;
-}
-
-// Compliant corrections change velocities as they are computed.
-Velocities velocities_of(const SweepOptions& options) {
-  return options.compliant ? Velocities::used : Velocities::left_alone;
-}
-
 // The six stencils of a plain cloth in one kernel.
 class PlainJacobi final : public PlainRowsStage {
  public:
@@ -203,13 +194,13 @@ class PlainJacobi final : public PlainRowsStage {
   void prepare(double dt) override {
     const float share = options_.compliant ? 1.0f : float(2 * parts_.cloth.positional_k);
     weight_ = 1 / (share * relaxation_);
-    inverse_dt_ = velocity_share(parts_, options_, dt);
+    inverse_dt_ = velocity_gain(parts_.scene.solver, dt);
     for (int j = 0; j < parts_.lattice.rows; ++j)
       for (int f = 0; f < kPlainStencils; ++f)
         constraints_[std::size_t(j) * kPlainStencils + std::size_t(f)] =
             constants_of(parts_.stencils[std::size_t(f)], j, dt);
   }
-  Velocities velocities(double) const override { return velocities_of(options_); }
+  Velocities velocities(double) const override { return Velocities::used; }
   void run(int begin, int end, const Substep& s) override {
     for (int first = begin; first < end;) {
       const float same = alike(first);
@@ -278,7 +269,7 @@ class Jacobi final : public RowStage {
   void prepare(double dt) override {
     for (ProjectedStencils& f : stencils_) f.prepare(dt);
   }
-  Velocities velocities(double) const override { return velocities_of(options_); }
+  Velocities velocities(double) const override { return Velocities::used; }
   void start(const Substep& s) override {
     for (int k = 0; k <= reach; ++k)
       zero(sum_.row(s.slot * (reach + 1) + k), parts_.lattice.stride);
@@ -298,7 +289,7 @@ class Jacobi final : public RowStage {
     a.v = l.v.row(j);
     a.w = l.w(j);
     a.f = sum(j);
-    a.inverse_dt = velocity_share(parts_, options_, s.dt);
+    a.inverse_dt = velocity_gain(parts_.scene.solver, s.dt);
     parts_.kernels.particles.apply_corrections(a);
   }
 

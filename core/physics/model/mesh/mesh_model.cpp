@@ -129,7 +129,7 @@ void MeshModel::append_projections(StageList& list) {
               "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
   if (solver.tethers && tethers_.empty()) tethers_ = attachments();
-  list.choose("tethers", solver.tethers ? make_tethers(parts_, true, tethers_) : nullptr,
+  list.choose("tethers", solver.tethers ? make_tethers(parts_, tethers_) : nullptr,
               solver.tethers ? "nothing is pinned" : "off in the scene");
   if (material_.membrane)
     append_membrane(list);
@@ -147,7 +147,7 @@ void MeshModel::append_projections(StageList& list) {
   if (history_)
     list.stages.push_back(make_velocity_second_order(parts_, *history_));
   else if (lines)
-    list.stages.push_back(make_velocity(parts_, true));
+    list.stages.push_back(make_velocity(parts_));
 }
 
 std::vector<std::vector<Tether>> MeshModel::attachments() const {

@@ -56,7 +56,7 @@ class StoreRecords final : public RowStage {
 
  private:
   float gain(double dt) const {
-    return limit_ ? float(1 / dt) : velocity_gain(parts_.scene.solver, true, dt);
+    return limit_ ? float(1 / dt) : velocity_gain(parts_.scene.solver, dt);
   }
   ClothParts parts_;
   AlignedArray<float>& records_;

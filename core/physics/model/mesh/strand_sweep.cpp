@@ -66,7 +66,7 @@ class StrandSweeps::Solver : private TornParts {
   const std::string& words() const { return words_; }
   std::int64_t count() const { return count_; }
   const ClothParts& parts() const { return parts_; }
-  float gain(double dt) const { return velocity_gain(parts_.scene.solver, true, dt); }
+  float gain(double dt) const { return velocity_gain(parts_.scene.solver, dt); }
   std::size_t bytes() const {
     std::size_t bytes = place_.size() * sizeof(Place) + (membrane_ ? membrane_->bytes() : 0);
     for (const StrandBatch& b : batches_)
