@@ -1,5 +1,8 @@
 // Looks, fabrics and the quality of the picture, by keys and in the panel.
+#include <stb_image_write.h>
+
 #include <set>
+#include <vector>
 
 #include "screen.h"
 
@@ -7,6 +10,13 @@ namespace weft {
 namespace {
 
 using Json = nlohmann::json;
+
+// By a click beside the cloth: hints go at the first touch.
+void end_hints(const Screen& screen) {
+  screen.wait("hints", [](const Json& now) { return now["controls"].contains("hints"); });
+  screen.click(1200, 600);
+  screen.wait("none", [](const Json& now) { return !now["controls"].contains("hints"); });
+}
 
 TEST_F(Window, EveryLookShowsAtItsKey) {
   Screen screen(folder);
@@ -31,9 +41,7 @@ TEST_F(Window, EveryLookShowsAtItsKey) {
 TEST_F(Window, LooksHaveControlsOfTheirOwn) {
   Screen screen(folder);
   screen.open("sphere --paused");
-  screen.wait("hints", [](const Json& now) { return now["controls"].contains("hints"); });
-  screen.click(1200, 600);  // beside the cloth; hints go at the first touch
-  screen.wait("none", [](const Json& now) { return !now["controls"].contains("hints"); });
+  end_hints(screen);
   screen.click("Look");
   screen.click("look pbr");
   screen.wait_for("look", "pbr");
@@ -93,6 +101,75 @@ TEST_F(Window, FabricsAreWornAndQualityIsChosen) {
   screen.wait_picture("a fine picture",
                       [&](const std::string& now) { return difference(now, before) > 0.05; });
   EXPECT_TRUE(screen.now()["faults"].empty()) << screen.now()["faults"];
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
+// Every map of the look pbr is one's own by its field; what cannot be read is told, and the picture before stays.
+TEST_F(Window, MapsAreReplacedByFiles) {
+  const auto write_plain = [&](const std::string& name, std::vector<unsigned char> rgb) {
+    ASSERT_NE(stbi_write_png((folder / name).c_str(), 1, 1, 3, rgb.data(), 0), 0);
+  };
+  write_plain("color.png", {20, 200, 40});
+  write_plain("none.png", {0, 0, 0});
+  write_plain("rough.png", {255, 255, 255});
+  write_plain("slanted.png", {240, 128, 170});
+  folder.write("broken.png", folder.read("color.png").substr(0, 45));
+  // The head alone: the size is refused before its 300 MB are asked for.
+  const auto text = [](const char* bytes, std::size_t count) { return std::string(bytes, count); };
+  folder.write("huge.png", "\x89PNG\r\n\x1a\n" +
+                               text("\0\0\0\x0dIHDR\0\0\x27\x10\0\0\x27\x10\x08\x02\0\0\0", 21) +
+                               text("\0\0\0\0\0\0\0\0IDAT\0\0\0\0", 16));
+  ASSERT_EQ(run("mkfifo pipe.png"), 0);
+
+  Screen screen(folder);
+  screen.open("sphere --shader pbr --paused");
+  end_hints(screen);
+  screen.click("Look");
+  screen.wait("its controls", [](const Json& now) { return now["controls"].contains("files"); });
+  screen.click("files");
+  screen.wait("its fields", [](const Json& now) { return now["controls"].contains("normal map"); });
+  const auto enter = [&](const std::string& control, const std::string& path) {
+    screen.click(control);
+    screen.wait_for("typing", true);
+    screen.type("key ctrl+a key BackSpace type '" + path + "'");
+    screen.key("Return");
+    screen.wait_for("typing", false);
+    screen.type("mousemove 100 790");
+  };
+  const auto changed = [&](const std::string& than) {
+    screen.wait_picture("another picture",
+                        [&](const std::string& now) { return difference(now, than) > 0.05; });
+    screen.wait_for("coarse", false);
+    return screen.picture();
+  };
+  screen.type("mousemove 100 790");
+  screen.wait_for("coarse", false);
+  const std::string own = screen.picture();
+  std::string before = own;
+  for (const auto& [control, file] : {std::pair("base colour map", "color.png"),
+                                      {"metallic map", "none.png"},
+                                      {"roughness map", "rough.png"},
+                                      {"normal map", "slanted.png"}}) {
+    enter(control, file);
+    before = changed(before);
+    EXPECT_TRUE(screen.now()["faults"].empty()) << screen.now()["faults"];
+  }
+  for (const char* file : {"broken.png", "missing.png", "huge.png", "pipe.png"}) {
+    enter("normal map", file);
+    screen.wait("its fault", [&](const Json& now) {
+      return now["faults"].dump().find(file) != std::string::npos;
+    });
+    screen.click("message");  // it covers a part of the picture
+    screen.wait("no fault", [](const Json& now) { return now["faults"].empty(); });
+    screen.wait_picture("the map before",
+                        [&](const std::string& now) { return difference(now, before) < 0.01; });
+  }
+  screen.click("files");
+  screen.wait("room", [](const Json& now) { return now["controls"].contains("Standard look"); });
+  screen.click("Standard look");
+  screen.type("sleep 0.5 mousemove 100 790");
+  screen.wait_picture("the program's own maps",
+                      [&](const std::string& now) { return difference(now, own) < 0.01; });
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 

@@ -1,5 +1,9 @@
 // The looks and their settings.
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
 #include <initializer_list>
+#include <iterator>
 
 #include "panel/panel.h"
 #include "panel/theme.h"
@@ -44,6 +48,41 @@ void switches(std::initializer_list<Switch> all) {
   }
 }
 
+// The file in the place of one of the program's own pictures; true when it is entered.
+bool picture_file(
+    const char* label, std::string& path,
+    const char* about = "A PNG or JPEG file, then Enter; nothing: the program's own") {
+  std::string typed = path;
+  const bool entered = ImGui::InputTextWithHint(label, "the program's own", &typed,
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
+  mark(label);
+  tooltip(about);
+  if (entered) path = typed;
+  return entered;
+}
+
+void sky_folder(std::string& path) {
+  picture_file("sky", path, "A folder of posx, negx, … negz (.png or .jpg), then Enter");
+}
+
+void draw_maps(Workspace& workspace) {
+  constexpr const char* kMaps[] = {"base colour map", "metallic map", "roughness map",
+                                   "normal map"};  // in the order of MaterialMap
+  LookSettings& s = workspace.settings;
+  switches({{"maps", s.maps}});
+  tooltip("Base colour, metallic, roughness and normals from maps");
+  const bool files = ImGui::TreeNode("files");
+  mark("files");
+  if (files) {
+    for (std::size_t map = 0; map < std::size(kMaps); ++map)
+      if (picture_file(kMaps[map], workspace.pictures.material[map])) s.maps = true;
+    sky_folder(workspace.pictures.sky);
+    ImGui::TreePop();
+  }
+  slider("normal scale", s.normal_scale, 0, 10);
+  slider("repeats", s.texture_repeats, 1, 20, "%.0f");
+}
+
 void draw_list(Workspace& workspace) {
   const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
   int column = 0;
@@ -62,12 +101,7 @@ void draw_material(Workspace& workspace) {
   LookSettings& s = workspace.settings;
   const std::string_view look = workspace.look->name;
   const auto is = [&](std::string_view name) { return look == name; };
-  if (is("pbr")) {
-    switches({{"maps", s.maps}});
-    tooltip("Base colour, metallic, roughness and normals from maps (--base-color-map, …)");
-    slider("normal scale", s.normal_scale, 0, 10);
-    slider("repeats", s.texture_repeats, 1, 20, "%.0f");
-  }
+  if (is("pbr")) draw_maps(workspace);
   color("front", s.color);
   ImGui::SameLine();
   color("back", s.back_color);
@@ -95,13 +129,14 @@ void draw_material(Workspace& workspace) {
   }
   if (is("texture")) {
     slider("repeats", s.texture_repeats, 1, 20, "%.0f");
-    const std::string& file = workspace.pictures.texture;
-    if (!file.empty()) ImGui::TextWrapped("%s", file.c_str());
+    picture_file("texture", workspace.pictures.texture);
   }
   if (is("bump") || is("displacement")) {
     slider("normal scale", s.normal_scale, 0, 10);
     slider("repeats", s.height_repeats, 1, 20, "%.0f");
+    picture_file("height map", workspace.pictures.height_map);
   }
+  if (is("mirror")) sky_folder(workspace.pictures.sky);
   if (is("displacement")) slider("height [m]", s.height_scale, 0, 0.1f);
   if (is("phong_force") || is("ggx_force"))
     slider("force scale", s.force_scale, 0.01f, 100, "%.2f", ImGuiSliderFlags_Logarithmic);

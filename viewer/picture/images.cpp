@@ -5,6 +5,7 @@
 #include <stb_image_write.h>
 
 #include <filesystem>
+#include <memory>
 
 #include "failure.h"
 #include "weft/output.h"
@@ -84,17 +85,44 @@ Texture upload(const std::uint8_t* rgb, int width, int height, GLint format) {
   return texture;
 }
 
-// The user's file; an empty object and the reason when it cannot be read.
+struct Freed {
+  void operator()(stbi_uc* pixels) const { stbi_image_free(pixels); }
+};
+
+struct Pixels {
+  int width = 0, height = 0;
+  std::unique_ptr<stbi_uc, Freed> rgb;  // none, and the reason in `error`, when it cannot be read
+};
+
+// The size is looked at before memory is asked for: a file of some kilobytes can claim gigabytes.
+Pixels read_pixels(const std::string& path, std::string& error) {
+  Pixels pixels;
+  std::error_code ignored;
+  int channels = 0;
+  GLint most = kMostPixels;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+  most = std::min(most, kMostPixels);
+  const auto refuse = [&](const std::string& what) {
+    const std::string side = std::to_string(most);
+    error = printable(path) + ": " + what + " (a PNG or JPEG file of at most " + side + " × " +
+            side + " pixels is needed)";
+  };
+  if (!std::filesystem::is_regular_file(path, ignored))  // a pipe would be waited for
+    refuse("no such file");
+  else if (stbi_info(path.c_str(), &pixels.width, &pixels.height, &channels) == 0)
+    refuse(stbi_failure_reason());
+  else if (std::max(pixels.width, pixels.height) > most)
+    refuse(std::to_string(pixels.width) + " × " + std::to_string(pixels.height) + " pixels");
+  else if (pixels.rgb.reset(stbi_load(path.c_str(), &pixels.width, &pixels.height, &channels, 3));
+           pixels.rgb == nullptr)
+    refuse(stbi_failure_reason());
+  return pixels;
+}
+
 Texture load_file(const std::string& path, GLint format, std::string& error) {
-  int width = 0, height = 0, channels = 0;
-  stbi_uc* const pixels = stbi_load(path.c_str(), &width, &height, &channels, 3);
-  if (pixels == nullptr) {
-    error = path + ": " + stbi_failure_reason() + " (a PNG or JPEG file is needed)";
-    return {};
-  }
-  Texture texture = upload(pixels, width, height, format);
-  stbi_image_free(pixels);
-  return texture;
+  const Pixels pixels = read_pixels(path, error);
+  if (pixels.rgb == nullptr) return {};
+  return upload(pixels.rgb.get(), pixels.width, pixels.height, format);
 }
 
 float lattice_noise(int x, int y, int z) {
@@ -179,21 +207,21 @@ bool load_face(const std::string& folder, int face, int& size, std::string& erro
   for (const char* extension : {".png", ".jpg"}) {
     const std::string path = folder + "/" + names[face] + extension;
     if (!std::filesystem::exists(path)) continue;
-    int width = 0, height = 0, channels = 0;
-    stbi_uc* const pixels = stbi_load(path.c_str(), &width, &height, &channels, 3);
-    const bool good = pixels != nullptr && width == height && (size == 0 || size == width);
+    const Pixels pixels = read_pixels(path, error);
+    const int width = pixels.width;
+    if (pixels.rgb == nullptr) return false;
+    const bool good = width == pixels.height && (size == 0 || size == width);
     if (good) {
       glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
       glTexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + static_cast<GLenum>(face), 0, GL_SRGB8, width,
-                   height, 0, GL_RGB, GL_UNSIGNED_BYTE, pixels);
+                   width, 0, GL_RGB, GL_UNSIGNED_BYTE, pixels.rgb.get());
       size = width;
     } else {
-      error = path + ": not a square picture of the same size as the other faces";
+      error = printable(path) + ": not a square picture of the same size as the other faces";
     }
-    stbi_image_free(pixels);
     return good;
   }
-  error = folder + ": no " + names[face] + ".png or .jpg";
+  error = printable(folder) + ": no " + names[face] + ".png or .jpg";
   return false;
 }
 
@@ -222,8 +250,7 @@ Texture load_picture(const std::string& path, std::string& error) {
 }
 
 Texture load_texture(const std::string& path, std::string& error) {
-  if (!path.empty())
-    if (Texture texture = load_file(path, GL_SRGB8, error)) return texture;
+  if (!path.empty()) return load_file(path, GL_SRGB8, error);
   std::vector<std::uint8_t> rgb;
   rgb.reserve(3 * kWeaveSize * kWeaveSize);
   for (int j = 0; j < kWeaveSize; ++j)
@@ -237,8 +264,7 @@ Texture load_texture(const std::string& path, std::string& error) {
 }
 
 Texture load_height_map(const std::string& path, std::string& error) {
-  if (!path.empty())
-    if (Texture texture = load_file(path, GL_RGB8, error)) return texture;
+  if (!path.empty()) return load_file(path, GL_RGB8, error);
   std::vector<std::uint8_t> rgb;
   for (int j = 0; j < kWeaveSize; ++j)
     for (int i = 0; i < kWeaveSize; ++i) {
@@ -251,8 +277,7 @@ Texture load_height_map(const std::string& path, std::string& error) {
 
 Texture load_material_map(MaterialMap map, const std::string& path, std::string& error) {
   const GLint format = map == MaterialMap::base_color ? GL_SRGB8 : GL_RGB8;
-  if (!path.empty())
-    if (Texture texture = load_file(path, format, error)) return texture;
+  if (!path.empty()) return load_file(path, format, error);
   constexpr float kRelief = 3;  // steepness of the threads' sides
   const auto place = [](int texel) { return (static_cast<float>(texel) + 0.5f) / kWeaveSize; };
   const auto height = [&](int i, int j) { return weave(place(i), place(j), kThreads).height; };
@@ -282,10 +307,13 @@ Texture load_material_map(MaterialMap map, const std::string& path, std::string&
 Texture load_sky(const std::string& path, Vec3f light, std::string& error) {
   Texture texture = make_texture();
   glBindTexture(GL_TEXTURE_CUBE_MAP, texture.id());
-  bool loaded = !path.empty();
   int size = 0;
-  for (int face = 0; face < 6 && loaded; ++face) loaded = load_face(path, face, size, error);
-  for (int face = 0; face < 6 && !loaded; ++face) paint_face(face, light);
+  for (int face = 0; face < 6; ++face) {
+    if (path.empty())
+      paint_face(face, light);
+    else if (!load_face(path, face, size, error))
+      return {};
+  }
   glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glGenerateMipmap(GL_TEXTURE_CUBE_MAP);

@@ -19,11 +19,14 @@ struct Picture {
 // Throws Failure when it cannot be written.
 void write_png(const std::string& path, const Picture& picture);
 
-// A file as it is, for the panel; an empty object and the reason when it cannot be read.
+// What cannot be read, or has more pixels along a side than kMostPixels or the graphics card takes, gives an empty
+// object and the reason in `error`.
+constexpr int kMostPixels = 8192;
+
+// A file as it is, for the panel.
 Texture load_picture(const std::string& path, std::string& error);
 
-// A file, or "" for the program's own. What is wrong with a file is in `error`, and the program's
-// own is given.
+// A file, or "" for the program's own.
 Texture load_texture(const std::string& path, std::string& error);     // woven check; sRGB
 Texture load_height_map(const std::string& path, std::string& error);  // its threads; red = height
 

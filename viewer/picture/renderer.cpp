@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "picture/cpu_time.h"
 #include "weft/mesh.h"
@@ -62,23 +64,27 @@ Renderer::Renderer(const PictureFiles& files)
 }
 
 void Renderer::set_pictures(const PictureFiles& files) {
-  files_ = files;
-  picture_problems_.clear();
-  std::string error;
-  const auto keep = [&] {
-    if (!error.empty()) picture_problems_.push_back(error);
-    error.clear();
+  std::size_t count = 0;
+  const auto put = [&](Texture& shown, const std::string& path, const std::string& before,
+                       auto&& load) {
+    std::string& problem = picture_problems_[count++];
+    if (shown && path == before) return;
+    problem.clear();
+    Texture read = load(path, problem);
+    if (std::string none; !read && !shown) read = load("", none);
+    if (read) shown = std::move(read);
   };
-  texture_ = load_texture(files.texture, error);
-  keep();
-  height_map_ = load_height_map(files.height_map, error);
-  keep();
-  sky_ = load_sky(files.sky, kLight, error);
-  keep();
-  for (std::size_t map = 0; map < material_.size(); ++map) {
-    material_[map] = load_material_map(static_cast<MaterialMap>(map), files.material[map], error);
-    keep();
-  }
+  put(texture_, files.texture, files_.texture, load_texture);
+  put(height_map_, files.height_map, files_.height_map, load_height_map);
+  put(sky_, files.sky, files_.sky, [](const std::string& path, std::string& problem) {
+    return load_sky(path, kLight, problem);
+  });
+  for (std::size_t map = 0; map < material_.size(); ++map)
+    put(material_[map], files.material[map], files_.material[map],
+        [&](const std::string& path, std::string& problem) {
+          return load_material_map(static_cast<MaterialMap>(map), path, problem);
+        });
+  files_ = files;
 }
 
 const Shader& Renderer::shader(std::string_view name) {
@@ -95,7 +101,9 @@ bool Renderer::reload_changed() {
 }
 
 std::vector<std::string> Renderer::problems() const {
-  std::vector<std::string> all = picture_problems_;
+  std::vector<std::string> all;
+  std::copy_if(picture_problems_.begin(), picture_problems_.end(), std::back_inserter(all),
+               [](const std::string& problem) { return !problem.empty(); });
   for (const auto& [name, shader] : shaders_)
     if (!shader.error().empty()) all.push_back(shader.error());
   return all;

@@ -31,6 +31,7 @@ class Renderer {
   void draw(const FrameData& frame_data, const Setting& setting, const Look& look,
             const LookSettings& settings, const Camera& camera, const RenderTarget& target);
 
+  // Reads the files that are others than before. Where one cannot be read, the picture before stays.
   void set_pictures(const PictureFiles& files);
   // Compiles shaders whose files have changed; true when there is a new one.
   bool reload_changed();
@@ -71,8 +72,8 @@ class Renderer {
   } shadowed_;
   PictureFiles files_;
   Texture texture_, height_map_, sky_;
-  std::array<Texture, 4> material_;  // in the order of MaterialMap
-  std::vector<std::string> picture_problems_;
+  std::array<Texture, 4> material_;              // in the order of MaterialMap
+  std::array<std::string, 7> picture_problems_;  // of the pictures; "" where there is none
   Buffer frame_;
   Occlusion occlusion_;
   VertexArray nothing_;  // for the background's triangle
