@@ -83,13 +83,13 @@ void Session::run() {
     }
     if (dispatch()) publish();  // before a frame that may be long
     const double now = std::chrono::duration<double>(steady_clock::now() - origin).count();
-    // A command in between is dispatched at once, however slow the frames are.
+    // A command in between is dispatched at once, however slow the frames are, and before the frame is shown: who
+    // pauses is not shown it twice.
     for (int due = player_.due(now); due > 0; --due) {
       player_.advance();
+      const bool asked = dispatch();
       publish();
-      if (!dispatch()) continue;
-      publish();
-      break;
+      if (asked) break;
     }
   }
   const std::lock_guard lock(mutex_);
