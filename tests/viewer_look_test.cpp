@@ -173,5 +173,44 @@ TEST_F(Window, MapsAreReplacedByFiles) {
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 
+// Cloths are told apart; a colour that is chosen is that cloth's alone.
+TEST_F(Window, EachClothHasColoursOfItsOwn) {
+  Screen screen(folder);
+  screen.open("two_sheets --paused");
+  end_hints(screen);
+  screen.wait_for("coarse", false);
+  // Pixels beside the panel in which one part of a colour is far above the others.
+  const auto count = [](const std::string& rgb, std::size_t part) {
+    std::size_t found = 0;
+    for (std::size_t k = 0; k + 2 < rgb.size(); k += 3) {
+      const auto at = [&](std::size_t which) {
+        return static_cast<unsigned char>(rgb[k + which % 3]);
+      };
+      found += k / 3 % Screen::kWidth > 360 && at(part) > 1.15 * at(part + 1) &&
+               at(part) > 1.15 * at(part + 2);
+    }
+    return found;
+  };
+  const std::string before = screen.picture();
+  const std::size_t red = count(before, 0), green = count(before, 1);
+  EXPECT_GT(red, 3000u);
+  EXPECT_GT(green, 3000u);
+  screen.click("Look");
+  const Json at = screen.wait("colours", [](const Json& now) {
+    return now["controls"].contains("back 2");
+  })["controls"]["back 2"];
+  const auto beside = [&](int x, int y) {
+    return "mousemove " + std::to_string(at[0].get<int>() + x) + " " +
+           std::to_string(at[1].get<int>() + y);
+  };
+  screen.type(beside(-25, 0) + " sleep 0.5 click 1 sleep 0.5");   // the field, left of its name
+  screen.type(beside(30, 170) + " sleep 0.5 click 1 sleep 0.5");  // a grey in the picker
+  screen.type("key Escape sleep 0.5 mousemove 100 790");
+  screen.wait_picture("another second cloth", [&](const std::string& now) {
+    return count(now, 1) < green / 2 && count(now, 0) > red - red / 10;
+  });
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+}
+
 }  // namespace
 }  // namespace weft

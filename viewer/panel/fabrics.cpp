@@ -35,8 +35,8 @@ void wear(const FabricLook& fabric, Workspace& workspace) {
   s.roughness = fabric.roughness;
   s.sheen = fabric.sheen;
   s.translucency = fabric.translucency;
-  s.color = fabric.front;
-  s.back_color = fabric.back;
+  for (std::size_t c = 0; c < workspace.document().scene().cloths.size(); ++c)
+    choose_colors(s, c, {fabric.front, fabric.back});
   if (workspace.look->name == "colour") workspace.look = find_look("fabric");
 }
 

@@ -2,6 +2,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
 #include <initializer_list>
 #include <iterator>
 
@@ -12,14 +13,14 @@ namespace weft::viewer {
 
 namespace {
 
-void color(const char* label, Vec3f& linear) {
+bool color(const std::string& label, Vec3f& linear) {
   const auto encode = [](float c) { return std::pow(c, 1 / 2.2f); };
   float shown[3] = {encode(linear.x), encode(linear.y), encode(linear.z)};
-  const bool changed = ImGui::ColorEdit3(label, shown, ImGuiColorEditFlags_NoInputs);
+  const bool changed = ImGui::ColorEdit3(label.c_str(), shown, ImGuiColorEditFlags_NoInputs);
   mark(label);
-  if (!changed) return;
   const auto decode = [](float c) { return std::pow(c, 2.2f); };
-  linear = {decode(shown[0]), decode(shown[1]), decode(shown[2])};
+  if (changed) linear = {decode(shown[0]), decode(shown[1]), decode(shown[2])};
+  return changed;
 }
 
 bool slider(const char* label, float& value, float low, float high, const char* format = "%.3f",
@@ -97,14 +98,25 @@ void draw_list(Workspace& workspace) {
   }
 }
 
+// Of each cloth's two sides.
+void draw_colors(LookSettings& settings, std::size_t cloths) {
+  constexpr std::size_t kMost = 12;  // cloths that the panel has room for
+  for (std::size_t c = 0; c < std::min(cloths, kMost); ++c) {
+    const std::string which = c == 0 ? "" : " " + std::to_string(c + 1);
+    ClothColors colors = colors_of(settings, c);
+    const bool front = color("front" + which, colors.front);
+    ImGui::SameLine();
+    const bool back = color("back" + which, colors.back);
+    if (front || back) choose_colors(settings, c, colors);
+  }
+}
+
 void draw_material(Workspace& workspace) {
   LookSettings& s = workspace.settings;
   const std::string_view look = workspace.look->name;
   const auto is = [&](std::string_view name) { return look == name; };
   if (is("pbr")) draw_maps(workspace);
-  color("front", s.color);
-  ImGui::SameLine();
-  color("back", s.back_color);
+  draw_colors(s, workspace.document().scene().cloths.size());
   bool plain = false;
   if (is("fabric")) {
     int weave = static_cast<int>(s.weave);

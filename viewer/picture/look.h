@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "picture/linear.h"
 
@@ -52,10 +53,15 @@ enum class Weave { plain, twill, satin, leather };
 // and no more than needed at rest; `fine`, with ambient occlusion and softer shadows.
 enum class Quality { automatic, quick, standard, fine };
 
-// Colours are linear.
+// The two sides of a cloth; linear.
+struct ClothColors {
+  Vec3f front{0.56f, 0.07f, 0.06f}, back{0.50f, 0.20f, 0.12f};
+  friend bool operator==(const ClothColors&, const ClothColors&) = default;
+};
+
 struct LookSettings {
-  Vec3f color{0.56f, 0.07f, 0.06f};
-  Vec3f back_color{0.50f, 0.20f, 0.12f};
+  ClothColors colors;                     // of the first cloth
+  std::vector<ClothColors> other_colors;  // of those after it, as far as they were chosen
   float roughness = 0.55f;
   float metallic = 0;
   bool maps = true;  // look pbr: base colour, metallic, roughness and normals from maps
@@ -85,6 +91,10 @@ struct LookSettings {
   bool structural = true, shear = true, bend = false;
   friend bool operator==(const LookSettings&, const LookSettings&) = default;
 };
+
+// Where none were chosen, the first cloth's with another hue, so that cloths are told apart.
+ClothColors colors_of(const LookSettings& settings, std::size_t cloth);
+void choose_colors(LookSettings& settings, std::size_t cloth, const ClothColors& colors);
 
 inline constexpr Vec3f kStructuralColor{0.02f, 0.05f, 0.25f};
 inline constexpr Vec3f kShearColor{0.75f, 0.20f, 0.02f};

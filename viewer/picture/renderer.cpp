@@ -267,8 +267,8 @@ void Renderer::upload_frame(const Setting& setting, const LookSettings& settings
 
 void Renderer::set_material(const Shader& shader, const LookSettings& settings, bool cloth) {
   shader.use();
-  shader.set("u_color", cloth ? settings.color : kBodyColor);
-  shader.set("u_back_color", cloth ? settings.back_color : kBodyColor);
+  shader.set("u_color", kBodyColor);
+  shader.set("u_back_color", kBodyColor);
   shader.set("u_roughness", settings.roughness);
   shader.set("u_metallic", settings.metallic);
   shader.set("u_maps", settings.maps ? 1.0f : 0.0f);
@@ -339,6 +339,9 @@ void Renderer::draw_cloths(const FrameData& frame_data, const Look& look,
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     const ClothMesh& cloth = cloths_[c];
     const auto [along_u, along_v] = sides_of(frame_data.scene->cloths[c]);
+    const ClothColors colors = colors_of(settings, c);
+    material.set("u_color", colors.front);
+    material.set("u_back_color", colors.back);
     material.set("u_threads", settings.threads * along_u, settings.threads * along_v);
     if (look.draw == Look::Draw::surface && !look.raised) cloth.draw_surface();
     if (look.draw == Look::Draw::surface && look.raised)
