@@ -23,9 +23,12 @@ void FrameNotes::check_strain_limits(const EndedFrame& frame) {
   for (std::size_t c = 0; c < frame.cloths.size(); ++c) {
     const ClothStep& step = *frame.cloths[c];
     const double limit = step.cloth().strain_limit;
-    if (limit == 0 || overlong_[c].frame > 0 || is_asleep(frame.sleeping, c)) continue;
+    if (limit == 0 || is_asleep(frame.sleeping, c)) continue;
     const double strain = step.model().limited_strain();
-    if (strain > limit * (1 + kTolerance)) overlong_[c] = {frame.number, strain, false};
+    if (strain <= limit * (1 + kTolerance)) continue;
+    Overlong& o = overlong_[c];
+    if (o.count++ == 0) o.first = frame.number;
+    if (strain > o.strain) o.worst = frame.number, o.strain = strain;
   }
 }
 
@@ -77,26 +80,28 @@ void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::stri
 }
 
 void FrameNotes::tell(const Cloths& cloths, std::int64_t frames, std::vector<std::string>& notes) {
+  for (const std::string& old : told_) std::erase(notes, old);
+  told_.clear();
   for (std::size_t c = 0; c < overlong_.size(); ++c) {
-    Overlong& o = overlong_[c];
-    if (o.frame == 0 || o.told) continue;
-    o.told = true;
-    notes.push_back("cloth " + std::to_string(c) + ": the strain limit of " +
+    const Overlong& o = overlong_[c];
+    if (o.count == 0) continue;
+    const std::string others =
+        o.count == 1 ? "" : ", nor in " + std::to_string(o.count - 1) + " others";
+    told_.push_back("cloth " + std::to_string(c) + ": the strain limit of " +
                     number(cloths[c]->cloth().strain_limit) + " did not hold in frame " +
-                    std::to_string(o.frame) + " (" + number(o.strain) +
+                    std::to_string(o.first) + others + " (" + number(o.strain) +
+                    (o.count == 1 ? "" : " in frame " + std::to_string(o.worst)) +
                     "); more substeps hold it better");
   }
-  for (const std::string& old : seams_) std::erase(notes, old);
-  seams_.clear();
   for (std::size_t c = 0; frames > 0 && c < cloths.size(); ++c) {
     const OpenSeams seams = cloths[c]->model().open_seams();
     if (seams.open == 0) continue;
-    seams_.push_back("cloth " + std::to_string(c) + ": " + std::to_string(seams.open) + " of " +
-                     std::to_string(seams.all) + " seams are open after frame " +
-                     std::to_string(frames) + ", their ends up to " + number(seams.widest) +
-                     " m from the middle");
+    told_.push_back("cloth " + std::to_string(c) + ": " + std::to_string(seams.open) + " of " +
+                    std::to_string(seams.all) + " seams are open after frame " +
+                    std::to_string(frames) + ", their ends up to " + number(seams.widest) +
+                    " m from the middle");
   }
-  notes.insert(notes.end(), seams_.begin(), seams_.end());
+  notes.insert(notes.end(), told_.begin(), told_.end());
 }
 
 }  // namespace weft::physics

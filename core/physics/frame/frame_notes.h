@@ -34,16 +34,16 @@ class FrameNotes {
   // Looks at a frame, and adds what it finds. What is read only when somebody asks waits for tell(): frames
   // allocate nothing for it.
   void look(const EndedFrame& frame, std::vector<std::string>& notes);
-  // Adds strain limits that did not hold; and seams that are open after so many frames, in place of those told
-  // of before.
+  // Adds strain limits that did not hold, and seams that are open after so many frames, in place of what was
+  // told of them before.
   void tell(const Cloths& cloths, std::int64_t frames, std::vector<std::string>& notes);
 
  private:
-  // The first frame at whose end a cloth was longer somewhere than its strain limit allows.
+  // The frames at whose end a cloth was longer somewhere than its strain limit allows.
   struct Overlong {
-    std::int64_t frame = 0;  // 0: none
+    std::int64_t first = 0, count = 0;
+    std::int64_t worst = 0;  // the one with the greatest strain
     double strain = 0;
-    bool told = false;
   };
   void check_strain_limits(const EndedFrame& frame);
   void note_clamps(const EndedFrame& frame, std::vector<std::string>& notes);
@@ -54,7 +54,7 @@ class FrameNotes {
   std::vector<std::uint8_t> stretched_;  // of every cloth: told of
   bool clamps_ = false, left_strain_ = false;
   bool driven_ = false;  // in any frame since the energy was counted anew
-  std::vector<std::string> seams_;
+  std::vector<std::string> told_;
 };
 
 }  // namespace weft::physics
