@@ -95,7 +95,7 @@ TEST(Course, MeansWhatTheCourseSays) {
   EXPECT_EQ(cloth.strain_limit, 0.1);
   EXPECT_EQ(cloth.self_collision.mode, weft::SelfCollisionMode::particles);
   EXPECT_EQ(cloth.strain_limit_order, weft::StrainLimitOrder::strict);
-  EXPECT_EQ(cloth.self_collision.response, weft::SelfCollisionResponse::stiff);
+  EXPECT_EQ(cloth.self_collision.response, weft::SelfCollisionResponse::course);
   EXPECT_DOUBLE_EQ(cloth.self_collision.thickness, 0.019);
   ASSERT_EQ(cloth.pins.size(), 2u);
   EXPECT_EQ(cloth.pins[1].i, 49);

@@ -50,7 +50,8 @@ TEST(Pile, GainsNoEnergyOnAnyBodyByAnyFriction) {
 
 TEST(Pile, GainsNoEnergyHoweverSoftTheSheetIs) {
   for (const char* ks : {"500", "2000", "5000", "20000"})
-    for (const auto response : {SelfCollisionResponse::stiff, SelfCollisionResponse::neighbours})
+    for (const auto response : {SelfCollisionResponse::stiff, SelfCollisionResponse::neighbours,
+                                SelfCollisionResponse::course})
       for (const double limit : {0.0, 0.1})
         EXPECT_LT(greatest_gain(falling(ks, response, limit)), 0.02)
             << "ks " << ks << ", response " << int(response) << ", limit " << limit;

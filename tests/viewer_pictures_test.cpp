@@ -149,7 +149,8 @@ TEST(Pictures, FinePicturesHaveAmbientOcclusion) {
   const fs::path out = fs::temp_directory_path() / "weft_viewer_fine.png";
   const auto draw = [&](const char* quality) {
     EXPECT_EQ(
-        run("selfCollision --headless --frames 110 --size 320x240 --shader diffuse --quality " +
+        run("selfCollision --set /cloths/0/self_collision/response=stiff --headless --frames 110 "
+            "--size 320x240 --shader diffuse --quality " +
             std::string(quality) + " --out " + out.string()),
         0);
     return decode(out);

@@ -98,6 +98,7 @@ Cloth cloth_of(const CourseCloth& from) {
   cloth.strain_limit_order = StrainLimitOrder::strict;
   cloth.self_collision.mode = SelfCollisionMode::particles;
   cloth.self_collision.thickness = 2 * from.thickness;
+  cloth.self_collision.response = SelfCollisionResponse::course;
   cloth.pins = from.pinned;
   return cloth;
 }

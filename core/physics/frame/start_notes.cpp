@@ -61,6 +61,15 @@ void note_thickness(const std::string& which, const Cloth& cloth, bool surfaces,
                     ": particles can pass between others (mode surface lets nothing through)");
 }
 
+void note_response(const std::string& which, const SelfCollision& self,
+                   std::vector<std::string>& notes) {
+  if (self.mode == SelfCollisionMode::off || self.response == SelfCollisionResponse::stiff) return;
+  const bool all = self.response == SelfCollisionResponse::course;
+  notes.push_back(which + ": " + (all ? "layers and neighbours" : "neighbours on the grid") +
+                  " push each other apart by the course's rule, which keeps neither momentum nor "
+                  "energy (response stiff does)");
+}
+
 // Whether a cut of the scene passes between two neighbours.
 bool crosses_sheet(const CutLine& cut, const Grid& grid) {
   bool crosses = false;
@@ -93,6 +102,7 @@ void note_starts(const Scene& scene, const Cloths& cloths, SheetContact* contact
     }
     const Cloth& cloth = scene.cloths[c];
     note_thickness(which, cloth, contact && contact->pairs().surfaces(), notes);
+    note_response(which, cloth.self_collision, notes);
     if (const FarPins far = far_pins(cloth, spacing_of(cloth)); far.count > 0)
       notes.push_back(which + ": " + std::to_string(far.count) +
                       (far.count == 1 ? " pin starts " : " pins start up to ") + number(far.most) +
