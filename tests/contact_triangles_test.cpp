@@ -59,6 +59,7 @@ TEST(ContactTriangles, LeaveACoreTheShortestWay) {
   compare(Box{{}, {0.1, 0.05, 0.2}, {20, 0, 50}, 0.01});
   compare(TaperedCapsule{{}, {0.3, 0.1, 0.2}, 0.03, 0.1});
   compare(TaperedCapsule{{}, {0.2, 0, 0.1}, 0.2, 0.05});
+  compare(TaperedCapsule{{}, {0.3, 0.1, 0.2}, 0.03, 0.03});
   EXPECT_GT(cuts, 150);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "weft/shapes/value.h"
 
@@ -13,7 +14,11 @@ struct TaperedCapsule {
   double radius_a = 0.1;  // m
   double radius_b = 0.05;
 
-  double half_thickness() const { return std::min(radius_a, radius_b); }
+  double half_thickness() const {
+    const double length = std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+    const bool one_holds_other = std::abs(radius_b - radius_a) >= length;
+    return one_holds_other ? std::max(radius_a, radius_b) : std::min(radius_a, radius_b);
+  }
   static TaperedCapsule of_size(double size) {
     return {{0, -size / 4, 0}, {0, size / 2, 0}, size / 4, size / 8};
   }

@@ -2,7 +2,8 @@
 //
 //   static void values(Self& self, Visit&& visit)    calls visit(key, value, ShapeValue) for each of them, under
 //                                                    its key in scene files
-//   double half_thickness() const                    of the shape where it is thinnest [m]; infinite for one
+//   double half_thickness() const                    of the shape where it is thinnest, of one with a tip the
+//                                                    radius of the largest ball within [m]; infinite for one
 //                                                    without bounds
 //   static Self of_size(double size)                 about the origin, `size` [m] across, as an editor adds it
 //

@@ -40,10 +40,10 @@ struct Core {
   Overlap overlap_of(const Shape& shape, const Triangle& t); \
   double feature_of(const Shape& shape);                     \
   ShapeMesh mesh_of(const Shape& shape);
-// constants_of: for the kernels; nearest_of, core_of: seen from p, in double; support_of: the point of the core that lies
-// furthest along `way`; overlap_of: of the core and a triangle; feature_of: its smallest radius of
-// curvature, infinite for a plane [m]; mesh_of: triangles for drawing. A mesh has no core: instead of these,
-// its edges and corners are looked at (body/body_triangle.h).
+// constants_of: for the kernels; nearest_of, core_of: seen from p, in double; support_of: the point of
+// the core that lies furthest along `way`; overlap_of: of the core and a triangle; feature_of: its
+// smallest radius of curvature, infinite for a plane [m]; mesh_of: triangles for drawing. A mesh has no
+// core: instead of these, its edges and corners are looked at (body/body_triangle.h).
 WEFT_SHAPES(WEFT_SHAPE)
 #undef WEFT_SHAPE
 

@@ -142,8 +142,6 @@ Vec3 support_of(const TaperedCapsule& capsule, const Vec3& way) {
 // that they are apart. The least lies along the triangle's normal, along the core's above a corner, or across an
 // edge: there directions are tried all around, and the best of them is refined.
 Overlap overlap_of(const TaperedCapsule& capsule, const Triangle& t) {
-  if (capsule.radius_a == capsule.radius_b)
-    return overlap_of(Capsule{capsule.a, capsule.b, capsule.radius_a}, t);
   Overlap best{1e300, {}};
   const auto depth_along = [&](const Vec3& n) {
     double low = 1e300;
