@@ -54,7 +54,12 @@ void sweep(Sheet& s, Simd simd, const LineOptions& options, int threads = 1) {
       s.stencils,
       first_moves};
   Threads pool(threads);
-  make_line(parts, options)->run_alone(s.lattice.rows, {kDt, kDt, 0}, pool);
+  Rows corrections(s.lattice.rows, s.lattice.stride);
+  make_line(parts, corrections, options)->run_alone(s.lattice.rows, {kDt, kDt, 0}, pool);
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j < s.lattice.rows; ++j)
+      for (int i = 0; i < s.lattice.columns; ++i)
+        s.lattice.x.at(k, j, i) += corrections.at(k, j, i);
 }
 
 // The Newton step of all constraints of the stencil at once: A μ = C by Gaussian elimination.

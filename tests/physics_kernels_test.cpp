@@ -28,8 +28,7 @@ struct Case {
 };
 
 AdvanceRow advance_row(Patch& p) {
-  return {p.columns,  p.x.row(0),        p.v.row(0), p.weights(0),
-          p.f.row(0), p.previous.row(0), advance(),  100.0f};
+  return {p.columns, p.x.row(0), p.v.row(0), p.weights(0), p.f.row(0), advance(), 100.0f};
 }
 
 StencilRow stencil_row(Patch& p, int di, int dj) {
@@ -151,20 +150,19 @@ void add_moves(std::vector<Case>& cases) {
     return [=](const KernelTable& k, Patch& p) { (k.particles.*kernel)(advance_row(p)); };
   };
   cases.push_back({"integrate", 2, move(&ParticleKernels::integrate)});
-  cases.push_back({"predict, velocities first", 2, [](const KernelTable& k, Patch& p) {
+  cases.push_back({"predict", 2, [](const KernelTable& k, Patch& p) {
                      AdvanceRow r = advance_row(p);
                      r.f = {};
                      k.particles.predict(r);
                    }});
   cases.push_back({"predict, corrections first", 2, move(&ParticleKernels::predict)});
-  cases.push_back({"velocity", 2, move(&ParticleKernels::velocity)});
   cases.push_back({"apply_corrections", 2, move(&ParticleKernels::apply_corrections)});
 }
 
 struct Features {
   const char* name;
   float compliance, weight;
-  bool limit, multipliers, alike = false, sides = false;
+  bool limit, multipliers, alike = false, sides = false, tears = false;
 };
 constexpr Features kFeatures[] = {{"rigid", 0, 1, false, false},
                                   {"heavier", 0, 1.7f, false, false},
@@ -177,7 +175,9 @@ constexpr Features kFeatures[] = {{"rigid", 0, 1, false, false},
                                   {"compliant, sides", 0.7f, 1, false, false, false, true},
                                   {"rigid, alike, sides", 0, 1, false, false, true, true},
                                   {"compliant, alike, sides", 0.7f, 1, false, false, true, true},
-                                  {"multipliers, alike, sides", 0.7f, 1, false, true, true, true}};
+                                  {"multipliers, alike, sides", 0.7f, 1, false, true, true, true},
+                                  {"rigid, tears", 0, 1.7f, false, false, false, false, true},
+                                  {"multipliers, tears", 0.7f, 1, false, true, false, false, true}};
 
 void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Features& has,
                     bool jacobi) {
@@ -210,11 +210,20 @@ void project_offset(const KernelTable& k, Patch& p, int di, int dj, const Featur
     r.side_by_side = di != 0;
     if (di == 0) r.inverse_width = p.inverse_width.data();
   }
+  std::array<std::int32_t, kRows> ended{};
+  if (has.tears) {
+    r.alive = p.alive.data();
+    r.longest_square = 1.44f;
+    r.ended = ended.data();
+  }
   for (int a = 0; dj == 0 && a < r.count; ++a) p.lanes[std::size_t(a / di % 2 * p.stride + a)] = -1;
   r.lanes = p.lanes.data();
   if (jacobi) return k.lattice.jacobi_stencil(r, 0, p.f.row(0), p.f.row(dj));
   // Along rows all of them: two may be worked through together.
   k.lattice.project({&r, 1, 0, dj == 0 ? kRows : 1, 0});
+  // What has ended is to be compared as well.
+  for (int j = 0; j < kRows; ++j) p.f.at(0, j, 0) += float(ended[std::size_t(j)]);
+  for (int a = 0; has.tears && a < r.count; ++a) p.f.at(1, 0, a) += float(p.alive[std::size_t(a)]);
 }
 
 void add_projections(std::vector<Case>& cases) {

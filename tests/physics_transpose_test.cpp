@@ -44,24 +44,28 @@ class Transposing : public testing::TestWithParam<Simd> {
       }
   }
   std::vector<float> rows_ = random_floats(kMostRows * kStride, 1);
-  std::vector<float> rates_ = random_floats(kMostRows * kStride, 2);
+  std::vector<float> added_ = random_floats(kMostRows * kStride, 2);
   std::vector<float> lanes_ = random_floats(physics::turned_columns(kStride) * kPitch, 3);
 };
 
 TEST_P(Transposing, PutsRowsIntoLanes) {
-  for_all_shapes([&](TransposeRows t) {
-    std::vector<float> rows = rows_, lanes = lanes_;
-    t.rows = rows.data();
-    t.lanes = lanes.data();
-    kernels().lines.rows_to_lanes(t);
-    EXPECT_EQ(rows, rows_);
-    for (int r = 0; r < t.row_count; ++r)
-      for (int i = 0; i < t.columns; ++i)
-        ASSERT_EQ(lanes[std::size_t(i * kPitch + r)], rows_[std::size_t(r * kStride + i)]);
-  });
+  for (const bool adds : {false, true})
+    for_all_shapes([&](TransposeRows t) {
+      std::vector<float> rows = rows_, lanes = lanes_;
+      t.rows = rows.data();
+      t.added = adds ? added_.data() : nullptr;
+      t.lanes = lanes.data();
+      kernels().lines.rows_to_lanes(t);
+      EXPECT_EQ(rows, rows_);
+      for (int r = 0; r < t.row_count; ++r)
+        for (int i = 0; i < t.columns; ++i) {
+          const auto at = std::size_t(r * kStride + i);
+          ASSERT_EQ(lanes[std::size_t(i * kPitch + r)], adds ? rows_[at] + added_[at] : rows_[at]);
+        }
+    });
 }
 
-TEST_P(Transposing, PutsLanesIntoRowsAndNowhereElse) {
+TEST_P(Transposing, AddsLanesToRowsAndToNothingElse) {
   for_all_shapes([&](TransposeRows t) {
     std::vector<float> rows = rows_, lanes = lanes_, expected = rows_;
     t.rows = rows.data();
@@ -70,28 +74,8 @@ TEST_P(Transposing, PutsLanesIntoRowsAndNowhereElse) {
     EXPECT_EQ(lanes, lanes_);
     for (int r = 0; r < t.row_count; ++r)
       for (int i = 0; i < t.columns; ++i)
-        expected[std::size_t(r * kStride + i)] = lanes_[std::size_t(i * kPitch + r)];
+        expected[std::size_t(r * kStride + i)] += lanes_[std::size_t(i * kPitch + r)];
     ASSERT_EQ(rows, expected);
-  });
-}
-
-TEST_P(Transposing, AddsLanesToRowsAndTheirRates) {
-  for_all_shapes([&](TransposeRows t) {
-    std::vector<float> rows = rows_, rates = rates_, lanes = lanes_;
-    std::vector<float> expected = rows_, expected_rates = rates_;
-    t.rows = rows.data();
-    t.lanes = lanes.data();
-    t.rates = rates.data();
-    t.rate = 720.3f;
-    kernels().lines.lanes_to_rows(t);
-    for (int r = 0; r < t.row_count; ++r)
-      for (int i = 0; i < t.columns; ++i) {
-        const float moved = lanes_[std::size_t(i * kPitch + r)];
-        expected[std::size_t(r * kStride + i)] += moved;
-        expected_rates[std::size_t(r * kStride + i)] += moved * t.rate;
-      }
-    ASSERT_EQ(rows, expected);
-    ASSERT_EQ(rates, expected_rates);
   });
 }
 

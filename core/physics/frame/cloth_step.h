@@ -5,11 +5,9 @@
 //
 //   spring, spring_friction:  bending (v) - springs (x, v -> forces -> v, x) - wind - keyed_pins
 //                             - colliders - tear - strain_limit
-//   positional, compliant:    predict (v, x by gravity; previous <- x, if asked for) - wind (x) - keyed_pins
-//                             - tethers (x) - sweeps (corrections, or x) - velocity (x and v gain the
-//                             corrections) - bending (x) - velocity of lines (v += (x - previous)/dt,
-//                             unless the stages before have changed v themselves) - colliders
-//                             - tear - strain_limit
+//   positional, compliant:    predict (v, x by gravity) - wind (v, x) - keyed_pins - tethers, sweeps, bending
+//                             (corrections; Jacobi's: x, v) - velocity (x and v gain the corrections)
+//                             - colliders - tear - strain_limit
 //
 // Stages of a person's interaction come right after springs or predict.
 // Where nothing follows velocity, it waits for the last substep, and predict adds to v itself.

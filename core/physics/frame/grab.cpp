@@ -28,15 +28,10 @@ double Grab::energy() const {
   return 0.5 * held_stiffness() * square;
 }
 
-Velocities Grab::velocities(double dt) const {
-  return push_of(parts_, dt).velocities ? Velocities::used : Velocities::left_alone;
-}
-
 void Grab::run(int j, const Substep& s) {
   if (j != place.j) return;
   Particles& p = parts_.particles;
-  const Push pushed = push_of(parts_, s.dt);
-  const double w = p.w(j, place.i), dt = pushed.dt;
+  const double w = p.w(j, place.i), dt = push_time(parts_, s.dt);
   if (w <= 0) return;
   const double strongest = parts_.model.pull().force;
   const double k_held = held_stiffness();
@@ -53,7 +48,7 @@ void Grab::run(int j, const Substep& s) {
   for (int k = 0; k < 3; ++k) {
     float &x = p.x.at(k, j, place.i), &v = p.v.at(k, j, place.i);
     const double gained = cut * gains[k];
-    if (pushed.velocities) v = float(v + gained);
+    v = float(v + gained);
     x = float(x + dt * gained);
   }
 }

@@ -17,17 +17,6 @@ void apply_corrections(const AdvanceRow& r) {
   }
 }
 
-namespace {
-
-// The velocity of free particles with what they were moved by since they were predicted. That is small
-// against their way in a substep: rounding of positions far from zero does not get into it.
-WEFT_INLINE Wide3 gained(const AdvanceRow& r, Wide3 x, int i) {
-  const Wide3 moved_by = x - load3(r.predicted, i);
-  return load3(r.v, i) + moved_by * select(load(r.w + i) > 0.0f, wide(r.inverse_dt), Wide{});
-}
-
-}  // namespace
-
 void predict(const AdvanceRow& given) {
   const AdvanceRow r = given;  // a copy that no store can alias
   for (int i = 0; i < padded(r.columns); i += kLanes) {
@@ -37,23 +26,10 @@ void predict(const AdvanceRow& given) {
       x = x + change;
       before = before + change * wide(r.inverse_dt);
       store3(r.f, i, Wide3{});  // for the next sweeps
-    } else if (r.inverse_dt > 0) {
-      before = gained(r, x, i);
     }
     const Wide3 v = moved(before, load(r.w + i), Wide3{}, r.advance);
-    const Wide3 there = x + v * wide(r.advance.dt);
     store3(r.v, i, v);
-    store3(r.x, i, there);
-    if (r.predicted.x) store3(r.predicted, i, there);
-  }
-}
-
-void velocity(const AdvanceRow& given) {
-  const AdvanceRow r = given;
-  for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide3 x = positive_zeros(load3(r.x, i));
-    store3(r.v, i, gained(r, x, i));
-    store3(r.x, i, x);
+    store3(r.x, i, x + v * wide(r.advance.dt));
   }
 }
 

@@ -13,7 +13,9 @@
 // As a force for the explicit methods. For those that project, as compliant constraints d = 0 and
 // t = 0: the second differences of a line together, whose multipliers solve a pentadiagonal system,
 //
-//   A μ = d,  A = B W Bᵀ + α̃,  α̃ = 1/(k dt²),   x <- x - W Bᵀ μ,     B = rows (1, -2, 1)
+//   A μ = d,  A = B W Bᵀ + α̃,  α̃ = 1/(k dt²),   u <- u - W Bᵀ μ,     B = rows (1, -2, 1)
+//
+// of particles at x + u, whose corrections u positions do not round.
 #include "physics/kernels/bending.h"
 
 #include "physics/kernels/row_kernels.h"
@@ -86,22 +88,18 @@ void bend_row(const BendRow& given) {
 
 namespace {
 
-// Moves particles, and has their velocities follow.
-WEFT_INLINE void change(Row3 x, Row3 v, float inverse_dt, int i, Wide3 by) {
-  store3(x, i, load3(x, i) + by);
-  if (inverse_dt > 0) store3(v, i, load3(v, i) + by * wide(inverse_dt));
+WEFT_INLINE void add(Row3 u, int i, Wide3 by) {
+  store3(u, i, load3(u, i) + by);
 }
 
 // One block of lines. Constraint m joins particles m, m+1, m+2.
 WEFT_INLINE void bend_block(const BendLine& p, int lane) {
-  const auto row = [&](Row3 r, int m) {
+  const auto row = [&](auto r, int m) {
     const std::ptrdiff_t at = lane + m * p.step;
-    return Row3{r.x + at, r.y + at, r.z + at};
+    return decltype(r){r.x + at, r.y + at, r.z + at};
   };
-  const auto position = [&](int m) { return load3(row(p.x, m), 0); };
-  const auto shift = [&](int m, Wide3 by) {
-    change(row(p.x, m), row(p.v, m), p.inverse_dt, 0, by);
-  };
+  const auto position = [&](int m) { return load3(row(p.x, m), 0) + load3(row(p.u, m), 0); };
+  const auto shift = [&](int m, Wide3 by) { add(row(p.u, m), 0, by); };
   const auto mass = [&](int m) { return load(p.w + lane + m * p.step); };
   const auto scratch = [&](int m) {
     return p.scratch + static_cast<std::ptrdiff_t>(m) * kBendScratch + lane;
@@ -168,17 +166,18 @@ void bend_twist(const TwistRow& given) {
   const TwistRow r = given;
   Delay3<1> left;
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide3 xa = load3(r.x, i), xc = load3(r.below, i);
-    const Wide3 t =
-        of_those_left((xa - load3(r.x, i + 1)) - (xc - load3(r.below, i + 1)), r.left, i);
+    const auto at = [](ConstRow3 x, Row3 u, int n) { return load3(x, n) + load3(u, n); };
+    const Wide3 above = at(r.x, r.u, i) - at(r.x, r.u, i + 1);
+    const Wide3 below = at(r.below, r.u_below, i) - at(r.below, r.u_below, i + 1);
+    const Wide3 t = of_those_left(above - below, r.left, i);
     const Wide wa = load(r.w + i), wb = load(r.w + i + 1);
     const Wide wc = load(r.w_below + i), wd = load(r.w_below + i + 1);
     const WideInt chosen =
         (((lane_numbers() + i) & 1) == (r.odd ? 1 : 0)) & lanes_below(r.columns - 1 - i);
     const Wide3 mu = select(chosen, t * (1.0f / (wa + wb + wc + wd + r.compliance)), Wide3{});
     const Wide3 by = mu - left.next(mu);
-    change(r.x, r.v, r.inverse_dt, i, Wide3{} - by * wa);
-    change(r.below, r.v_below, r.inverse_dt, i, by * wc);
+    add(r.u, i, Wide3{} - by * wa);
+    add(r.u_below, i, by * wc);
   }
 }
 

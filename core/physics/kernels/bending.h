@@ -32,12 +32,11 @@ struct BendRow {
 
 // kBendLines lines of particles, `step` floats from one to the next.
 struct BendLine {
-  Row3 x;
+  ConstRow3 x;  // they are at x + u [m]
+  Row3 u;       // receives corrections, laid out as x
   const float* w;
   std::ptrdiff_t step;
   int particles;
-  Row3 v;                   // velocities, laid out as x; gain corrections times inverse_dt
-  float inverse_dt;         // 1/s; 0 = velocities are not touched
   const float* compliance;  // 1/(k dt²) of each line [1/kg]
   const float* left;  // 1 for second differences that are left, else 0, laid out as w; null: all
   float* scratch;     // particles * kBendScratch floats
@@ -46,9 +45,8 @@ struct BendLine {
 // The cells between two rows of particles whose left column is even, or odd.
 struct TwistRow {
   int columns;
-  Row3 x, below;
-  Row3 v, v_below;   // gain corrections times inverse_dt
-  float inverse_dt;  // 1/s; 0 = velocities are not touched
+  ConstRow3 x, below;  // they are at x + u [m]
+  Row3 u, u_below;     // receive corrections
   const float* w;
   const float* w_below;
   bool odd;

@@ -92,8 +92,21 @@ WEFT_INLINE Wide3 limit_block(const ProjectRows& p, const ProjectedRow& near,
   return e * select(active, (held - force) * dt2 / length, Wide{});
 }
 
+// Ends constraints past their tear length, each as long as in the mean of before and after its own correction c.
+// Where sweeps are few, constraints solved last are at rest and others have all that these have lost: so long they
+// all are at some time in the sweep, and the sheet is in the mean.
+WEFT_INLINE void tear_overlong(const ProjectRows& p, Wide3 e, Wide3 c, Wide inertia, int j, int a,
+                               WideInt active) {
+  const WideInt over =
+      active & (squared_length(fnma(c, inertia * 0.5f, e)) > p.longest_square);
+  if (!any(over)) return;
+  std::int32_t* const alive = p.alive + std::ptrdiff_t(j) * p.stride + a;
+  put_lanes(alive, lanes_at(alive) & ~over);
+  p.ended[j] += __builtin_popcount(bits(over));
+}
+
 // The same for constraints a … a+kLanes-1 between the lanes of two rows.
-template <Rule R>
+template <Rule R, bool kTorn>
 WEFT_INLINE Wide3 solve_block(const ProjectRows& p, const ProjectedRow& near,
                               const ProjectedRow& far, Wide wa, Wide wb, int j, int a,
                               WideInt active) {
@@ -115,6 +128,8 @@ WEFT_INLINE Wide3 solve_block(const ProjectRows& p, const ProjectedRow& near,
   }
   const Wide3 c = solve<R>(p, e, wa, wb, j, a, lambda, active);
   if constexpr (R == Rule::multipliers) store(at, lambda);
+  if constexpr (kTorn && !limits(R))
+    if (p.longest_square > 0) tear_overlong(p, e, c, wa + wb, j, a, active);
   return c;
 }
 
@@ -146,7 +161,7 @@ WEFT_INLINE void along_row(const ProjectRows& p, int j, int colour) {
     const Wide wa = load(near.w + a), wb = load(far.w + a);
     WideInt active = lanes_at(lanes + a);
     if constexpr (kTorn) active = active & alive_lanes(p, j, a);
-    const Wide3 c = solve_block<R>(p, near, far, wa, wb, j, a, active);
+    const Wide3 c = solve_block<R, kTorn>(p, near, far, wa, wb, j, a, active);
     move_end<R>(p, near, a, c * wa - delay.next(c * wb));
   }
 }
@@ -159,7 +174,7 @@ WEFT_INLINE void between_rows(const ProjectRows& p, int j) {
     const Wide wa = load(near.w + a), wb = load(far.w + a);
     WideInt active = lanes_below(p.count - a);
     if constexpr (kTorn) active = active & alive_lanes(p, j, a);
-    const Wide3 c = solve_block<R>(p, near, far, wa, wb, j, a, active);
+    const Wide3 c = solve_block<R, kTorn>(p, near, far, wa, wb, j, a, active);
     move_end<R>(p, near, a, c * wa);
     move_end<R>(p, far, a, Wide3{} - c * wb);
   }

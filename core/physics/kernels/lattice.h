@@ -117,8 +117,12 @@ struct ProjectRows {
   const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
   float* lambda;              // multipliers of row 0 [kg·m], strain limit: forces [N]; or null
   LimitSweep limit;           // one-sided: nothing happens below the rest length
-  const std::int32_t* alive;  // of row 0: -1 for constraints, 0 for torn ones; null: cannot tear
-  float dt, inverse_dt;       // strain limit: the change of position goes into the velocity too
+  std::int32_t* alive;  // of row 0: -1 for constraints, 0 for torn ones; null: cannot tear
+  // m, squared, past which a constraint ends where the sweep finds it; 0: the sweep ends none. And how many ended,
+  // added up by row.
+  float longest_square;
+  std::int32_t* ended;
+  float dt, inverse_dt;  // strain limit: the change of position goes into the velocity too
 };
 
 // A Gauss-Seidel sweep over rows begin … end-1, stencil by stencil, of one rule and dj: along the rows both

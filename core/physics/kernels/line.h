@@ -20,7 +20,11 @@ inline constexpr int kBatchScratch = 3 * kBatchLines;
 // beyond a side of the sheet, the line is cut and goes on at the other side, `columns` lanes from
 // there, and so every line passes through all rows.
 struct LineBatch {
-  Row3 x;          // lane 0 of the row where lines start
+  // Lane 0 of the row where lines start. Particles are at x + u: a line's corrections go into u, so that
+  // positions do not round them.
+  ConstRow3 x;
+  Row3 u;                  // laid out as x [m]
+  bool first_corrections;  // u is still zero
   const float* w;  // inverse mass, laid out as x [1/kg]
   std::ptrdiff_t step;
   int particles;  // rows that lines pass through
@@ -35,8 +39,6 @@ struct LineBatch {
   // membrane_line_batch: steps of Newton's. A square is steeper than a length: large moves take two.
   int steps;
   float share;       // factor on the correction
-  Row3 v;            // velocities, laid out as x; gain corrections times inverse_dt
-  float inverse_dt;  // 1/s; 0 = velocities are not touched
   const float*
       compliance;  // [m][kBatchLines] of constraint m of each line [1/kg; of squares m²/kg]
   std::ptrdiff_t compliance_step;  // kBatchLines, or 0 when all rows are alike

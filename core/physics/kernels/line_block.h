@@ -63,7 +63,7 @@ WEFT_INLINE void store_at(float* p, Split s, Wide v) {
   if (s.again != s.at) store_where(p + s.again, s.beyond, v);
 }
 template <class Place>
-WEFT_INLINE Wide3 load3_at(Row3 r, Place s) {
+WEFT_INLINE Wide3 load3_at(ConstRow3 r, Place s) {
   return {load_at(r.x, s), load_at(r.y, s), load_at(r.z, s)};
 }
 template <class Place>
@@ -75,8 +75,8 @@ WEFT_INLINE void store3_at(Row3 r, Place s, Wide3 v) {
 
 // What a constraint holds: a length |e|, or half of a squared length e·e/2, which needs no root.
 enum class LineLaw { length, square };
-// A block of kLanes lines on its way along the sheet.
-template <LineLaw kLaw, bool kLambda, bool kVelocity>
+// A block of kLanes lines on its way along the sheet. kFirst: u is still zero.
+template <LineLaw kLaw, bool kLambda, bool kFirst>
 class Block {
  public:
   // `step`: of Newton's, from 0.
@@ -109,13 +109,14 @@ class Block {
   // Elimination: begin(), then every constraint in turn.
   WEFT_INLINE void begin() {
     const Split here = split(0);
-    x_ = load3_at(p.x, here);
+    u_ = gathered(here);
+    x_ = moved(here, u_);
     w_ = load_at(p.w, here);
   }
   template <bool kWhole>
   WEFT_INLINE void eliminate(int m) {
     if constexpr (kWhole) {
-      foresee(p.x, least(m + kForesight, p.particles - 1));
+      foresee(least(m + kForesight, p.particles - 1));
       eliminate(m, at(m), at(m + 1), [](WideInt pivots) { return pivots; });
     } else {
       const Split here = split(m);
@@ -130,7 +131,6 @@ class Block {
   template <bool kWhole>
   WEFT_INLINE void substitute(int m) {
     if constexpr (kWhole) {
-      if constexpr (kVelocity) foresee(p.v, greatest(m - kForesight, 0));
       substitute(m, at(m), at(m + 1));
     } else {
       const Split there = split(m + 1);
@@ -157,14 +157,26 @@ class Block {
   WEFT_INLINE float* scratch(int m) const {
     return p.scratch + static_cast<std::ptrdiff_t>(m) * kBatchScratch + offset_;
   }
-  // Asks for a row that will be written: rows are too far apart for the processor to foresee them, and
-  // another core may hold them. None but its own: another core may need what lies beyond.
-  WEFT_INLINE void foresee(Row3 r, int m) const {
+  // Asks for rows that will be written: they are too far apart for the processor to foresee them, and another core
+  // may hold them. None but its own: another core may need what lies beyond.
+  WEFT_INLINE void foresee(int m) const {
 #if WEFT_LANES > 1
-    for (const float* row : {r.x, r.y, r.z}) asm volatile("prefetchw %0" : : "m"(row[at(m).at]));
+    for (const float* row : {p.u.x, p.u.y, p.u.z})
+      asm volatile("prefetchw %0" : : "m"(row[at(m).at]));
 #else
-    (void)r, (void)m;
+    (void)m;
 #endif
+  }
+  template <class Place>
+  WEFT_INLINE Wide3 gathered(Place s) const {
+    if constexpr (kFirst) return Wide3{};
+    return load3_at(p.u, s);
+  }
+  template <class Place>
+  WEFT_INLINE Wide3 moved(Place s, Wide3 u) const {
+    const Wide3 x = load3_at(p.x, s);
+    if constexpr (kFirst) return x;
+    return x + u;
   }
   // Which of the constraints from here are not cut.
   WEFT_INLINE WideInt alive(Whole s) const {
@@ -176,7 +188,7 @@ class Block {
 
   template <class Place, class Existing>
   WEFT_INLINE void eliminate(int m, Place here, Place there, const Existing& existing) {
-    const Wide3 far = load3_at(p.x, there);
+    const Wide3 u_far = gathered(there), far = moved(there, u_far);
     const Wide w_far = load_at(p.w, there);
     const Wide3 e = far - x_;
     const Wide alpha = load(p.compliance + m * p.compliance_step + offset_);
@@ -212,13 +224,14 @@ class Block {
     store(scratch(m) + kBatchLines, factor);
     if constexpr (kLaw == LineLaw::length && kLambda) store(scratch(m) + 2 * kBatchLines, length);
     edge_ = e;
+    u_ = u_far;
     x_ = far;
     w_ = w_far;
   }
 
   template <class Place>
   WEFT_INLINE void substitute(int m, Place here, Place there) {
-    const Wide3 near = load3_at(p.x, here);
+    const Wide3 u_near = gathered(here), near = moved(here, u_near);
     mu_ = fma(factor_, mu_, load(scratch(m)));
     factor_ = load(scratch(m) + kBatchLines);
     if constexpr (kLaw == LineLaw::square) {
@@ -231,6 +244,7 @@ class Block {
     const Wide3 own = (x_ - near) * mu_;
     shift(there, pull_ - own);
     pull_ = own;
+    u_ = u_near;
     x_ = near;
     w_ = load_at(p.w, here);
   }
@@ -247,10 +261,7 @@ class Block {
   // Moves a particle by the pulls of the constraints before and after it.
   template <class Place>
   WEFT_INLINE void shift(Place s, Wide3 by) const {
-    const Wide share = w_ * p.share;
-    store3_at(p.x, s, fma(by, share, x_));
-    // As computed: the difference of rounded positions over dt would be mostly rounding.
-    if constexpr (kVelocity) store3_at(p.v, s, fma(by, share * p.inverse_dt, load3_at(p.v, s)));
+    store3_at(p.u, s, fma(by, w_ * p.share, u_));
   }
 
   const LineBatch& p;
@@ -259,7 +270,7 @@ class Block {
   int lines_;  // that exist
   int line_;   // of lane 0 if it went on straight to where it is now
   int first_whole_ = 0, last_whole_ = -1;
-  Wide3 x_{};  // of the particle that the last constraint has led to
+  Wide3 x_{}, u_{};  // of the particle that the last constraint has led to
   Wide w_{};
   // Elimination: of the constraint before.
   Wide3 edge_{};
@@ -270,10 +281,10 @@ class Block {
 };
 
 // One or two blocks of lines side by side.
-template <LineLaw kLaw, bool kLambda, bool kVelocity, int kBlocks>
+template <LineLaw kLaw, bool kLambda, bool kFirst, int kBlocks>
 void solve_blocks(const LineBatch& given, int first, int step) {
   const LineBatch p = given;  // a copy that no store can alias
-  Block<kLaw, kLambda, kVelocity> a(p, first, step), b(p, first + (kBlocks - 1) * kLanes, step);
+  Block<kLaw, kLambda, kFirst> a(p, first, step), b(p, first + (kBlocks - 1) * kLanes, step);
   const int constraints = p.particles - 1;
   a.begin();
   if constexpr (kBlocks == 2) b.begin();
@@ -311,22 +322,26 @@ void solve_blocks(const LineBatch& given, int first, int step) {
   if constexpr (kBlocks == 2) b.end();
 }
 
-template <LineLaw kLaw, bool kLambda, bool kVelocity>
-void solve(const LineBatch& p) {
+template <LineLaw kLaw, bool kLambda, bool kFirst>
+void solve(const LineBatch& p, int step) {
   const int lines = least(kBatchLines, p.columns - p.first);
   for (int first = 0; first < lines;) {
     const bool two = kLanes >= 8 && lines - first > kLanes;
-    for (int step = 0; step < (kLaw == LineLaw::length ? 1 : p.steps); ++step)
-      two ? solve_blocks<kLaw, kLambda, kVelocity, 2>(p, first, step)
-          : solve_blocks<kLaw, kLambda, kVelocity, 1>(p, first, step);
+    two ? solve_blocks<kLaw, kLambda, kFirst, 2>(p, first, step)
+        : solve_blocks<kLaw, kLambda, kFirst, 1>(p, first, step);
     first += two ? 2 * kLanes : kLanes;
   }
 }
 
 template <LineLaw kLaw>
 void solve_lines(const LineBatch& p) {
-  if (p.lambda) return p.inverse_dt > 0 ? solve<kLaw, true, true>(p) : solve<kLaw, true, false>(p);
-  p.inverse_dt > 0 ? solve<kLaw, false, true>(p) : solve<kLaw, false, false>(p);
+  const int steps = kLaw == LineLaw::length ? 1 : p.steps;
+  for (int step = 0; step < steps; ++step) {
+    if (p.first_corrections && step == 0)
+      p.lambda ? solve<kLaw, true, true>(p, step) : solve<kLaw, false, true>(p, step);
+    else
+      p.lambda ? solve<kLaw, true, false>(p, step) : solve<kLaw, false, false>(p, step);
+  }
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct MembraneRows : LeapfrogRows {
 struct MembraneSquares {
   int begin, end, rows;
   int columns, stride;
-  Row3 x;            // row 0
+  ConstRow3 x, u;    // row 0; particles are at x + u; no u: it is zero [m]
   float* diagonals;  // of the cells between each row and the next, row 0 [m²]
   // Of edges along rows and between them; null: there is no coupling.
   float *along, *across;

@@ -18,6 +18,17 @@ struct Cells {
     p = opposite - x0;
     q = right - x1;
   }
+  // With those of corrections of the positions.
+  WEFT_INLINE Cells operator+(const Cells& u) const {
+    Cells sum = *this;
+    sum.a = a + u.a;
+    sum.a_below = a_below + u.a_below;
+    sum.b = b + u.b;
+    sum.b_right = b_right + u.b_right;
+    sum.p = p + u.p;
+    sum.q = q + u.q;
+    return sum;
+  }
 };
 
 }  // namespace weft::WEFT_KERNELS

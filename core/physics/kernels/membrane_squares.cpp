@@ -41,12 +41,16 @@ struct There {
 
 template <bool kCoupled>
 void one_row(const MembraneSquares& r, int j) {
-  const std::ptrdiff_t plane = r.x.y - r.x.x, start = std::ptrdiff_t(j) * r.stride;
+  const std::ptrdiff_t start = std::ptrdiff_t(j) * r.stride;
   const std::ptrdiff_t next = j + 1 < r.rows ? start + r.stride : start;
   const std::ptrdiff_t last = j > 0 ? start - r.stride : start;
+  const auto between = [&](std::ptrdiff_t row, std::ptrdiff_t below) {
+    const auto of = [&](ConstRow3 at) { return Cells(at.x + row, at.x + below, at.y - at.x); };
+    return r.u.x ? of(r.x) + of(r.u) : of(r.x);
+  };
   Delay<1> coupled;
   for (int i = 0; i < r.columns; i += kLanes) {
-    const Cells cells(r.x.x + start + i, r.x.x + next + i, plane);
+    const Cells cells = between(start + i, next + i);
     const There there(r, j, i);
     store(r.diagonals + start + i, (squared_length(cells.p) + squared_length(cells.q)) * 0.5f);
     if (r.sheared) put_lanes(r.sheared + start + i, there.sheared);
@@ -58,7 +62,7 @@ void one_row(const MembraneSquares& r, int j) {
       const auto kept = [](Wide3 edge, float rest, float keep) {
         return fma(squared_length(edge) - rest, wide(keep), wide(rest));
       };
-      const Cells before(r.x.x + last + i, r.x.x + start + i, plane);
+      const Cells before = between(last + i, start + i);
       const Wide above = beyond(before.b, before.b_right, r.square_v, There(r, j - 1, i).whole);
       const Wide under = beyond(cells.b, cells.b_right, r.square_v, there.whole);
       const Wide sides = beyond(cells.a, cells.a_below, r.square_u, there.whole);

@@ -16,7 +16,7 @@ struct RecordRow {
   Row3 x, v;
   const float* w;    // 1/kg
   float* records;    // lane 0
-  float inverse_dt;  // 1/s; velocities gain corrections times this, 0 = they are not touched
+  float inverse_dt;  // 1/s; velocities gain corrections times this
 };
 
 // 16 edges, no two of which share a vertex; ends are told by where their records begin. Those of no edge join

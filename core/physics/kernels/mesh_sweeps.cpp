@@ -83,7 +83,7 @@ void store_records(const RecordRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide3 change = records_in_row(r.records + std::ptrdiff_t(kRecord) * i + 4, kRecord).xyz;
     store3(r.x, i, load3(r.x, i) + change);
-    if (r.inverse_dt > 0) store3(r.v, i, fma(change, wide(r.inverse_dt), load3(r.v, i)));
+    store3(r.v, i, fma(change, wide(r.inverse_dt), load3(r.v, i)));
   }
 }
 

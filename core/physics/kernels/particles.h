@@ -18,11 +18,8 @@ struct AdvanceRow {
   Row3 x, v;
   const float* w;
   Row3 f;  // force [N]; corrections [m]: predict first does as apply_corrections would, if given
-  Row3 predicted;  // where predict took particles, if given; what velocity compares with
   Advance advance;
-  // 1/s; predict: > 0 where velocities still lack how far free particles are from `predicted`, or the
-  // corrections `f`, times this.
-  float inverse_dt;
+  float inverse_dt;  // 1/s; what velocities gain is the corrections `f` times this
 };
 
 // One row, and what a frame is judged by: the energies of its free particles, ½ Σ m v² and -Σ m g·x,
@@ -43,13 +40,11 @@ struct SecondOrderRow;  // kernels/second_order.h
 struct TetherRow;
 struct PushRow;  // kernels/wind.h
 
-// integrate: leapfrog step from f, then f <- 0. predict: predicted <- x; v and x advanced by gravity. velocity:
-// v <- v + (x - predicted)/dt. apply_corrections: x += w f, v += w f inverse_dt, f <- 0 (no w: 1). greatest: the
+// integrate: leapfrog step from f, then f <- 0. predict: v and x advanced by gravity. apply_corrections: x += w f, v += w f inverse_dt, f <- 0 (no w: 1). greatest: the
 // greatest size of `count` values, a multiple of 16; infinite if one is not a number.
 #define WEFT_PARTICLE_KERNELS(KERNEL)                                  \
   KERNEL(void, integrate, (const AdvanceRow&))                         \
   KERNEL(void, predict, (const AdvanceRow&))                           \
-  KERNEL(void, velocity, (const AdvanceRow&))                          \
   KERNEL(void, apply_corrections, (const AdvanceRow&))                 \
   KERNEL(void, predict_second_order, (const SecondOrderRow&))          \
   KERNEL(void, velocity_second_order, (const SecondOrderRow&))         \

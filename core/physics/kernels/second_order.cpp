@@ -35,20 +35,21 @@ struct Slowed {
       : smooth(1.0f / (1.0f + r.dt * kTwoThirds * r.drag)), euler(1.0f / (1.0f + r.dt * r.drag)) {}
 };
 
-// The velocity of free particles with the corrections that have moved them to x, of either kind of
-// substep.
-WEFT_INLINE Wide3 gained(const SecondOrderRow& r, Wide3 x, WideInt free, WideInt euler, int i) {
-  const Wide inverse_step = select(euler, wide(1 / r.dt), wide(1.5f / r.dt));
-  return fma(x - load3(r.predicted, i), select(free, inverse_step, Wide{}),
-             positive_zeros(load3(r.v, i)));
+// Takes the corrections that sweeps have gathered. Velocities have them over ⅔h until then; those of an Euler step
+// belong over h. Which kind the substep was its inverse masses tell.
+WEFT_INLINE void take(const SecondOrderRow& r, const Slowed& slowed, Wide mass, int i, Wide3& x,
+                      Wide3& v) {
+  if (r.u.x) {
+    const Wide3 by = positive_zeros(load3(r.u, i));
+    x = x + by;
+    v = fma(by, wide(1.5f / r.dt), v);
+    store3(r.u, i, Wide3{});  // for the next sweeps
+  }
+  const WideInt euler = load(r.w + i) > mass * slowed.smooth;
+  v = v * select(euler, wide(kTwoThirds), wide(1));
 }
 
-// Which kind the substep was its inverse masses tell.
-WEFT_INLINE WideInt was_euler(const SecondOrderRow& r, const Slowed& slowed, Wide mass, int i) {
-  return load(r.w + i) > mass * slowed.smooth;
-}
-
-// kKnown: v is what it is; else it lacks the corrections, and nobody else has touched it.
+// kKnown: x and v are what they are; else they lack the corrections, and nobody else has touched them.
 template <bool kKnown>
 WEFT_INLINE void predict(const SecondOrderRow& given) {
   const SecondOrderRow r = given;
@@ -56,18 +57,16 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
   const Slowed slowed(r);
   const Wide3 g{wide(r.gx), wide(r.gy), wide(r.gz)};
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide3 x = positive_zeros(load3(r.x, i));
+    Wide3 x = positive_zeros(load3(r.x, i)), v = positive_zeros(load3(r.v, i));
     const Wide mass = load(r.mass + i);
     const WideInt free = mass > 0.0f;
-    Wide3 v;
     // Of the others that are free, too; those that are not are held in the end.
     WideInt smooth = ~WideInt{};
     if constexpr (kKnown) {
-      v = positive_zeros(load3(r.v, i));
       smooth = free;
       if (!r.fresh) smooth = smooth & equal(v, load3(r.v_end, i));
     } else {
-      v = gained(r, x, free, was_euler(r, slowed, mass, i), i);
+      take(r, slowed, mass, i, x, v);
     }
     const auto either = [&](auto if_smooth, auto if_euler) {
       return kKnown ? select(smooth, if_smooth, if_euler) : if_smooth;
@@ -87,15 +86,9 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
     const Wide3 velocity = fma(g, step, either(v_star, v)) * slow;
     store3(r.previous, i, x);
     store3(r.v_before, i, v);
-    const Wide3 there = select(free, fma(velocity, step, either(x_star, x)), x);
-    store3(r.x, i, there);
-    if (r.from_positions) {
-      store3(r.predicted, i, there);
-      store3(r.v, i, select(free, velocity, v));
-    } else {
-      // Corrections will be added to v over ⅔h; an Euler step's belong over h.
-      store3(r.v, i, select(free, velocity * either(wide(1), wide(1.5f)), v));
-    }
+    store3(r.x, i, select(free, fma(velocity, step, either(x_star, x)), x));
+    // Corrections will be added to v over ⅔h; an Euler step's belong over h.
+    store3(r.v, i, select(free, velocity * either(wide(1), wide(1.5f)), v));
     store(r.w + i, mass * either(wide(slowed.smooth), wide(slowed.euler * 2.25f)));
   }
 }
@@ -111,11 +104,8 @@ void velocity_second_order(const SecondOrderRow& given) {
   const Slowed slowed(r);
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide mass = load(r.mass + i);
-    const WideInt euler = was_euler(r, slowed, mass, i);
-    const Wide3 x = positive_zeros(load3(r.x, i));
-    const Wide3 v = r.from_positions
-                        ? gained(r, x, mass > 0.0f, euler, i)
-                        : positive_zeros(load3(r.v, i)) * select(euler, wide(kTwoThirds), wide(1));
+    Wide3 x = positive_zeros(load3(r.x, i)), v = positive_zeros(load3(r.v, i));
+    take(r, slowed, mass, i, x, v);
     store3(r.x, i, x);
     store3(r.v, i, v);
     store3(r.v_end, i, v);

@@ -12,9 +12,8 @@ struct SecondOrderRow {
   Row3 x, v;
   Row3 previous;        // x of the substep before; receives x [m]
   Row3 v_before;        // v of the substep before; receives v [m/s]
-  Row3 predicted;       // receives where predict takes particles [m]
-  bool from_positions;  // v lacks how far corrections move particles from there, over the step
-  bool v_waits;         // predict: that is not in v yet
+  Row3 u;               // corrections, which x and v lack, then zero [m]; or null: sweeps have put them in
+  bool v_waits;         // predict: x and v lack them still
   Row3 v_end;           // v as the substep before left it [m/s]
   float* w;             // inverse mass, scaled while the constraints are solved [1/kg]
   const float* mass;    // inverse mass proper [1/kg]
@@ -27,12 +26,11 @@ struct SecondOrderRow {
 // The most tethers a particle has.
 inline constexpr int kTethers = 4;
 
-// One row of particles and its tethers, which hold one after the other.
+// One row of particles and its tethers, which hold one after the other, before any other constraint.
 struct TetherRow {
   int columns;
-  Row3 x;
-  Row3 v;            // gains corrections times inverse_dt
-  float inverse_dt;  // 1/s; 0 = velocities are not touched
+  ConstRow3 x;
+  Row3 u;     // receives corrections where there are some; zero before [m]
   int count;         // of tethers that a particle may have
   struct Tether {
     ConstRow3 pin;       // where each particle's pin is [m]

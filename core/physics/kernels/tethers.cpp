@@ -1,5 +1,5 @@
 // Tethers: a particle farther from its pin p than its rest distance r over the sheet is put back
-// onto that distance, x <- p + r (x - p)/|x - p| (Kim, Chentanez, Müller-Fischer 2012, "Long range
+// onto that distance, x + u <- p + r (x - p)/|x - p| (Kim, Chentanez, Müller-Fischer 2012, "Long range
 // attachments"; pins do not move, so the particle takes the whole correction).
 #include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
@@ -23,8 +23,7 @@ void tethers(const TetherRow& r) {
       x = select(beyond, fma(e, reach * reciprocal_root(squared), pin), x);
     }
     if (!moved) continue;
-    store3(r.x, i, x);
-    if (r.inverse_dt > 0) store3(r.v, i, fma(x - start, wide(r.inverse_dt), load3(r.v, i)));
+    store3(r.u, i, x - start);
   }
 }
 

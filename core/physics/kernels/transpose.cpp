@@ -9,18 +9,12 @@ namespace {
 
 using physics::TransposeRows;
 
-// What lanes_to_rows does with neighbouring columns of a row.
+// Neighbouring columns of a row.
 template <class T>
-WEFT_INLINE void put(const TransposeRows& t, std::ptrdiff_t at, T value) {
+WEFT_INLINE void add(const TransposeRows& t, std::ptrdiff_t at, T value) {
   typedef T Loose __attribute__((aligned(4), may_alias));
   auto* to = reinterpret_cast<Loose*>(t.rows + at);
-  if (!t.rates) {
-    *to = value;
-    return;
-  }
-  auto* rate = reinterpret_cast<Loose*>(t.rates + at);
   *to = *to + value;
-  *rate = *rate + value * t.rate;
 }
 
 #if WEFT_LANES == 16
@@ -32,6 +26,12 @@ typedef float Eight __attribute__((vector_size(32), may_alias));
 WEFT_INLINE Wide join_halves(const float* a, const float* b) {
   return (Wide)_mm512_insertf32x8(_mm512_castps256_ps512(_mm256_loadu_ps(a)), _mm256_loadu_ps(b),
                                   1);
+}
+// Eight columns of a row and of the fourth after it.
+WEFT_INLINE Wide two_rows(const TransposeRows& t, std::ptrdiff_t at) {
+  const std::ptrdiff_t fourth = at + 4 * t.stride;
+  const Wide rows = join_halves(t.rows + at, t.rows + fourth);
+  return t.added ? rows + join_halves(t.added + at, t.added + fourth) : rows;
 }
 template <int Half>
 WEFT_INLINE Eight half(Wide v) {
@@ -49,9 +49,7 @@ WEFT_INLINE Wide quarters(Wide a, Wide b) {
 WEFT_INLINE void columns_to_lanes(const TransposeRows& t, int i) {
   Wide first[4], second[4];
   for (int r = 0; r < 4; ++r) {
-    const float* const row = t.rows + r * t.stride + i;
-    const Wide a = join_halves(row, row + 4 * t.stride);
-    const Wide b = join_halves(row + 8 * t.stride, row + 12 * t.stride);
+    const Wide a = two_rows(t, r * t.stride + i), b = two_rows(t, (r + 8) * t.stride + i);
     first[r] = quarters<0, 2, 4, 6>(a, b);
     second[r] = quarters<1, 3, 5, 7>(a, b);
   }
@@ -65,8 +63,8 @@ WEFT_INLINE void columns_to_lanes(const TransposeRows& t, int i) {
 
 // Eight columns of two rows.
 WEFT_INLINE void put_halves(const TransposeRows& t, int row, int i, Wide v) {
-  put(t, row * t.stride + i, half<0>(v));
-  put(t, (row + 4) * t.stride + i, half<1>(v));
+  add(t, row * t.stride + i, half<0>(v));
+  add(t, (row + 4) * t.stride + i, half<1>(v));
 }
 WEFT_INLINE void lanes_to_columns(const TransposeRows& t, int i) {
   Wide first[4], second[4];
@@ -97,12 +95,19 @@ void rows_to_lanes(const TransposeRows& t) {
   for (int i = 0; i < t.columns; i += 4)
     for (int r = 0; r < whole; r += 4) {
       Four v[4];
-      for (int n = 0; n < 4; ++n) v[n] = load_four(t.rows + (r + n) * t.stride + i);
+      for (int n = 0; n < 4; ++n) {
+        const std::ptrdiff_t at = (r + n) * t.stride + i;
+        v[n] = load_four(t.rows + at);
+        if (t.added) v[n] = v[n] + load_four(t.added + at);
+      }
       turn(v);
       for (int n = 0; n < 4; ++n) store_four(t.lanes + (i + n) * t.pitch + r, v[n]);
     }
   for (int r = whole; r < t.row_count; ++r)
-    for (int i = 0; i < t.columns; ++i) t.lanes[i * t.pitch + r] = t.rows[r * t.stride + i];
+    for (int i = 0; i < t.columns; ++i) {
+      const std::ptrdiff_t at = r * t.stride + i;
+      t.lanes[i * t.pitch + r] = t.added ? t.rows[at] + t.added[at] : t.rows[at];
+    }
 }
 
 void lanes_to_rows(const TransposeRows& t) {
@@ -117,11 +122,11 @@ void lanes_to_rows(const TransposeRows& t) {
       Four v[4];
       for (int n = 0; n < 4; ++n) v[n] = load_four(t.lanes + (i + n) * t.pitch + r);
       turn(v);
-      for (int n = 0; n < 4; ++n) put(t, (r + n) * t.stride + i, v[n]);
+      for (int n = 0; n < 4; ++n) add(t, (r + n) * t.stride + i, v[n]);
     }
   for (int r = 0; r < t.row_count; ++r)
     for (int i = r < rows ? columns : 0; i < t.columns; ++i)
-      put(t, r * t.stride + i, t.lanes[i * t.pitch + r]);
+      add(t, r * t.stride + i, t.lanes[i * t.pitch + r]);
 }
 
 }  // namespace weft::WEFT_KERNELS

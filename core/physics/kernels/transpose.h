@@ -7,16 +7,13 @@
 namespace weft::physics {
 
 // 16 neighbouring rows of one array as 16 neighbouring lanes, or back: element (row r, column i) is
-// rows[r*stride + i] and lanes[i*pitch + r].
+// rows[r*stride + i] and lanes[i*pitch + r]. rows_to_lanes sets lanes, lanes_to_rows adds to rows.
 struct TransposeRows {
   float* rows;
+  const float* added;  // rows_to_lanes: what lanes have besides, laid out as the rows; or null
   std::ptrdiff_t stride;
   float* lanes;
   std::ptrdiff_t pitch;
-  // lanes_to_rows: not null, then lanes are added to the rows, and `rate` times them to these, laid out
-  // as the rows; else the rows take what the lanes hold.
-  float* rates;
-  float rate;
   int row_count;  // 1 … 16; rows past it are left alone, their lanes hold values of no meaning
   int columns;
 };

@@ -139,7 +139,7 @@ void push(const PushRow& r) {
     const Wide time = load(r.w + i) * r.time;
     const Wide drag = time * load(r.air.drag + i), lift = time * load(r.air.lift + i);
     const Wide3 gained = load3(r.air.f, i) * (time / (1.0f + drag + lift * lift));
-    if (r.velocities) store3(r.v, i, load3(r.v, i) + gained);
+    store3(r.v, i, load3(r.v, i) + gained);
     store3(r.x, i, load3(r.x, i) + gained * wide(r.dt));
     store3(r.air.f, i, Wide3{});
     for (float* sum : {r.air.drag, r.air.lift}) store(sum + i, Wide{});

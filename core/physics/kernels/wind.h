@@ -40,9 +40,8 @@ struct PushRow {
   Row3 x, v;
   const float* w;
   AirRow air;
-  float time;       // s, that the air pushes for
-  float dt;         // s; how far positions follow the velocity that is gained
-  bool velocities;  // gain at once, else they get it from positions
+  float time;  // s, that the air pushes for
+  float dt;    // s; how far positions follow the velocity that is gained
 };
 
 }  // namespace weft::physics

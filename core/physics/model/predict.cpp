@@ -1,7 +1,7 @@
 // Stages "predict" and "velocity" of the methods that project positions: before the sweeps every
-// particle moves by its velocity and gravity, after them the velocity gains what the sweeps moved it
-// by, or both position and velocity the corrections that the sweeps have found. Between substeps where
-// nobody else looks that is left to the next predict (step/schedule.h).
+// particle moves by its velocity and gravity, after them both position and velocity gain the corrections
+// that the sweeps have found. Between substeps where nobody else looks that is left to the next predict
+// (step/schedule.h).
 #include "physics/model/projected_motion.h"
 
 namespace weft::physics {
@@ -15,7 +15,6 @@ AdvanceRow rows_of(const ClothParts& parts, int begin, int end) {
   a.x = l.x.row(begin);
   a.v = l.v.row(begin);
   a.w = l.w(begin);
-  if (l.previous.bytes() > 0) a.predicted = l.previous.row(begin);
   return a;
 }
 
@@ -28,14 +27,14 @@ class Predict final : public RowStage {
         multipliers_(multipliers),
         corrections_(corrections) {}
   // Where what the sweeps did is not in them yet, it adds that itself.
-  Velocities velocities(double) const override { return Velocities::left_alone; }
+  Velocities velocities() const override { return Velocities::left_alone; }
   bool moves_particles() const override { return true; }
   void run(int begin, int end, const Substep& s) override {
     AdvanceRow a = rows_of(parts_, begin, end);
     a.advance = advance_of(parts_, s);
-    if (!s.velocities_known) {
-      a.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
-      if (corrections_) a.f = corrections_->row(begin);
+    if (!s.velocities_known && corrections_) {
+      a.inverse_dt = velocity_gain(parts_.scene.solver, s.dt);
+      a.f = corrections_->row(begin);
     }
     parts_.kernels.particles.predict(a);
     if (multipliers_) multipliers_->clear(begin, end);
@@ -47,29 +46,7 @@ class Predict final : public RowStage {
   Rows* corrections_;
 };
 
-class Velocity final : public RowStage {
- public:
-  explicit Velocity(const ClothParts& parts)
-      : RowStage("velocity", "by how far the sweeps moved particles", 0, parts.particles.count(),
-                 "particles"),
-        parts_(parts) {}
-  Velocities velocities(double dt) const override {
-    return velocity_from_positions(parts_.scene.solver, dt) ? Velocities::from_sweeps
-                                                            : Velocities::left_alone;
-  }
-  void run(int begin, int end, const Substep& s) override {
-    if (!s.velocities_wanted) return;
-    if (!velocity_from_positions(parts_.scene.solver, s.dt)) return;
-    AdvanceRow a = rows_of(parts_, begin, end);
-    a.inverse_dt = float(1 / s.dt);
-    parts_.kernels.particles.velocity(a);
-  }
-
- private:
-  ClothParts parts_;
-};
-
-// What coloured sweeps have found goes into positions and velocities.
+// What sweeps have found goes into positions and velocities.
 class Corrections final : public RowStage {
  public:
   Corrections(const ClothParts& parts, Rows& corrections)
@@ -77,13 +54,13 @@ class Corrections final : public RowStage {
                  parts.particles.count(), "particles"),
         parts_(parts),
         corrections_(corrections) {}
-  Velocities velocities(double) const override { return Velocities::from_sweeps; }
+  Velocities velocities() const override { return Velocities::from_sweeps; }
   void run(int begin, int end, const Substep& s) override {
     if (!s.velocities_wanted) return;
     AdvanceRow a = rows_of(parts_, begin, end);
     a.w = nullptr;  // they are weighed already
     a.f = corrections_.row(begin);
-    a.inverse_dt = float(1 / (s.dt * implicit_share(parts_.scene.solver)));
+    a.inverse_dt = velocity_gain(parts_.scene.solver, s.dt);
     parts_.kernels.particles.apply_corrections(a);
   }
 
@@ -115,10 +92,6 @@ std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* mul
 
 std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections) {
   return std::make_unique<Corrections>(parts, corrections);
-}
-
-std::unique_ptr<RowStage> make_velocity(const ClothParts& parts) {
-  return std::make_unique<Velocity>(parts);
 }
 
 }  // namespace weft::physics

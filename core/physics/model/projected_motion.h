@@ -18,11 +18,10 @@ struct Multipliers {
   AlignedArray<float> data;
 };
 
-// `multipliers`: to be cleared before the sweeps; `corrections`: what these have found, if they gather it.
-// Either may be null.
+// `multipliers`: to be cleared before the sweeps; `corrections`: what these have found since the positions that
+// they were taken to, if they gather it. Either may be null.
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* multipliers,
                                        Rows* corrections);
-std::unique_ptr<RowStage> make_velocity(const ClothParts& parts);
 // After the sweeps: positions and velocities gain the corrections, which are then zero again.
 std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections);
 
@@ -30,19 +29,20 @@ std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& correc
 struct History {
   explicit History(const Particles& particles);
   std::size_t bytes() const {
-    return v_before.bytes() + v_end.bytes() + predicted.bytes() +
-           inverse_mass.size() * sizeof(float);
+    return v_before.bytes() + v_end.bytes() + inverse_mass.size() * sizeof(float);
   }
   // Whether a particle's velocity is what the last substep left, so that it has a smooth past.
   bool goes_on(const Particles& particles, int row, int column) const;
   // A change of velocity that was so all along: the past is another one by that, and by so much in one
   // component of the position before [m].
   void shift(Particles& particles, int component, int row, int column, float previous, float v);
-  Rows v_before, v_end, predicted;
+  Rows v_before, v_end;
   AlignedArray<float> inverse_mass;
 };
 std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
-                                                    Multipliers* multipliers);
-std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history);
+                                                    Multipliers* multipliers, Rows* corrections);
+// As make_corrections, and keeps velocities for the next substep.
+std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history,
+                                                     Rows* corrections);
 
 }  // namespace weft::physics

@@ -8,19 +8,19 @@ namespace weft::physics {
 namespace {
 
 // Rows j … end-1 as one long row, padding and all.
-SecondOrderRow rows_of(const ClothParts& parts, History& h, int j, int end, double dt) {
+SecondOrderRow rows_of(const ClothParts& parts, History& h, Rows* corrections, int j, int end,
+                       double dt) {
   Particles& l = parts.particles;
   const std::size_t lane = std::size_t(j) * l.stride;
   SecondOrderRow r{};
   r.columns = (end - j) * l.stride;
   r.dt = float(dt);
-  r.from_positions = velocity_from_positions(parts.scene.solver, dt);
   r.x = l.x.row(j);
   r.v = l.v.row(j);
   r.previous = l.previous.row(j);
   r.v_before = h.v_before.row(j);
   r.v_end = h.v_end.row(j);
-  r.predicted = h.predicted.row(j);
+  if (corrections) r.u = corrections->row(j);
   r.drag = float(parts.cloth.drag);
   r.w = l.w(j);
   r.mass = h.inverse_mass.data() + lane;
@@ -29,12 +29,13 @@ SecondOrderRow rows_of(const ClothParts& parts, History& h, int j, int end, doub
 
 class Predict final : public RowStage {
  public:
-  Predict(const ClothParts& parts, History& history, Multipliers* multipliers)
+  Predict(const ClothParts& parts, History& history, Multipliers* multipliers, Rows* corrections)
       : RowStage("predict", "second order, from two substeps before", 0, parts.particles.count(),
                  "particles"),
         parts_(parts),
         history_(history),
         multipliers_(multipliers),
+        corrections_(corrections),
         dt_(parts.particles.rows, 0.0) {}
   void restart() override {
     std::fill(dt_.begin(), dt_.end(), 0.0);
@@ -42,9 +43,8 @@ class Predict final : public RowStage {
     std::copy_n(mass.data(), mass.size(), history_.inverse_mass.data());
   }
   // Where what the sweeps did is not in them yet, it adds that itself.
-  Velocities velocities(double dt) const override {
-    return velocity_from_positions(parts_.scene.solver, dt) ? Velocities::left_alone
-                                                            : Velocities::used;
+  Velocities velocities() const override {
+    return corrections_ ? Velocities::left_alone : Velocities::used;
   }
   bool moves_particles() const override { return true; }
   void run(int begin, int end, const Substep& s) override {
@@ -59,7 +59,7 @@ class Predict final : public RowStage {
 
  private:
   void run_alike(int begin, int end, const Substep& s) {
-    SecondOrderRow r = rows_of(parts_, history_, begin, end, s.dt);
+    SecondOrderRow r = rows_of(parts_, history_, corrections_, begin, end, s.dt);
     const Vec3 g = gravity_at(parts_.scene, s.time);
     r.fresh = dt_[begin] != s.dt;
     std::fill(dt_.begin() + begin, dt_.begin() + end, s.dt);
@@ -73,28 +73,31 @@ class Predict final : public RowStage {
   ClothParts parts_;
   History& history_;
   Multipliers* multipliers_;
+  Rows* corrections_;
   std::vector<double> dt_;  // s, of every row's substep before; 0 = none
 };
 
 class Velocity final : public RowStage {
  public:
-  Velocity(const ClothParts& parts, History& history)
+  Velocity(const ClothParts& parts, History& history, Rows* corrections)
       : RowStage("velocity", "of the second order, kept for the next substep", 0,
                  parts.particles.count(), "particles"),
         parts_(parts),
-        history_(history) {}
-  Velocities velocities(double dt) const override {
-    return velocity_from_positions(parts_.scene.solver, dt) ? Velocities::from_sweeps
-                                                            : Velocities::used;
+        history_(history),
+        corrections_(corrections) {}
+  Velocities velocities() const override {
+    return corrections_ ? Velocities::from_sweeps : Velocities::used;
   }
   void run(int begin, int end, const Substep& s) override {
     if (s.velocities_wanted)
-      parts_.kernels.particles.velocity_second_order(rows_of(parts_, history_, begin, end, s.dt));
+      parts_.kernels.particles.velocity_second_order(
+          rows_of(parts_, history_, corrections_, begin, end, s.dt));
   }
 
  private:
   ClothParts parts_;
   History& history_;
+  Rows* corrections_;
 };
 
 }  // namespace
@@ -102,7 +105,6 @@ class Velocity final : public RowStage {
 History::History(const Particles& l)
     : v_before(l.rows, l.stride),
       v_end(l.rows, l.stride),
-      predicted(l.rows, l.stride),
       inverse_mass(std::size_t(l.rows) * l.stride) {
   std::copy_n(l.inverse_mass.data(), l.inverse_mass.size(), inverse_mass.data());
 }
@@ -122,12 +124,13 @@ void History::shift(Particles& particles, int component, int row, int column, fl
 }
 
 std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
-                                                    Multipliers* multipliers) {
-  return std::make_unique<Predict>(parts, history, multipliers);
+                                                    Multipliers* multipliers, Rows* corrections) {
+  return std::make_unique<Predict>(parts, history, multipliers, corrections);
 }
 
-std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history) {
-  return std::make_unique<Velocity>(parts, history);
+std::unique_ptr<RowStage> make_velocity_second_order(const ClothParts& parts, History& history,
+                                                     Rows* corrections) {
+  return std::make_unique<Velocity>(parts, history, corrections);
 }
 
 }  // namespace weft::physics

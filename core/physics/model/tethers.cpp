@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "physics/kernels/second_order.h"
-#include "physics/model/push.h"
 
 namespace weft::physics {
 namespace {
@@ -13,10 +12,11 @@ constexpr float kFree = 1e18f;  // m; the reach of a particle without a tether
 class Tethers final : public RowStage {
  public:
   Tethers(const ClothParts& parts, const std::vector<std::vector<Tether>>& slots,
-          std::int64_t count)
+          std::int64_t count, Rows& corrections)
       : RowStage("tethers", "to at most " + std::to_string(slots.size()) + " pins each", 0, count,
                  "tethers"),
         parts_(parts),
+        corrections_(corrections),
         moving_(std::size_t(parts.particles.count())) {
     for (const Pin& pin : parts.cloth.pins)
       if (pin.moves()) moving_[std::size_t(particle_number(parts.cloth, pin))] = &pin;
@@ -42,20 +42,17 @@ class Tethers final : public RowStage {
     return sum;
   }
 
-  Velocities velocities(double dt) const override {
-    return velocity_gain(parts_.scene.solver, dt) == 0 ? Velocities::left_alone : Velocities::used;
-  }
+  Velocities velocities() const override { return Velocities::left_alone; }
   void run(int begin, int end, const Substep& s) override {
     // The way over a torn sheet is another.
     if (const Tearing* tearing = parts_.model.tearing(); tearing && tearing->torn() > 0) return;
     Particles& p = parts_.particles;
     TetherRow r{};
-    r.inverse_dt = velocity_gain(parts_.scene.solver, s.dt);
     r.count = int(slots_.size());
     for (int j = begin; j < end; ++j) {
       r.columns = p.count(j);
       r.x = p.x.row(j);
-      r.v = p.v.row(j);
+      r.u = corrections_.row(j);
       for (int t = 0; t < r.count; ++t) {
         Slot& slot = slots_[std::size_t(t)];
         if (slot.moves[std::size_t(j)]) follow_pins(slot, j, s.time);
@@ -130,6 +127,7 @@ class Tethers final : public RowStage {
   }
 
   ClothParts parts_;
+  Rows& corrections_;
   std::vector<const Pin*> moving_;  // of every particle, null where it has no path
   std::vector<Slot> slots_;
 };
@@ -145,12 +143,13 @@ void add_tether(std::vector<std::vector<Tether>>& slots, int particles, int part
 }
 
 std::unique_ptr<RowStage> make_tethers(const ClothParts& parts,
-                                       const std::vector<std::vector<Tether>>& slots) {
+                                       const std::vector<std::vector<Tether>>& slots,
+                                       Rows& corrections) {
   std::int64_t count = 0;
   for (const std::vector<Tether>& slot : slots)
     count += std::count_if(slot.begin(), slot.end(), [](const Tether& t) { return t.pin >= 0; });
   if (count == 0) return nullptr;
-  return std::make_unique<Tethers>(parts, slots, count);
+  return std::make_unique<Tethers>(parts, slots, count, corrections);
 }
 
 }  // namespace weft::physics

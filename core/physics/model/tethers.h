@@ -13,8 +13,10 @@ struct Tether {
 };
 
 // Slot s has the s-th tether of every particle, by its number; at most kTethers slots. Null: there is none.
+// `corrections`, zero before, receive what it finds.
 std::unique_ptr<RowStage> make_tethers(const ClothParts& parts,
-                                       const std::vector<std::vector<Tether>>& slots);
+                                       const std::vector<std::vector<Tether>>& slots,
+                                       Rows& corrections);
 
 // Adds a tether to a particle of so many, in the first slot where it has none.
 void add_tether(std::vector<std::vector<Tether>>& slots, int particles, int particle,

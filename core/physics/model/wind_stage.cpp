@@ -37,11 +37,6 @@ WindStage::WindStage(const ClothParts& parts, std::uint64_t seed, std::int64_t t
   }
 }
 
-// What it reads, predict has brought up to date.
-Velocities WindStage::velocities(double dt) const {
-  return push_of(parts_, dt).velocities ? Velocities::used : Velocities::left_alone;
-}
-
 void WindStage::reserve_slots(int slots) {
   force_ = Rows(2 * slots, parts_.particles.stride);
   resistance_ = Rows(2 * slots, parts_.particles.stride);
@@ -58,9 +53,9 @@ void WindStage::run(int j, const Substep& s) {
   if (steps == 0) return;
   Particles& p = parts_.particles;
   blow(j, s);
-  const Push pushed = push_of(parts_, s.dt);
-  parts_.kernels.particles.push({p.count(j), p.x.row(j), p.v.row(j), p.w(j), sums(j, s),
-                                 float(steps * pushed.dt), float(pushed.dt), pushed.velocities});
+  const double time = push_time(parts_, s.dt);
+  parts_.kernels.particles.push(
+      {p.count(j), p.x.row(j), p.v.row(j), p.w(j), sums(j, s), float(steps * time), float(time)});
 }
 
 // For how many substeps this one pushes; 0: another one does. It is the one whose end, where it

@@ -80,9 +80,9 @@ void Schedule::prepare(double dt) {
   prepared_dt_ = dt;
   for (Pass& p : passes_) p.whole ? p.whole->prepare(dt) : p.wavefront->prepare(dt);
   velocities_between_ =
-      stages_.empty() || stages_.back()->velocities(dt) != Velocities::from_sweeps ||
+      stages_.empty() || stages_.back()->velocities() != Velocities::from_sweeps ||
       !std::all_of(stages_.begin(), stages_.end() - 1, [&](const std::unique_ptr<Stage>& s) {
-        return s->velocities(dt) == Velocities::left_alone;
+        return s->velocities() == Velocities::left_alone;
       });
 }
 

@@ -90,7 +90,7 @@ class Stage {
   virtual bool moves_particles() const { return false; }
   // Called before substeps of a new length.
   virtual void prepare(double dt) { (void)dt; }
-  virtual Velocities velocities(double dt) const { return (void)dt, Velocities::used; }
+  virtual Velocities velocities() const { return Velocities::used; }
   // The whole stage at once, for those who look between two stages.
   virtual void run_alone(int rows, const Substep& substep, Threads& threads) = 0;
   // Forgets what it keeps from one substep to the next: the state was set from outside.

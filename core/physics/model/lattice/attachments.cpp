@@ -59,7 +59,7 @@ std::vector<Place> nearest(const LatticeParts& parts, int side_i, int side_j) {
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts) {
+std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts, Rows& corrections) {
   const Lattice& l = parts.lattice;
   if (parts.cloth.pins.empty()) return nullptr;
   std::array<std::vector<Place>, kTethers> found{nearest(parts, -1, -1), nearest(parts, 1, -1),
@@ -77,7 +77,7 @@ std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts) {
       add_tether(slots, l.count(), p, {l.number(place.j, place.i), reach});
     }
   }
-  return make_tethers(parts, slots);
+  return make_tethers(parts, slots, corrections);
 }
 
 }  // namespace weft::physics

@@ -67,11 +67,12 @@ class BendingForce final : public RowStage {
 
 class BendingConstraints final : public WholeStage {
  public:
-  explicit BendingConstraints(const LatticeParts& parts)
+  BendingConstraints(const LatticeParts& parts, Rows& corrections)
       : WholeStage("bending", "curvature energy, rows and columns each solved as a whole, twist",
                    terms(parts.lattice), "constraints"),
         parts_(parts),
-        batches_(parts.lattice, parts.kernels, kBendScratch) {
+        corrections_(corrections),
+        batches_(parts.lattice, corrections, parts.kernels, kBendScratch) {
     if (parts.scene.solver.order == 2) batches_.follow_masses();
     if (left(parts, &BendLinks::along, 0))
       torn_ = TurnedLinks<float>(parts.lattice, batches_.row_groups());
@@ -83,15 +84,12 @@ class BendingConstraints final : public WholeStage {
     torn_.forget();
   }
 
-  Velocities velocities(double dt) const override {
-    return velocity_gain(parts_.scene.solver, dt) == 0 ? Velocities::left_alone : Velocities::used;
-  }
+  Velocities velocities() const override { return Velocities::left_alone; }
   void run(const Substep& s, Threads& threads) override {
     const BendingStiffness k = bending_stiffness(parts_.cloth);
     const double h = s.dt * implicit_share(parts_.scene.solver);
     const auto compliance = [&](double stiffness) { return float(1 / (stiffness * h * h)); };
     if (s.dt != dt_) set_compliance(compliance(k.along), compliance(k.across), s.dt);
-    inverse_dt_ = velocity_gain(parts_.scene.solver, s.dt);
     batches_.begin(threads);
     along_rows();
     along_columns();
@@ -120,14 +118,12 @@ class BendingConstraints final : public WholeStage {
                          const float* terms = left(parts_, &BendLinks::along, 0);
                          const float* turned =
                              terms ? torn_.follow(group, *parts_.tearing, terms) : nullptr;
-                         batches_.turned(group, memory, inverse_dt_, [&](int rows, float gain) {
+                         batches_.turned(group, memory, [&](int rows) {
                            for (int first = 0; first < rows; first += kBendLines) {
-                             const Row3 x = memory.tile.row(0);
+                             const Row3 x = memory.tile.row(0), u = memory.corrections.row(0);
                              BendLine p{};
-                             p.x = {x.x + first, x.y + first, x.z + first};
-                             const Row3 v = memory.moved.row(0);
-                             p.v = {v.x + first, v.y + first, v.z + first};
-                             p.inverse_dt = gain;
+                             p.x = x.from(first);
+                             p.u = u.from(first);
                              p.w = batches_.masses(group) + first;
                              p.step = kBatchLines;
                              p.particles = l.columns;
@@ -144,12 +140,10 @@ class BendingConstraints final : public WholeStage {
     Lattice& l = parts_.lattice;
     batches_.share_out((l.columns + kBendLines - 1) / kBendLines,
                        kDifferenceNs * kBendLines * l.rows, [&](int batch, BatchMemory& memory) {
-                         const Row3 x = l.x.row(0), v = l.v.row(0);
                          const int first = batch * kBendLines;
                          BendLine p{};
-                         p.x = {x.x + first, x.y + first, x.z + first};
-                         p.v = {v.x + first, v.y + first, v.z + first};
-                         p.inverse_dt = inverse_dt_;
+                         p.x = l.x.row(0).from(first);
+                         p.u = corrections_.row(0).from(first);
                          p.w = l.w(0) + first;
                          p.step = l.stride;
                          p.particles = l.rows;
@@ -169,9 +163,8 @@ class BendingConstraints final : public WholeStage {
         r.columns = l.columns;
         r.x = l.x.row(j);
         r.below = l.x.row(j + 1);
-        r.v = l.v.row(j);
-        r.v_below = l.v.row(j + 1);
-        r.inverse_dt = inverse_dt_;
+        r.u = corrections_.row(j);
+        r.u_below = corrections_.row(j + 1);
         r.w = l.w(j);
         r.w_below = l.w(j + 1);
         r.compliance = compliance;
@@ -184,20 +177,23 @@ class BendingConstraints final : public WholeStage {
   }
 
   LatticeParts parts_;
+  Rows& corrections_;
   LineBatches batches_;
   TurnedLinks<float> torn_;             // of the rows
-  float inverse_dt_ = 0;                // 1/s, or 0
   double dt_ = 0;                       // s, of the compliances
   AlignedArray<float> rows_, columns_;  // 1/kg, of the second differences along each
 };
 
 }  // namespace
 
-std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Method method) {
+std::unique_ptr<RowStage> make_bending_force(const LatticeParts& parts) {
   if (!parts.cloth.bending.given()) return nullptr;
-  if (method == Method::spring || method == Method::spring_friction)
-    return std::make_unique<BendingForce>(parts);
-  return std::make_unique<BendingConstraints>(parts);
+  return std::make_unique<BendingForce>(parts);
+}
+
+std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Rows& corrections) {
+  if (!parts.cloth.bending.given()) return nullptr;
+  return std::make_unique<BendingConstraints>(parts, corrections);
 }
 
 }  // namespace weft::physics

@@ -12,10 +12,9 @@
 namespace weft::physics {
 namespace {
 
-// Whether a stage asks where particles were before the substep: velocities from positions, and the
-// second order.
+// Whether a stage asks where particles were before the substep.
 bool keeps_previous(const Solver& solver, Method method) {
-  return !is_explicit(method) && (solver.sweep == Sweep::line || solver.order == 2);
+  return !is_explicit(method) && solver.order == 2;
 }
 
 }  // namespace
@@ -67,7 +66,9 @@ void LatticeModel::append_motion(Method method, StageList& list) {
   limit_forces_.reset();
   history_.reset();
   overlong_.clear();
+  ended_.clear();
   parts_.overlong = nullptr;
+  parts_.ended = nullptr;
   is_explicit(method) ? append_forces(list) : append_projections(list);
 }
 
@@ -76,7 +77,7 @@ void LatticeModel::append_forces(StageList& list) {
     overlong_.resize(std::size_t(lattice_.rows));
   parts_.overlong = overlong_.empty() ? nullptr : overlong_.data();
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
-  list.choose("bending", make_bending(parts_, method_), "bending is 0");
+  list.choose("bending", make_bending_force(parts_), "bending is 0");
   list.stages.push_back(is_membrane() ? make_membrane(parts_)
                                       : make_springs(parts_, method_ == Method::spring_friction));
   list.choose("wind", make_wind(parts_, seed_), "drag and lift are 0");
@@ -92,40 +93,49 @@ void LatticeModel::append_projections(StageList& list) {
   if (sweep.compliant && !lines && solver.iterations > 1)
     multipliers_ = std::make_unique<Multipliers>(lattice_, stencils_.size());
   sweep.multipliers = multipliers_.get();
-  if (solver.sweep == Sweep::gauss_seidel)
+  // Jacobi sweeps find all corrections of a particle at once, and need not gather them.
+  const bool gather = solver.sweep != Sweep::jacobi;
+  const bool bends = parts_.cloth.bending.given();
+  if (gather || solver.tethers || bends)
     corrections_ = std::make_unique<Rows>(lattice_.rows, lattice_.stride);
   sweep.corrections = corrections_.get();
   if (solver.order == 2)
     history_ = std::make_unique<History>(lattice_);
   else
     list.skip("second order", "order is 1");
-  list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, multipliers_.get())
+  list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, multipliers_.get(),
+                                                             corrections_.get())
                                  : make_predict(parts_, multipliers_.get(), corrections_.get()));
   list.choose("wind", make_wind(parts_, seed_), "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
-  list.choose("tethers", solver.tethers ? make_attachments(parts_) : nullptr,
+  list.choose("tethers", solver.tethers ? make_attachments(parts_, *corrections_) : nullptr,
               solver.tethers ? "nothing is pinned" : "off in the scene");
+  if (!gather && solver.tethers) list.stages.push_back(make_corrections(parts_, *corrections_));
   if (lines) {
     const float share = sweep.compliant ? 1.0f : float(2 * parts_.cloth.positional_k);
     list.choose("line",
-                make_line(parts_, {sweep.compliant, solver.iterations, share, solves_membrane()}),
+                make_line(parts_, *corrections_,
+                          {sweep.compliant, solver.iterations, share, solves_membrane(), !solver.tethers}),
                 "the cloth has no constraints");
   } else {
     list.skip("line", "sweep is not line");
+    const bool tears = parts_.cloth.tear_strain > 0 && solver.sweep == Sweep::gauss_seidel;
+    if (tears) ended_.resize(std::size_t(lattice_.rows));
+    if (tears) parts_.ended = ended_.data();
     for (int n = 0; n < solver.iterations && !stencils_.empty(); ++n) {
+      sweep.tears = tears && n + 1 == solver.iterations;
       if (solver.sweep == Sweep::jacobi)
         list.stages.push_back(make_jacobi(parts_, sweep));
       else
         append_gauss_seidel(parts_, sweep, list.stages);
     }
   }
-  if (corrections_) list.stages.push_back(make_corrections(parts_, *corrections_));
   // What comes last stays as solved, and stretching undoes more of bending than that of stretching.
-  list.choose("bending", make_bending(parts_, method_), "bending is 0");
+  list.choose("bending", bends ? make_bending(parts_, *corrections_) : nullptr, "bending is 0");
   if (history_)
-    list.stages.push_back(make_velocity_second_order(parts_, *history_));
-  else if (lines)
-    list.stages.push_back(make_velocity(parts_));
+    list.stages.push_back(make_velocity_second_order(parts_, *history_, corrections_.get()));
+  else if (corrections_)
+    list.stages.push_back(make_corrections(parts_, *corrections_));
 }
 
 void LatticeModel::append_limits(StageList& list) {
@@ -170,7 +180,7 @@ std::size_t LatticeModel::bytes() const {
                       (corrections_ ? corrections_->bytes() : 0) +
                       (limit_forces_ ? limit_forces_->bytes() : 0) +
                       (history_ ? history_->bytes() : 0);
-  if (tearing_) bytes += tearing_->bytes() + overlong_.size();
+  if (tearing_) bytes += tearing_->bytes() + overlong_.size() + ended_.size() * sizeof(std::int32_t);
   return bytes;
 }
 

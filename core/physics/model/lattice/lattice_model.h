@@ -73,6 +73,7 @@ class LatticeModel final : public ClothModel {
   std::unique_ptr<Rows> corrections_;
   std::unique_ptr<History> history_;
   std::vector<std::uint8_t> overlong_;
+  std::vector<std::int32_t> ended_;
   std::unique_ptr<LatticeTearing> tearing_;
   mutable SurfaceMesh surface_;  // as last asked for
 };

@@ -1,12 +1,17 @@
 // LineBatches of lines (batches.h).
 #include "physics/model/lattice/line_batches.h"
 
-#include <tuple>
+#include <utility>
 
 namespace weft::physics {
 
-LineBatches::LineBatches(Lattice& lattice, const KernelTable& kernels, int scratch)
-    : lattice_(lattice), kernels_(kernels), scratch_(scratch), masses_(masses_at(row_groups())) {
+LineBatches::LineBatches(Lattice& lattice, Rows& corrections, const KernelTable& kernels,
+                         int scratch)
+    : lattice_(lattice),
+      corrections_(corrections),
+      kernels_(kernels),
+      scratch_(scratch),
+      masses_(masses_at(row_groups())) {
   turn_masses();
 }
 
@@ -17,7 +22,7 @@ void LineBatches::turn_masses() {
 std::size_t LineBatches::bytes() const {
   std::size_t sum = masses_.size() * sizeof(float);
   for (const BatchMemory& m : memory_)
-    sum += m.tile.bytes() + m.moved.bytes() + m.scratch.size() * sizeof(float);
+    sum += m.tile.bytes() + m.corrections.bytes() + m.scratch.size() * sizeof(float);
   return sum;
 }
 
@@ -29,41 +34,39 @@ BatchMemory LineBatches::make_memory() const {
 
 void LineBatches::turn_there(int group, BatchMemory& memory) {
   if (masses_change_) turn_masses(group);
-  const Row3 x = lattice_.x.row(0), tile = memory.tile.row(0);
-  turn(x.x, group, tile.x);
-  turn(x.y, group, tile.y);
-  turn(x.z, group, tile.z);
+  const Row3 x = lattice_.x.row(0), u = corrections_.row(0), tile = memory.tile.row(0);
+  turn(x.x, u.x, group, tile.x);
+  turn(x.y, u.y, group, tile.y);
+  turn(x.z, u.z, group, tile.z);
+  memory.corrections.clear();
 }
 
 void LineBatches::turn_masses(int group) {
-  turn(lattice_.w(0), group, masses_.data() + masses_at(group));
+  turn(lattice_.w(0), nullptr, group, masses_.data() + masses_at(group));
 }
 
-void LineBatches::turn(const float* from, int group, float* lanes) const {
+void LineBatches::turn(const float* from, const float* added, int group, float* lanes) const {
   const int rows = rows_of(group);
   for (int half = 0; half < rows; half += 16) {
     TransposeRows t = turning(half, rows);
-    // Rows are only read on the way there.
-    t.rows =
-        const_cast<float*>(from) + std::ptrdiff_t(group * kBatchLines + half) * lattice_.stride;
+    const std::ptrdiff_t first = std::ptrdiff_t(group * kBatchLines + half) * lattice_.stride;
+    t.rows = const_cast<float*>(from) + first;  // on the way there they are only read
+    if (added) t.added = added + first;
     t.lanes = lanes + half;
     kernels_.lines.rows_to_lanes(t);
   }
 }
 
-// Where velocities gain what particles move by, positions do so at once: both from the same lanes.
-void LineBatches::turn_back(int begin, int rows, BatchMemory& memory, float inverse_dt) {
-  const Row3 from = (inverse_dt > 0 ? memory.moved : memory.tile).row(0);
+void LineBatches::turn_back(int group, BatchMemory& memory) {
+  const int rows = rows_of(group), begin = group * kBatchLines;
+  const Row3 from = memory.corrections.row(0);
   for (int half = 0; half < rows; half += 16) {
-    const Row3 x = lattice_.x.row(begin + half), v = lattice_.v.row(begin + half);
+    const Row3 to = corrections_.row(begin + half);
     TransposeRows t = turning(half, rows);
-    t.rate = inverse_dt;
-    for (const auto& [lanes, row, rates] :
-         {std::tuple(from.x, x.x, v.x), std::tuple(from.y, x.y, v.y),
-          std::tuple(from.z, x.z, v.z)}) {
+    for (const auto& [lanes, row] :
+         {std::pair(from.x, to.x), std::pair(from.y, to.y), std::pair(from.z, to.z)}) {
       t.lanes = lanes + half;
       t.rows = row;
-      t.rates = inverse_dt > 0 ? rates : nullptr;
       kernels_.lines.lanes_to_rows(t);
     }
   }

@@ -17,8 +17,8 @@ namespace weft::physics {
 // The memory of one thread.
 struct BatchMemory {
   AlignedArray<float> scratch;
-  Rows tile;   // kBatchLines rows as lanes: [column][kBatchLines] of x, y, z
-  Rows moved;  // by how much the solution has moved them, laid out as the tile
+  Rows tile;         // where the particles of kBatchLines rows are, as lanes: [column][kBatchLines] of x, y, z
+  Rows corrections;  // that they gain there, laid out as the tile
 };
 
 // What is left of the links along the rows, turned into lanes as the tiles are: [column][kBatchLines]
@@ -56,8 +56,8 @@ class TurnedLinks {
 
 class LineBatches {
  public:
-  // `scratch`: floats for each particle of a batch.
-  LineBatches(Lattice& lattice, const KernelTable& kernels, int scratch);
+  // `corrections`: where solutions go, laid out as the lattice; `scratch`: floats for each particle of a batch.
+  LineBatches(Lattice& lattice, Rows& corrections, const KernelTable& kernels, int scratch);
 
   int row_groups() const { return (lattice_.rows + kBatchLines - 1) / kBatchLines; }
   std::size_t bytes() const;
@@ -79,8 +79,9 @@ class LineBatches {
                     [&](std::size_t n) { solve(int(n), memory_[std::size_t(Threads::index())]); });
   }
 
-  // Turns a group's rows of an array that is laid out as the lattice, from row 0 on, into lanes.
-  void turn(const float* rows, int group, float* lanes) const;
+  // Turns a group's rows of an array that is laid out as the lattice, from row 0 on, into lanes, with those of
+  // another added, if given.
+  void turn(const float* rows, const float* added, int group, float* lanes) const;
 
   // Inverse masses of a group's rows as lanes, laid out as the tile.
   const float* masses(int group) const { return masses_.data() + masses_at(group); }
@@ -88,16 +89,13 @@ class LineBatches {
   void turn_masses();
   void follow_masses() { masses_change_ = true; }
 
-  // Turns the rows of a group into the lanes of a tile, solves and turns back. solve gets the number
-  // of rows, and what `moved` of the memory, where it adds up its moves, is multiplied by: 0, nothing
-  // is added up, or 1, and velocities then gain inverse_dt times the moves.
+  // Turns the rows of a group, corrected, into the lanes of a tile, solves, and turns back the corrections that
+  // they gain there, which are zero before. solve gets the number of rows.
   template <class Solve>
-  void turned(int group, BatchMemory& memory, float inverse_dt, const Solve& solve) {
-    const int rows = rows_of(group);
+  void turned(int group, BatchMemory& memory, const Solve& solve) {
     turn_there(group, memory);
-    if (inverse_dt > 0) memory.moved.clear();
-    solve(rows, inverse_dt > 0 ? 1.0f : 0.0f);
-    turn_back(group * kBatchLines, rows, memory, inverse_dt);
+    solve(rows_of(group));
+    turn_back(group, memory);
   }
 
  private:
@@ -114,9 +112,10 @@ class LineBatches {
     return std::size_t(group) * turned_columns(lattice_.columns) * kBatchLines;
   }
   void turn_masses(int group);
-  void turn_back(int begin, int rows, BatchMemory& memory, float inverse_dt);
+  void turn_back(int group, BatchMemory& memory);
 
   Lattice& lattice_;
+  Rows& corrections_;
   const KernelTable& kernels_;
   int scratch_;
   AlignedArray<float> masses_;

@@ -38,12 +38,13 @@ struct LineStencil {
   AlignedArray<float> lambda;       // shaped like the lattice; stencils along rows: like the tiles
   TurnedLinks<std::int32_t> links;  // of stencils along rows that can tear
 
+  bool first = false;  // of a sweep, and between rows
   int reach() const { return std::max(std::abs(stencil->di), stencil->dj); }
 };
 
 class Line final : public WholeStage {
  public:
-  Line(const LatticeParts& parts, const LineOptions& options)
+  Line(const LatticeParts& parts, Rows& corrections, const LineOptions& options)
       : WholeStage(
             "line",
             (options.membrane ? "rows, columns and diagonals of the membrane"
@@ -53,10 +54,11 @@ class Line final : public WholeStage {
                                         : ""),
             parts.constraints() * options.iterations, "constraints"),
         parts_(parts),
+        corrections_(corrections),
         options_(options),
         solve_(options.membrane ? parts.kernels.lines.membrane_line_batch
                                 : parts.kernels.lines.line_batch),
-        batches_(parts.lattice, parts.kernels, kBatchScratch) {
+        batches_(parts.lattice, corrections, parts.kernels, kBatchScratch) {
     for (const Stencil& f : parts.stencils) {
       LineStencil& l = (f.dj == 0   ? along_rows_
                         : f.di == 0 ? along_columns_
@@ -83,6 +85,8 @@ class Line final : public WholeStage {
       std::stable_sort(
           stencils->begin(), stencils->end(),
           [](const LineStencil& a, const LineStencil& b) { return a.reach() > b.reach(); });
+    if (auto& between = diagonal_.empty() ? along_columns_ : diagonal_; !between.empty())
+      between.front().first = true;
     for (const float w : parts.lattice.inverse_mass.span()) least_ = std::max(least_, double(w));
     least_ *= kLeastCompliance;
   }
@@ -99,9 +103,7 @@ class Line final : public WholeStage {
     for (LineStencil& l : along_rows_) l.links.forget();
   }
 
-  Velocities velocities(double dt) const override {
-    return velocity_gain(parts_.scene.solver, dt) == 0 ? Velocities::left_alone : Velocities::used;
-  }
+  Velocities velocities() const override { return Velocities::left_alone; }
   void run(const Substep& s, Threads& threads) override {
     if (s.dt != dt_) set_compliance(s.dt);
     batches_.begin(threads);
@@ -114,7 +116,8 @@ class Line final : public WholeStage {
   }
 
   void sweep(bool fresh) {
-    if (membrane_) membrane_->look(batches_);
+    const bool zero = fresh && options_.corrections_zero;
+    if (membrane_) membrane_->look(batches_, zero ? nullptr : &corrections_);
     for (LineStencil& l : diagonal_) solve_batches({&l, 1}, fresh);
     if (!along_columns_.empty()) solve_batches(along_columns_, fresh);
     if (!along_rows_.empty()) solve_rows(fresh);
@@ -135,7 +138,7 @@ class Line final : public WholeStage {
 
   // The lines that begin in row `start`, from line `first` on.
   void solve_batch(LineStencil& l, int start, int first, bool fresh, BatchMemory& memory) {
-    LineBatch p = between_rows(l, start);
+    LineBatch p = between_rows(l, start, fresh);
     p.first = first;
     if (l.by_column) p.compliance += first;
     p.fresh = fresh;
@@ -143,13 +146,13 @@ class Line final : public WholeStage {
     solve_(p);
   }
 
-  LineBatch between_rows(LineStencil& l, int start) {
+  LineBatch between_rows(LineStencil& l, int start, bool fresh) {
     Lattice& lattice = parts_.lattice;
     const Stencil& f = *l.stencil;
     LineBatch p{};
     p.x = lattice.x.row(start);
-    p.v = lattice.v.row(start);
-    p.inverse_dt = inverse_dt();
+    p.u = corrections_.row(start);
+    p.first_corrections = fresh && options_.corrections_zero && l.first;
     p.w = lattice.w(start);
     p.step = std::ptrdiff_t(f.dj) * lattice.stride + f.di;
     p.particles = (lattice.rows - start + f.dj - 1) / f.dj;
@@ -174,13 +177,12 @@ class Line final : public WholeStage {
         batches_.row_groups(),
         kConstraintNs * kBatchLines * parts_.lattice.columns * double(along_rows_.size()),
         [&](int group, BatchMemory& memory) {
-          batches_.turned(group, memory, inverse_dt(), [&](int rows, float gain) {
-            solve_group(group, rows, gain, fresh, memory);
-          });
+          batches_.turned(group, memory,
+                          [&](int rows) { solve_group(group, rows, fresh, memory); });
         });
   }
 
-  void solve_group(int group, int rows, float gain, bool fresh, BatchMemory& memory) {
+  void solve_group(int group, int rows, bool fresh, BatchMemory& memory) {
     const int columns = parts_.lattice.columns;
     const float* squares = membrane_ ? membrane_->turned(group, batches_) : nullptr;
     for (LineStencil& l : along_rows_) {
@@ -191,8 +193,8 @@ class Line final : public WholeStage {
       for (int start = 0; start < n; ++start) {
         LineBatch p{};
         p.x = memory.tile.row(start);
-        p.v = memory.moved.row(start);
-        p.inverse_dt = gain;
+        p.u = memory.corrections.row(start);
+        p.first_corrections = &l == &along_rows_.front();
         p.w = batches_.masses(group) + start * kBatchLines;
         p.step = n * kBatchLines;
         p.particles = (columns - start + n - 1) / n;
@@ -212,7 +214,6 @@ class Line final : public WholeStage {
     }
   }
 
-  float inverse_dt() const { return velocity_gain(parts_.scene.solver, dt_); }
   void set_compliance(double dt) {
     dt_ = dt;
     for (auto* stencils : all())
@@ -240,6 +241,7 @@ class Line final : public WholeStage {
   }
 
   LatticeParts parts_;
+  Rows& corrections_;
   LineOptions options_;
   void (*solve_)(const LineBatch&);
   LineBatches batches_;
@@ -251,9 +253,10 @@ class Line final : public WholeStage {
 
 }  // namespace
 
-std::unique_ptr<Stage> make_line(const LatticeParts& parts, const LineOptions& options) {
+std::unique_ptr<Stage> make_line(const LatticeParts& parts, Rows& corrections,
+                                 const LineOptions& options) {
   if (parts.stencils.empty()) return nullptr;
-  return std::make_unique<Line>(parts, options);
+  return std::make_unique<Line>(parts, corrections, options);
 }
 
 }  // namespace weft::physics

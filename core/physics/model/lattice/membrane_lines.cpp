@@ -72,7 +72,7 @@ double MembraneLines::compliance(const Stencil& f, int j, double share, double h
   return 1 / (stiffness * h * h);
 }
 
-MembraneSquares MembraneLines::rows(int begin, int end) {
+MembraneSquares MembraneLines::rows(int begin, int end, const Rows* corrections) {
   Lattice& l = parts_.lattice;
   const Membrane& m = parts_.cloth.membrane;
   const double coupling = std::abs(m.coupling);
@@ -83,6 +83,7 @@ MembraneSquares MembraneLines::rows(int begin, int end) {
   r.columns = l.columns;
   r.stride = l.stride;
   r.x = l.x.row(0);
+  if (corrections) r.u = corrections->row(0);
   r.diagonals = diagonals_.data() + kGuard;
   r.square_u = float(hu_ * hu_);
   r.square_v = float(hv_ * hv_);
@@ -101,13 +102,14 @@ MembraneSquares MembraneLines::rows(int begin, int end) {
   return r;
 }
 
-void MembraneLines::look(LineBatches& batches) {
+void MembraneLines::look(LineBatches& batches, const Rows* corrections) {
   const int all = parts_.lattice.rows, columns = parts_.lattice.columns;
   batches.share_out(
       (all + kRowsTogether - 1) / kRowsTogether, kParticleNs * kRowsTogether * columns,
       [&](int n, BatchMemory&) {
         const int begin = n * kRowsTogether;
-        parts_.kernels.lattice.membrane_squares(rows(begin, std::min(begin + kRowsTogether, all)));
+        const int end = std::min(begin + kRowsTogether, all);
+        parts_.kernels.lattice.membrane_squares(rows(begin, end, corrections));
       });
 }
 
@@ -120,7 +122,7 @@ const float* MembraneLines::turned(int group, LineBatches& batches) {
   if (!coupled()) return nullptr;
   float* lanes =
       turned_.data() + std::size_t(group) * turned_columns(parts_.lattice.columns) * kBatchLines;
-  batches.turn(along_.data() + kGuard, group, lanes);
+  batches.turn(along_.data() + kGuard, nullptr, group, lanes);
   return lanes;
 }
 

@@ -19,8 +19,8 @@ class MembraneLines {
   // Newton steps of a line. Of the diagonals, which come first and are softer, what one step leaves is little.
   static int steps(const Stencil& stencil) { return stencil.kind == Kind::shear ? 1 : 2; }
 
-  // Before every sweep: what its lines are to have, by where the particles lie.
-  void look(LineBatches& batches);
+  // Before every sweep: what its lines are to have, by where the particles lie, with corrections if there are some.
+  void look(LineBatches& batches, const Rows* corrections);
   // Of a stencil between rows, laid out as the lattice, constraint 0 of a row in lane 0; null: its rest length.
   const float* squares(const Stencil& stencil, int row) const;
   // Of edges along rows, as lanes of a group; null: their rest length.
@@ -40,7 +40,7 @@ class MembraneLines {
   }
   double gradient(int j) const;
   bool coupled() const { return parts_.cloth.membrane.coupling != 0; }
-  MembraneSquares rows(int begin, int end);
+  MembraneSquares rows(int begin, int end, const Rows* corrections);
 
   LatticeParts parts_;
   double hu_, hv_;

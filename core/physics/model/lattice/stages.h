@@ -24,6 +24,8 @@ struct LatticeParts : ClothParts {
   LatticeTearing* tearing = nullptr;  // null: the cloth cannot tear
   // By row, written by the springs: whether a constraint was too long; null: they do not tell.
   std::uint8_t* overlong = nullptr;
+  // By row, written by the sweeps: how many constraints they have ended; null: they end none.
+  std::int32_t* ended = nullptr;
   std::int64_t constraints() const;
 };
 
@@ -48,15 +50,18 @@ struct SweepOptions {
   double held = 0;              // what forces hold of it: as much or less,
   double strongest = 0;         // and the greatest that lasts to the next substep [N]
   LimitSweep limit_sweep = LimitSweep::once;  // of this kind; not `once`: with multipliers
+  bool tears = false;                         // ends constraints past their tear strain
 };
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
 // A strain limit that holds: sweeps by forces that last, which stay in `forces`.
 void append_held_limit(const LatticeParts& parts, Multipliers& forces, Stages& stages);
 // The strain limit, one constraint after the other.
 std::unique_ptr<RowStage> make_course_limit(const LatticeParts& parts);
-std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts);
-// The curvature energy, as a force on the velocities or as constraints.
-std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Method method);
+std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts, Rows& corrections);
+// The curvature energy, as a force on the velocities, or as constraints, which gather corrections; null when the
+// cloth does not bend.
+std::unique_ptr<RowStage> make_bending_force(const LatticeParts& parts);
+std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Rows& corrections);
 
 // Compliance 1/(k dt²) [1/kg] of a stencil's constraints in row j, dt the share of the substep that
 // the solver's order gives constraint forces.
@@ -67,9 +72,11 @@ struct LineOptions {
   int iterations = 1;
   float share = 1;        // of the correction
   bool membrane = false;  // not springs but the membrane, compliant
+  bool corrections_zero = true;  // when the sweeps begin
 };
 // The line sweep: one stage for all stencils and iterations; null when the cloth has no constraint.
-std::unique_ptr<Stage> make_line(const LatticeParts& parts, const LineOptions& options);
+std::unique_ptr<Stage> make_line(const LatticeParts& parts, Rows& corrections,
+                                 const LineOptions& options);
 std::unique_ptr<RowStage> make_jacobi(const LatticeParts& parts, const SweepOptions& options);
 
 }  // namespace weft::physics

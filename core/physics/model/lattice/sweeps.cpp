@@ -108,6 +108,10 @@ class ProjectedStencils {
                    : float(1 / (2 * parts_.cloth.positional_k));
     r.limit = options_.limit > 0 ? options_.limit_sweep : LimitSweep::none;
     if (stencil.links) r.alive = stencil.links->row(0);
+    if (options_.tears) {
+      r.longest_square = tear_length(parts_.cloth, stencil) * tear_length(parts_.cloth, stencil);
+      r.ended = parts_.ended;
+    }
     if (options_.compliant) {
       m.compliance.resize(std::size_t(l.rows));
       r.compliance = m.compliance.data();
@@ -141,7 +145,7 @@ class GaussSeidel final : public RowStage {
   std::size_t bytes() const override { return stencils_->bytes(); }
   void prepare(double dt) override { stencils_->prepare(dt); }
   void restart() override { stencils_->restart(); }
-  Velocities velocities(double) const override { return stencils_->velocities(); }
+  Velocities velocities() const override { return stencils_->velocities(); }
   void run(int begin, int end, const Substep&) override {
     const std::vector<ProjectRows>& stencils = stencils_->rows();
     project_({stencils.data(), int(stencils.size()), begin, end, colour_});
@@ -200,7 +204,7 @@ class PlainJacobi final : public PlainRowsStage {
         constraints_[std::size_t(j) * kPlainStencils + std::size_t(f)] =
             constants_of(parts_.stencils[std::size_t(f)], j, dt);
   }
-  Velocities velocities(double) const override { return Velocities::used; }
+  Velocities velocities() const override { return Velocities::used; }
   void run(int begin, int end, const Substep& s) override {
     for (int first = begin; first < end;) {
       const float same = alike(first);
@@ -269,7 +273,7 @@ class Jacobi final : public RowStage {
   void prepare(double dt) override {
     for (ProjectedStencils& f : stencils_) f.prepare(dt);
   }
-  Velocities velocities(double) const override { return Velocities::used; }
+  Velocities velocities() const override { return Velocities::used; }
   void start(const Substep& s) override {
     for (int k = 0; k <= reach; ++k)
       zero(sum_.row(s.slot * (reach + 1) + k), parts_.lattice.stride);

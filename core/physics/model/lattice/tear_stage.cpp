@@ -1,5 +1,5 @@
 // Stage "tear": constraints beyond their tear strain end.
-#include <cmath>
+#include <utility>
 
 #include "physics/kernels/lattice.h"
 #include "physics/kernels/tear.h"
@@ -10,7 +10,7 @@ namespace weft::physics {
 namespace {
 
 // Where the springs say which rows had a constraint too long at the start of the substep, the others
-// need no look.
+// need no look. What sweeps have ended is counted.
 class TearStage final : public RowStage {
  public:
   TearStage(const LatticeParts& parts, LatticeTearing& tearing)
@@ -19,6 +19,10 @@ class TearStage final : public RowStage {
         parts_(parts),
         tearing_(tearing) {}
   void run(int j, const Substep&) override {
+    if (parts_.ended) {
+      if (parts_.ended[j] > 0) tearing_.died(j, std::exchange(parts_.ended[j], 0));
+      return;
+    }
     if (parts_.overlong && !parts_.overlong[j]) return;
     Lattice& l = parts_.lattice;
     const auto from = [&](int row, int column) {

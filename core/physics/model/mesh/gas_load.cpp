@@ -84,15 +84,14 @@ class PressureStage final : public WholeStage {
     return gas_.law().over(gas_.law().share(s.time - s.dt), volume);
   }
   double over_at_end(const Substep& s, double volume) const {
-    const double dt = push_of(parts_, s.dt).dt;
+    const double dt = push_time(parts_, s.dt);
     return gas_.law().over_after(gas_.law().share(s.time), volume, dt * dt * sum_of(growths_));
   }
 
   void push(RowSpan span, double over, const Substep& s) {
     Particles& particles = parts_.particles;
     const bool forces = is_explicit(parts_.method);
-    const Push pushed = push_of(parts_, s.dt);
-    const double kick = forces ? s.kick : pushed.dt;
+    const double time = push_time(parts_, s.dt), kick = forces ? s.kick : time;
     for (int p = span.begin; p < span.end; ++p)
       for (const auto& [place, number] : gas_.members(p)) {
         const auto [j, i] = place;
@@ -101,8 +100,8 @@ class PressureStage final : public WholeStage {
         for (int k = 0; k < 3; ++k) {
           const double gained = gain * work_.gradients[std::size_t(p)][std::size_t(k)];
           float &x = particles.x.at(k, j, i), &v = particles.v.at(k, j, i);
-          if (pushed.velocities) v = float(double(v) + gained);
-          if (!forces) x = float(double(x) + gained * pushed.dt);
+          v = float(double(v) + gained);
+          if (!forces) x = float(double(x) + gained * time);
         }
       }
   }

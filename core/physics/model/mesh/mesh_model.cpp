@@ -114,28 +114,30 @@ void MeshModel::append_gas(StageList& list) {
 void MeshModel::append_projections(StageList& list) {
   const Solver& solver = parts_.scene.solver;
   list.skip("triangles", "constraints are projected with this method");
-  const bool lines = solver.sweep == Sweep::line;
-  if ((lines || solver.order == 2) && particles_.previous.bytes() == 0)
+  if (solver.order == 2 && particles_.previous.bytes() == 0)
     particles_.previous = Rows(particles_.rows, particles_.stride);
   if (solver.order == 2)
     history_ = std::make_unique<History>(particles_);
   else
     list.skip("second order", "order is 1");
+  corrections_.reset();
+  if (solver.tethers) corrections_ = std::make_unique<Rows>(particles_.rows, particles_.stride);
   if (material_.membrane) strain_sweeps().append_places_before(list);
-  list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, nullptr)
-                                 : make_predict(parts_, nullptr, nullptr));
+  list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, nullptr, nullptr)
+                                 : make_predict(parts_, nullptr, corrections_.get()));
   append_gas(list);
   list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_, tearing_.get()),
               "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
   if (solver.tethers && tethers_.empty()) tethers_ = attachments();
-  list.choose("tethers", solver.tethers ? make_tethers(parts_, tethers_) : nullptr,
+  list.choose("tethers", solver.tethers ? make_tethers(parts_, tethers_, *corrections_) : nullptr,
               solver.tethers ? "nothing is pinned" : "off in the scene");
+  if (solver.tethers) list.stages.push_back(make_corrections(parts_, *corrections_));
   if (material_.membrane)
     append_membrane(list);
   else if (material_.stiffness == 0)
     list.skip("gauss_seidel", "stiffness is 0");
-  else if (lines)
+  else if (solver.sweep == Sweep::line)
     list.stages.push_back(StrandSweeps(parts_, edges_, material_.stiffness, start_, tearing_.get())
                               .stage(solver.iterations, true));
   else
@@ -145,9 +147,7 @@ void MeshModel::append_projections(StageList& list) {
   else
     list.skip("bending", "bending is 0");
   if (history_)
-    list.stages.push_back(make_velocity_second_order(parts_, *history_));
-  else if (lines)
-    list.stages.push_back(make_velocity(parts_));
+    list.stages.push_back(make_velocity_second_order(parts_, *history_, nullptr));
 }
 
 std::vector<std::vector<Tether>> MeshModel::attachments() const {
@@ -267,7 +267,8 @@ std::size_t MeshModel::bytes() const {
   return particles_.bytes() + triangles_.size() * sizeof(RestTriangle) +
          edges_.ends.size() * (sizeof(Joined) + sizeof(double)) +
          start_.size() * (sizeof(Vec3) + sizeof(double)) + (sweeps_ ? sweeps_->bytes() : 0) +
-         (history_ ? history_->bytes() : 0) + seams_.bytes() + (gas_ ? gas_->bytes() : 0) +
+         (history_ ? history_->bytes() : 0) + (corrections_ ? corrections_->bytes() : 0) +
+         seams_.bytes() + (gas_ ? gas_->bytes() : 0) +
          (tearing_ ? tearing_->bytes() : 0);
 }
 

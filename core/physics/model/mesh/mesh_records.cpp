@@ -20,7 +20,7 @@ class LoadRecords final : public RowStage {
       : RowStage("load", "vertices into records", reach, parts.particles.count(), "particles"),
         parts_(parts),
         records_(records) {}
-  Velocities velocities(double) const override { return Velocities::left_alone; }
+  Velocities velocities() const override { return Velocities::left_alone; }
   void start(const Substep& s) override { loaded_[std::size_t(s.slot)] = 0; }
   void run(int j, const Substep& s) override {
     int& loaded = loaded_[std::size_t(s.slot)];
@@ -47,9 +47,6 @@ class StoreRecords final : public RowStage {
         parts_(parts),
         records_(records),
         limit_(limit) {}
-  Velocities velocities(double dt) const override {
-    return gain(dt) > 0 ? Velocities::used : Velocities::left_alone;
-  }
   void run(int j, const Substep& s) override {
     parts_.kernels.mesh.store_records(record_row_of(parts_, records_, j, gain(s.dt)));
   }

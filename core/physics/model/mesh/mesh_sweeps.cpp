@@ -27,7 +27,7 @@ class SweepEdges final : public RowStage {
         colour_(colour),
         records_(records),
         options_(options) {}
-  Velocities velocities(double) const override { return Velocities::left_alone; }
+  Velocities velocities() const override { return Velocities::left_alone; }
   void run(int begin, int end, const Substep& s) override {
     const int first = colour_.first[std::size_t(begin)];
     const double h = s.dt * implicit_share(parts_.scene.solver);
@@ -68,7 +68,7 @@ class SweepHinges final : public RowStage, private TornParts {
     tearing->tell(*this);
   }
   std::size_t bytes() const override { return place_.size() * 8 * sizeof(int); }
-  Velocities velocities(double) const override { return Velocities::left_alone; }
+  Velocities velocities() const override { return Velocities::left_alone; }
   void prepare(double dt) override {
     dt_ = dt;
     set_matrices();

@@ -150,7 +150,7 @@ class SeamSweep final : public RowStage {
         parts_(parts),
         seams_(seams),
         records_(records) {}
-  Velocities velocities(double) const override { return Velocities::left_alone; }
+  Velocities velocities() const override { return Velocities::left_alone; }
   void run(int begin, int end, const Substep& s) override {
     const RowSpan groups = seams_.in_rows(begin, end);
     for (int g = groups.begin; g < groups.end; ++g) hold(seams_.members(g), s.dt);

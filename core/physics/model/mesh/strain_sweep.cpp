@@ -20,7 +20,7 @@ class SweepStrains final : public RowStage {
         records_(records),
         before_(before),
         fresh_(fresh) {}
-  Velocities velocities(double) const override { return Velocities::left_alone; }
+  Velocities velocities() const override { return Velocities::left_alone; }
   void run(int begin, int end, const Substep& s) override {
     const int first = colour_.first[std::size_t(begin)];
     const Membrane& m = parts_.cloth.membrane;

@@ -66,14 +66,13 @@ class StrandSweeps::Solver : private TornParts {
   const std::string& words() const { return words_; }
   std::int64_t count() const { return count_; }
   const ClothParts& parts() const { return parts_; }
-  float gain(double dt) const { return velocity_gain(parts_.scene.solver, dt); }
   std::size_t bytes() const {
     std::size_t bytes = place_.size() * sizeof(Place) + (membrane_ ? membrane_->bytes() : 0);
     for (const StrandBatch& b : batches_)
       bytes += (b.lanes.size() * 2 + b.edges.size()) * sizeof(int) +
                sizeof(float) * (3 * b.rest.size() + b.lambda.size());
     for (const Memory& m : memory_)
-      bytes += m.x.bytes() + m.moved.bytes() + (m.w.size() + m.scratch.size()) * sizeof(float);
+      bytes += m.x.bytes() + m.corrections.bytes() + (m.w.size() + m.scratch.size()) * sizeof(float);
     return bytes;
   }
   void prepare(double dt) {
@@ -107,10 +106,10 @@ class StrandSweeps::Solver : private TornParts {
   struct Memory {
     explicit Memory(int particles)
         : x(particles, kBatchLines),
-          moved(particles, kBatchLines),
+          corrections(particles, kBatchLines),
           w(std::size_t(particles) * kBatchLines),
           scratch(std::size_t(particles) * kBatchScratch) {}
-    Rows x, moved;
+    Rows x, corrections;
     AlignedArray<float> w, scratch;
   };
 
@@ -161,7 +160,6 @@ class StrandSweeps::Solver : private TornParts {
 
   void solve(StrandBatch& b, Memory& m, double dt, bool fresh) {
     gather(b, m);
-    const float velocity = gain(dt);
     LineBatch p{};
     p.x = m.x.row(0);
     p.w = m.w.data();
@@ -169,8 +167,7 @@ class StrandSweeps::Solver : private TornParts {
     p.particles = b.particles;
     p.columns = kBatchLines;
     p.share = 1;
-    p.v = m.moved.row(0);
-    p.inverse_dt = velocity > 0 ? 1.0f : 0.0f;
+    p.u = m.corrections.row(0);
     p.compliance = b.compliance.data();
     p.compliance_step = kBatchLines;
     p.alive = b.alive.data();
@@ -178,7 +175,7 @@ class StrandSweeps::Solver : private TornParts {
     p.fresh = fresh;
     p.scratch = m.scratch.data();
     membrane_ ? solve_membrane(b, p, dt) : solve_springs(b, p);
-    put_back(b, m, velocity);
+    put_back(b, m, velocity_gain(parts_.scene.solver, dt));
   }
 
   void solve_springs(const StrandBatch& b, LineBatch& p) const {
@@ -204,27 +201,24 @@ class StrandSweeps::Solver : private TornParts {
   void gather(const StrandBatch& b, Memory& m) const {
     const Particles& p = parts_.particles;
     const ConstRow3 from = p.x.row(0);
-    const Row3 x = m.x.row(0), moved = m.moved.row(0);
+    const Row3 x = m.x.row(0), u = m.corrections.row(0);
     for (std::size_t n = 0; n < b.lanes.size(); ++n) {
       const bool there = b.lanes[n] >= 0;
       const int at = there ? b.lanes[n] : 0;
       x.x[n] = from.x[at], x.y[n] = from.y[at], x.z[n] = from.z[at];
       m.w[n] = there ? p.inverse_mass[std::size_t(at)] : 0;
-      moved.x[n] = moved.y[n] = moved.z[n] = 0;
+      u.x[n] = u.y[n] = u.z[n] = 0;
     }
   }
 
-  void put_back(const StrandBatch& b, Memory& m, float velocity) {
-    const Row3 to = parts_.particles.x.row(0), v = parts_.particles.v.row(0);
-    const Row3 x = m.x.row(0), moved = m.moved.row(0);
+  void put_back(const StrandBatch& b, Memory& m, float gain) {
+    const Row3 x = parts_.particles.x.row(0), v = parts_.particles.v.row(0);
+    const Row3 u = m.corrections.row(0);
     for (std::size_t n = 0; n < b.lanes.size(); ++n) {
       const int at = b.lanes[n];
       if (at < 0) continue;
-      to.x[at] = x.x[n], to.y[at] = x.y[n], to.z[at] = x.z[n];
-      if (velocity == 0) continue;
-      v.x[at] += velocity * moved.x[n];
-      v.y[at] += velocity * moved.y[n];
-      v.z[at] += velocity * moved.z[n];
+      x.x[at] += u.x[n], x.y[at] += u.y[n], x.z[at] += u.z[n];
+      v.x[at] += gain * u.x[n], v.y[at] += gain * u.y[n], v.z[at] += gain * u.z[n];
     }
   }
 
@@ -259,9 +253,6 @@ class StrandSweeps::Sweep final : public WholeStage {
         iterations_(iterations),
         fresh_(fresh) {}
   std::size_t bytes() const override { return fresh_ ? solver_->bytes() : 0; }
-  Velocities velocities(double dt) const override {
-    return solver_->gain(dt) == 0 ? Velocities::left_alone : Velocities::used;
-  }
   void prepare(double dt) override {
     if (fresh_) solver_->prepare(dt);
   }
