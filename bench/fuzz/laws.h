@@ -29,7 +29,6 @@ class Laws {
   bool momentum_kept_;
   weft::Vec3 momentum_{};  // kg m/s, at the start
   double flow_ = 0;        // kg m/s, the greatest Σ m|v| so far
-  double substeps_ = 0;    // so far
   bool above_planes_;
 };
 

@@ -119,7 +119,9 @@ void LatticeModel::append_projections(StageList& list) {
                 "the cloth has no constraints");
   } else {
     list.skip("line", "sweep is not line");
-    const bool tears = parts_.cloth.tear_strain > 0 && solver.sweep == Sweep::gauss_seidel;
+    // Seed 000 asks constraints as they lie, however unevenly.
+    const bool tears = parts_.cloth.tear_strain > 0 && solver.sweep == Sweep::gauss_seidel &&
+                       parts_.cloth.tears != Tears::particles;
     if (tears) ended_.resize(std::size_t(lattice_.rows));
     if (tears) parts_.ended = ended_.data();
     for (int n = 0; n < solver.iterations && !stencils_.empty(); ++n) {
