@@ -139,13 +139,16 @@ class Solver {
       p.position = p.position + (1 - file_.damping / 100) * (p.position - p.last_position) +
                    (kStep * kStep / mass) * p.forces;
       p.last_position = before;
+    }
+    if (file_.neighbours) push_neighbours();
+    for (PointMass& p : points) {
+      if (p.pinned) continue;
       if (file_.sphere) meet_sphere(p);
       if (file_.plane) meet_plane(p);
     }
     for (int n = 0; file_.limited && n < file_.limit_passes; ++n)
       for (const Spring& s : springs_)
         if (file_.limits_bending || !s.bending) limit(s);
-    if (file_.neighbours) push_neighbours();
   }
 
   // The course's self-collision among neighbours on the grid: each moves by the mean of what its pairs ask for,

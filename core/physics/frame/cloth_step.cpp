@@ -2,6 +2,7 @@
 #include "physics/frame/cloth_step.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "physics/contact/collider_stage.h"
 #include "physics/contact/start_inside.h"
@@ -44,7 +45,24 @@ void ClothStep::choose_anew(Method method) {
 
 void ClothStep::make_schedule() {
   const Particles& p = particles();
-  schedule_ = std::make_unique<Schedule>(list_.stages, p.rows, p.bytes() / std::size_t(p.rows));
+  std::optional<std::size_t> second;
+  if (sheets_meet_first())
+    second = std::size_t(std::find_if(stages().begin(), stages().end(),
+                                      [&](const auto& s) { return s.get() == after_motion_; }) -
+                         stages().begin());
+  schedule_ =
+      std::make_unique<Schedule>(list_.stages, p.rows, p.bytes() / std::size_t(p.rows), second);
+}
+
+// As in the course where all sheets that meet do so by its rule: then a strain limit has the last word.
+bool ClothStep::sheets_meet_first() const {
+  bool course = false;
+  for (const Cloth& c : parts().scene.cloths) {
+    if (c.self_collision.mode == SelfCollisionMode::off) continue;
+    if (c.self_collision.response != SelfCollisionResponse::course) return false;
+    course = true;
+  }
+  return course;
 }
 
 int ClothStep::reach() const {
@@ -75,8 +93,10 @@ void ClothStep::restart() {
 
 void ClothStep::choose_stages() {
   model_->append_motion(method_, list_);
+  const std::size_t motion = list_.stages.size();
   choose_contact();
   model_->append_limits(list_);
+  after_motion_ = motion < list_.stages.size() ? list_.stages[motion].get() : nullptr;
 }
 
 // Colliders, and what cuts.

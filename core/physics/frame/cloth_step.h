@@ -11,6 +11,7 @@
 //
 // Stages of a person's interaction come right after springs or predict.
 // Where nothing follows velocity, it waits for the last substep, and predict adds to v itself.
+// Contact between sheets comes after all of these, or, as in the course (seeds 001, 004), before the colliders.
 // After every stage from springs or velocity on, x - dt v is the position before the substep:
 // contact and the strain limit change x and v together.
 #pragma once
@@ -42,6 +43,8 @@ class ClothStep {
   // The cloth meets a collider anew.
   void meet(std::size_t collider, const StartInside& inside);
   const Stages& stages() const { return list_.stages; }
+  // Whether contact between sheets comes before bodies and the limit, and so between the schedule's two parts.
+  bool sheets_meet_first() const;
   // What the cloth does without, and why.
   const std::vector<SkippedStage>& skipped() const { return list_.skipped; }
   Schedule& schedule() { return *schedule_; }
@@ -68,6 +71,7 @@ class ClothStep {
   std::unique_ptr<ClothModel> model_;
   std::vector<StartInside> starts_;
   StageList list_;
+  const Stage* after_motion_ = nullptr;  // the first stage; null: none
   std::vector<const Stage*> added_;
   std::unique_ptr<Schedule> schedule_;
 };

@@ -40,11 +40,11 @@ void Simulation::State::advance_frame() {
 
 void Simulation::State::run_frame() {
   if (all_asleep()) return;
-  const auto run = [&](int first, int count) {
+  const auto run = [&](int first, int count, Schedule::Part part) {
     runner.run(cloths, time_step.substeps_from(time(), first, count), sleeping.get(),
-               contact ? std::span<RollbackBuffer>() : start_.rows());
+               contact ? std::span<RollbackBuffer>() : start_.rows(), part);
   };
-  if (!contact) return run(0, time_step.substeps);
+  if (!contact) return run(0, time_step.substeps, Schedule::Part::whole);
   contact->run_frame(time_step.substeps_from(time(), 0, time_step.substeps), runner.threads(), run);
 }
 

@@ -19,16 +19,19 @@ std::unique_ptr<SheetContact> SheetContact::make(const Scene& scene, const Cloth
   auto contact = SelfContact::make(scene, models, kernels);
   if (!contact) return nullptr;
   return std::unique_ptr<SheetContact>(
-      new SheetContact(scene, std::move(models), kernels, std::move(contact)));
+      new SheetContact(scene, std::move(models), kernels, std::move(contact),
+                       cloths.front()->sheets_meet_first()));
 }
 
 SheetContact::SheetContact(const Scene& scene, std::vector<ClothModel*> models,
-                           const KernelTable& kernels, std::unique_ptr<SelfContact> contact)
+                           const KernelTable& kernels, std::unique_ptr<SelfContact> contact,
+                           bool meets_first)
     : scene_(scene),
       models_(std::move(models)),
       kernels_(kernels),
       contact_(std::move(contact)),
-      untangle_(std::make_unique<Untangle>(scene, models_)) {}
+      untangle_(std::make_unique<Untangle>(scene, models_)),
+      meets_first_(meets_first) {}
 
 void SheetContact::begin_anew() {
   contact_ = SelfContact::make(scene_, models_, kernels_);

@@ -25,18 +25,22 @@ class SheetContact {
   // Positions alone are what they were before.
   void go_back() { contact_->go_back(); }
 
-  // Runs a frame: run_substeps(first, count), contact, and so on. A frame ends with a run of contact, so that
-  // what was put back to a frame's start, or set, begins anew. Intervals are powers of two and begin at
-  // multiples of their length: so where frames end matters little.
+  // Runs a frame: run_substeps(first, count, part), contact, and so on; where sheets meet first, contact comes
+  // between the two parts of the last substep. A frame ends with a run of contact, so that what was put back to a
+  // frame's start, or set, begins anew. Intervals are powers of two and begin at multiples of their length: so
+  // where frames end matters little.
   template <class RunSubsteps>
   void run_frame(const Substeps& frame, Threads& threads, const RunSubsteps& run_substeps) {
     begin_frame(threads);
     const auto run = [&] {
       for (int s = 0; s < frame.count;) {
         const int count = std::min({until_, s == 0 ? frame.count : s & -s, frame.count - s});
-        run_substeps(s, count);
+        const int parted = meets_first_ ? 1 : 0;
+        if (count > parted) run_substeps(s, count - parted, Schedule::Part::whole);
         s += count;
+        if (meets_first_) run_substeps(s - 1, 1, Schedule::Part::first);
         run_contact(frame, s, count, threads);
+        if (meets_first_) run_substeps(s - 1, 1, Schedule::Part::second);
       }
     };
     stands_by() ? threads.together(run) : run();
@@ -51,7 +55,7 @@ class SheetContact {
 
  private:
   SheetContact(const Scene& scene, std::vector<ClothModel*> models, const KernelTable& kernels,
-               std::unique_ptr<SelfContact> contact);
+               std::unique_ptr<SelfContact> contact, bool meets_first);
   void begin_frame(Threads& threads);
   void run_contact(const Substeps& frame, int end, int count, Threads& threads);
   bool stands_by() const;
@@ -61,6 +65,7 @@ class SheetContact {
   const KernelTable& kernels_;
   std::unique_ptr<SelfContact> contact_;
   std::unique_ptr<Untangle> untangle_;
+  const bool meets_first_;
   int until_ = 1;  // substeps from one run of contact to the next
   std::chrono::nanoseconds spent_{0};
   std::int64_t runs_ = 0;

@@ -17,11 +17,11 @@ SubstepRunner::SubstepRunner(int threads, std::size_t cloths) : threads_(threads
 }
 
 void SubstepRunner::run(const Cloths& cloths, const Substeps& substeps, const Sleeping* sleeping,
-                        std::span<RollbackBuffer> observers) {
+                        std::span<RollbackBuffer> observers, Schedule::Part part) {
   const auto run = [&](std::size_t c, Threads& team) {
     cloths[c]->schedule().run(substeps, team,
                               sleeping ? sleeping->rows(c) : std::span<const RowSpan>(),
-                              observers.empty() ? nullptr : &observers[c]);
+                              observers.empty() ? nullptr : &observers[c], part);
   };
   apart_.clear();
   for (std::size_t c = 0; c < cloths.size(); ++c)

@@ -24,7 +24,7 @@ class SubstepRunner {
   // or none. A thread for each cloth where that keeps all of them busy; else cloths that are worth all
   // threads take them one after the other, and small ones run side by side.
   void run(const Cloths& cloths, const Substeps& substeps, const Sleeping* sleeping,
-           std::span<RollbackBuffer> observers);
+           std::span<RollbackBuffer> observers, Schedule::Part part = Schedule::Part::whole);
 
  private:
   bool worth_running_apart(const Cloths& cloths, int substeps) const;

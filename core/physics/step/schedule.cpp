@@ -2,6 +2,7 @@
 #include "physics/step/schedule.h"
 
 #include <algorithm>
+#include <cassert>
 #include <chrono>
 
 #include "physics/step/threads.h"
@@ -25,8 +26,9 @@ double row_nanoseconds(const std::vector<RowStage*>& stages, int rows) {
 
 }  // namespace
 
-Schedule::Schedule(const Stages& stages, int rows, std::size_t row_bytes)
-    : stages_(stages), rows_(rows) {
+Schedule::Schedule(const Stages& stages, int rows, std::size_t row_bytes,
+                   std::optional<std::size_t> second)
+    : stages_(stages), rows_(rows), second_(0) {
   std::vector<RowStage*> together;
   const auto close = [&](std::size_t end) {
     if (together.empty()) return;
@@ -37,6 +39,10 @@ Schedule::Schedule(const Stages& stages, int rows, std::size_t row_bytes)
     together.clear();
   };
   for (std::size_t q = 0; q < stages.size(); ++q) {
+    if (q == second) {
+      close(q);
+      second_ = passes_.size();
+    }
     if (RowStage* const row_stage = stages[q]->as_row_stage()) {
       together.push_back(row_stage);
       continue;
@@ -46,6 +52,7 @@ Schedule::Schedule(const Stages& stages, int rows, std::size_t row_bytes)
     ++whole_stages_;
   }
   close(stages.size());
+  if (!second || *second >= stages.size()) second_ = passes_.size();
 }
 
 // Threads meet at the end of the frame, or in every substep.
@@ -58,16 +65,17 @@ bool Schedule::worth_running_apart(std::int64_t particles, int substeps, bool st
 }
 
 void Schedule::run(const Substeps& given, Threads& threads, std::span<const RowSpan> awake,
-                   RowObserver* observer) {
+                   RowObserver* observer, Part part) {
+  assert(part == Part::whole || given.count == 1);
   if (given.dt != prepared_dt_) prepare(given.dt);
   Substeps substeps = given;
   substeps.velocities_between = velocities_between_;
   const RowSpan all{0, rows_};
   threads.together([&] {
-    if (rows_only() && !passes_.empty())
+    if (part == Part::whole && rows_only() && !passes_.empty())
       return passes_.front().wavefront->run(substeps, threads, awake, observer);
     if (observer) observer->before(all);
-    for (int s = 0; s < substeps.count; ++s) run_substep(substeps, s, threads, awake);
+    for (int s = 0; s < substeps.count; ++s) run_substep(substeps, s, threads, awake, part);
     if (observer) observer->after(all);
   });
 }
@@ -87,8 +95,10 @@ void Schedule::prepare(double dt) {
 }
 
 void Schedule::run_substep(const Substeps& substeps, int s, Threads& threads,
-                           std::span<const RowSpan> awake) {
-  for (Pass& p : passes_) {
+                           std::span<const RowSpan> awake, Part part) {
+  const std::size_t begin = part == Part::second ? second_ : 0;
+  const std::size_t end = part == Part::first ? second_ : passes_.size();
+  for (Pass& p : std::span(passes_).subspan(begin, end - begin)) {
     if (p.wavefront) {
       p.wavefront->run(substeps.only(s), threads, awake);
       continue;

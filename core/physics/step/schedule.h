@@ -1,10 +1,12 @@
 // Runs the stages of one cloth: consecutive row stages together as one wavefront (wavefront.h),
 // whole stages between them by themselves. Without whole stages one wavefront runs through all the
-// substeps of a frame; with them every substep is run to its end before the next begins.
+// substeps of a frame; with them every substep is run to its end before the next begins. A substep may be run
+// in two parts, with something else in between.
 #pragma once
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,13 +16,17 @@ namespace weft::physics {
 
 class Schedule {
  public:
-  // The stages outlive the passes. `row_bytes`: of one row of the lattice.
-  Schedule(const Stages& stages, int rows, std::size_t row_bytes);
+  enum class Part { whole, first, second };
+
+  // The stages outlive the passes. `row_bytes`: of one row of the lattice. `second`: the stage that the second
+  // part begins with; none where substeps are never parted.
+  Schedule(const Stages& stages, int rows, std::size_t row_bytes,
+           std::optional<std::size_t> second = {});
 
   // Rows outside `awake` are passed over (empty: none). The `record` keeps all rows as they are before
-  // and looks at them after.
+  // and looks at them after. Parts are those of a single substep.
   void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {},
-           RowObserver* observer = nullptr);
+           RowObserver* observer = nullptr, Part part = Part::whole);
 
   // Adds to ticks[q] the time that stage q took.
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds);
@@ -32,7 +38,7 @@ class Schedule {
   static bool worth_running_apart(std::int64_t particles, int substeps, bool standing_by);
 
   // Whether one wavefront runs everything.
-  bool rows_only() const { return whole_stages_ == 0; }
+  bool rows_only() const { return whole_stages_ == 0 && second_ >= passes_.size(); }
 
  private:
   struct Pass {
@@ -43,11 +49,12 @@ class Schedule {
   };
   void prepare(double dt);
   void run_substep(const Substeps& substeps, int s, Threads& threads,
-                   std::span<const RowSpan> awake);
+                   std::span<const RowSpan> awake, Part part);
 
   const Stages& stages_;
   const int rows_;
   std::vector<Pass> passes_;
+  std::size_t second_;  // pass that the second part begins with
   bool velocities_between_ = true;  // substeps
   std::size_t whole_stages_ = 0;
   double prepared_dt_ = 0;
