@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "features.h"
+#include "sheet_features.h"
 
 namespace weft {
 namespace {

@@ -2,7 +2,7 @@
 // force that one method takes twice, or friction that depends on the substep, shows here.
 #include <algorithm>
 
-#include "features.h"
+#include "sheet_features.h"
 #include "truth.h"
 
 namespace weft {
