@@ -1,15 +1,32 @@
 // The step plan: from a scene, the stages that it needs, each an instance of exactly the features in
 // use. What a scene does not need is not in the plan, holds no memory and costs nothing.
 //
-// A frame is `substeps` substeps; a substep of one cloth is, in this order,
+// A frame is `substeps` substeps. In each, the stages of one cloth run from top to bottom, here with all that
+// any scene can need. First its model moves it (*: meshes alone):
 //
-//   spring, spring_friction:  bending (v) - springs (x, v -> forces -> v, x) - wind - keyed_pins
-//                             - colliders - tear - strain_limit
-//   positional, compliant:    predict (v, x by gravity) - wind (v, x) - keyed_pins - tethers, sweeps, bending
-//                             (corrections; Jacobi's: x, v) - velocity (x and v gain the corrections)
-//                             - colliders - tear - strain_limit
+//   spring, spring_friction                     positional, compliant
 //
-// Stages of a person's interaction come right after springs or predict.
+//   pressure*    kicks v                        predict     kicks v by gravity, moves x
+//   bending      kicks v                        pressure*   moves x and v
+//   springs      kick v by forces, move x       wind        moves x and v
+//   wind                                        keyed_pins
+//   keyed_pins                                  tethers     gather corrections
+//   sewing*                                     sweeps      gather corrections; Jacobi's move x and v
+//                                               bending     gathers corrections
+//                                               velocity    x and v gain the corrections
+//                                               sewing*
+//
+// `membrane` stands in the place of springs, and `triangles` of meshes in that of springs and bending. What a
+// person does comes right after springs or predict. Then, with every method:
+//
+//   friction_layer   of every collider whose friction damps
+//   collider         of every collider that pushes, its triangles (collider_faces, stretched_faces) right after
+//                    it; all of this as often as the solver's collision_iterations say
+//   cut              of every collider that cuts
+//   tear
+//   strain_limit
+//   sewing*          closes seams that the stages since have parted
+//
 // Where nothing follows velocity, it waits for the last substep, and predict adds to v itself.
 // Contact between sheets comes after all of these, or, as in the course (seeds 001, 004), before the colliders.
 // After every stage from springs or velocity on, x - dt v is the position before the substep:
