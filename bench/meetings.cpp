@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "physics/model/random.h"
+#include "weft/random.h"
 #include "weft/simulation.h"
 
 namespace bench {
@@ -14,11 +14,11 @@ namespace {
 
 using weft::Cloth;
 using weft::Method;
+using weft::Random;
 using weft::Scene;
 using weft::SelfCollisionMode;
 using weft::Sweep;
 using weft::Vec3;
-using weft::physics::Random;
 
 double between(Random& random, double least, double most) {
   return least + (most - least) * random.unit();

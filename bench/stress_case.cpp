@@ -6,13 +6,13 @@
 
 #include "energy_ledger.h"
 #include "peer.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 #include "weft/simulation.h"
 
 namespace bench {
 namespace {
 
-using weft::physics::Random;
+using weft::Random;
 
 constexpr int kLeastSubsteps = 60;  // of a run
 constexpr double kJitter = 0.3;     // of the spacing, where the sheet is to tear

@@ -1,13 +1,13 @@
 // Random stress cases (stress_case.h).
 #include <cmath>
 
-#include "physics/model/random.h"
 #include "stress_case.h"
+#include "weft/random.h"
 
 namespace bench {
 namespace {
 
-using weft::physics::Random;
+using weft::Random;
 
 double log_between(Random& random, double least, double most) {
   return least * std::pow(most / least, random.unit());

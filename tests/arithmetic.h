@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "physics/kernels/root.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft::WEFT_KERNELS {
 
@@ -34,7 +34,7 @@ TEST(Arithmetic, FusedMultiplyAddRoundsOnce) {
   for (const std::uint32_t a : special)
     for (const std::uint32_t b : special)
       for (const std::uint32_t c : special) expect_fused(a, b, c);
-  physics::Random random(3, 1);
+  Random random(3, 1);
   const auto word = [&] { return std::uint32_t(random.bits() >> 32); };
   for (int n = 0; n < 200000; ++n) {
     expect_fused(word(), word(), word());
@@ -111,7 +111,7 @@ inline float descend_plain(float b, float enough, float q, float least, int coun
 }
 
 TEST(Arithmetic, MasksHoldThroughLoops) {
-  physics::Random random(5, 1);
+  Random random(5, 1);
   const auto number = [&] { return float(2 * random.symmetric()); };
   for (int n = 0; n < 20000; ++n) {
     const float bound = number(), enough = number(), start = number(), least = number();

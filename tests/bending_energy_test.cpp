@@ -5,7 +5,7 @@
 
 #include "physics/model/lattice/bending.h"
 #include "physics/model/lattice/energy.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 #include "weft/simulation.h"
 
 namespace weft::physics {

@@ -4,7 +4,6 @@
 
 #include "body_distance.h"
 #include "contact_scenes.h"
-#include "physics/contact/moving_collider.h"
 #include "physics/contact/triangle_shape.h"
 #include "weft/report.h"
 #include "weft/shape.h"
@@ -149,8 +148,7 @@ TEST(ContactTriangles, SheetDrawnToThreeTimesItsLengthStaysOut) {
     for (const Method method : kMethods)
       for (const int points : {9, 21})
         for (const double offset : {0.0, 0.005}) {
-          if (!physics::resolves(drawn_over(shape, method, points, offset).cloths[0],
-                                 collider_of(shape, 0)))
+          if (!resolves(drawn_over(shape, method, points, offset).cloths[0], collider_of(shape, 0)))
             continue;
           Simulation simulation(drawn_over(shape, method, points, offset));
           double worst = -1, strain = 0;

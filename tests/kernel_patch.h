@@ -10,7 +10,7 @@
 #include "physics/kernels/kernels.h"
 #include "physics/kernels/lattice.h"
 #include "physics/model/lattice/lattice.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft::physics {
 

@@ -9,8 +9,8 @@
 
 #include "physics/model/lattice/energy.h"
 #include "physics/model/lattice/stages.h"
-#include "physics/model/random.h"
 #include "physics/step/threads.h"
+#include "weft/random.h"
 #include "weft/simulation.h"
 
 namespace weft::physics {

@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include "physics/model/lattice/energy.h"
-#include "physics/model/random.h"
 #include "sheets.h"
+#include "weft/random.h"
 
 namespace weft {
 namespace {
-
-using physics::Random;
 
 std::vector<Vec3> random_positions(const Cloth& cloth, double spread) {
   Random random(2, 4);

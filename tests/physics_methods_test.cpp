@@ -5,7 +5,7 @@
 #include <string>
 
 #include "oracle.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft {
 namespace {
@@ -42,7 +42,7 @@ void move_pin(Scene& s) {
 
 // Masses from 50 to 200 g, of no order.
 void weigh(Scene& s) {
-  physics::Random random(3, 0);
+  Random random(3, 0);
   for (int p = 0; p < s.cloths[0].grid.nx * s.cloths[0].grid.ny; ++p)
     s.cloths[0].masses.push_back(0.05 + 0.15 * random.unit());
 }
@@ -160,7 +160,7 @@ std::vector<Case> methods() {
 }
 
 std::vector<double> start_velocities(const Scene& scene) {
-  physics::Random random(11, 2);
+  Random random(11, 2);
   std::vector<double> v;
   for (int n = 0; n < 3 * scene.cloths[0].grid.nx * scene.cloths[0].grid.ny; ++n)
     v.push_back(double(float(0.5 * random.symmetric())));

@@ -11,7 +11,7 @@
 #include "physics/kernels/lattice.h"
 #include "physics/model/lattice/lattice.h"
 #include "physics/model/lattice/stencil.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft::physics {
 namespace {

@@ -8,7 +8,7 @@
 #include "physics/kernels/kernels.h"
 #include "physics/kernels/line.h"
 #include "physics/kernels/transpose.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft::physics {
 namespace {

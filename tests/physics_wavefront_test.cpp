@@ -10,9 +10,9 @@
 #include <thread>
 
 #include "physics/frame/rollback_buffer.h"
-#include "physics/model/random.h"
 #include "physics/step/threads.h"
 #include "physics/step/wavefront.h"
+#include "weft/random.h"
 
 namespace weft::physics {
 namespace {

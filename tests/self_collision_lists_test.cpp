@@ -12,9 +12,9 @@
 #include "physics/contact/self/self_contact.h"
 #include "physics/frame/cloth_step.h"
 #include "physics/model/lattice/stages.h"
-#include "physics/model/random.h"
 #include "physics/step/threads.h"
 #include "squares.h"
+#include "weft/random.h"
 #include "weft/scene.h"
 
 namespace weft::physics {

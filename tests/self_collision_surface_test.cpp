@@ -12,7 +12,7 @@
 
 #include "physics/kernels/kernels.h"
 #include "physics/kernels/surface.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft::physics {
 namespace {

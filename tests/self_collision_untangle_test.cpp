@@ -8,8 +8,8 @@
 #include "machines.h"
 #include "physics/contact/self/untangle.h"
 #include "physics/frame/cloth_step.h"
-#include "physics/model/random.h"
 #include "sheets.h"
+#include "weft/random.h"
 
 namespace weft {
 namespace {
@@ -124,7 +124,7 @@ TEST(Untangle, FlatSheetsThatCannotCrossAreNotSearched) {
 
 // Two to four sheets, anyhow in each other, of springs and of constraints.
 TEST(Untangle, SheetsThrownTogetherComeApart) {
-  physics::Random random(7, 0);
+  Random random(7, 0);
   const auto any = [&] { return random.symmetric(); };
   int most = 0;
   for (int k = 0; k < 12; ++k) {

@@ -10,13 +10,11 @@
 #include <thread>
 
 #include "folder.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 #include "weft/read_scene.h"
 
 namespace weft::viewer {
 namespace {
-
-using physics::Random;
 
 class Person {
  public:

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "../bench/stress_case.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 #include "weft/simulation.h"
 
 namespace weft {

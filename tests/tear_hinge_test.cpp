@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "physics/model/lattice/tearing.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft::physics {
 namespace {

@@ -8,9 +8,9 @@
 #include "clashes.h"
 #include "edit/document.h"
 #include "failure.h"
-#include "output/interrupt.h"
-#include "output/takeover.h"
 #include "picture/surfaceless.h"
+#include "weft/interrupt.h"
+#include "weft/takeover.h"
 
 namespace weft::viewer {
 

@@ -6,8 +6,8 @@
 #include "command_line.h"
 #include "failure.h"
 #include "headless.h"
-#include "output/interrupt.h"
-#include "output/standard_streams.h"
+#include "weft/interrupt.h"
+#include "weft/standard_streams.h"
 #include "window/app.h"
 
 namespace weft::viewer {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "physics/model/random.h"
+#include "weft/random.h"
 #include "weft/scene.h"
 
 namespace fuzz {
@@ -39,7 +39,7 @@ class Draw {
   }
 
  private:
-  weft::physics::Random random_;
+  weft::Random random_;
 };
 
 }  // namespace fuzz

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "failure.h"
-#include "physics/model/path.h"
 #include "random_parts.h"
 #include "run.h"
 #include "weft/mesh.h"
@@ -223,7 +222,7 @@ void Laws::check_paths(const Simulation& simulation) const {
     for (const Pin& pin : single_pins(c)) {
       if (pin.keys.empty() || pin.follow >= 0 || !pin.rotate.keys.empty()) continue;
       const Vec3 here = x[std::size_t(particle_number(c, pin))];
-      const Vec3 there = physics::position_at(pin.keys, simulation.time());
+      const Vec3 there = position_at(pin.keys, simulation.time());
       const double off = length({here[0] - there[0], here[1] - there[1], here[2] - there[2]});
       const double size =
           length({there[0] - origin[0], there[1] - origin[1], there[2] - origin[2]});

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "physics/contact/moving_collider.h"
 #include "random_mesh.h"
 #include "random_parts.h"
 #include "weft/estimate.h"
+#include "weft/shape.h"
 #include "weft/simulation.h"
 
 namespace fuzz {
@@ -116,7 +116,7 @@ double work_of_substep(const Scene& scene) {
     const bool whole = c.cuts || std::holds_alternative<MeshBody>(c.shape);
     const bool small =
         !whole && std::any_of(scene.cloths.begin(), scene.cloths.end(),
-                              [&](const Cloth& cloth) { return !physics::resolves(cloth, c); });
+                              [&](const Cloth& cloth) { return !resolves(cloth, c); });
     bodies += small ? 400 : whole ? 20 : 1;
   }
   double particles = 100;  // what a substep costs besides

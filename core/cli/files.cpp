@@ -2,7 +2,7 @@
 #include "files.h"
 
 #include "failure.h"
-#include "output/interrupt.h"
+#include "weft/interrupt.h"
 #include "weft/printable.h"
 
 namespace weft::cli {

@@ -7,8 +7,8 @@
 
 #include "commands.h"
 #include "failure.h"
-#include "output/standard_streams.h"
 #include "weft/output.h"
+#include "weft/standard_streams.h"
 
 namespace weft::cli {
 

@@ -10,14 +10,14 @@
 #include "commands.h"
 #include "failure.h"
 #include "files.h"
-#include "output/interrupt.h"
-#include "output/takeover.h"
 #include "progress.h"
 #include "recordings.h"
 #include "scene_argument.h"
 #include "tolerance.h"
+#include "weft/interrupt.h"
 #include "weft/output.h"
 #include "weft/printable.h"
+#include "weft/takeover.h"
 
 namespace weft::cli {
 

@@ -13,9 +13,9 @@
 
 #include "commands.h"
 #include "failure.h"
-#include "output/interrupt.h"
 #include "study/results.h"
 #include "weft/estimate.h"
+#include "weft/interrupt.h"
 #include "weft/printable.h"
 
 namespace weft::cli {

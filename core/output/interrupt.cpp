@@ -1,5 +1,5 @@
 // Signal handlers, which can do little more than set flags.
-#include "output/interrupt.h"
+#include "weft/interrupt.h"
 
 #include <semaphore.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // Descriptors 0, 1 and 2, which new files take first.
-#include "output/standard_streams.h"
+#include "weft/standard_streams.h"
 
 #include <fcntl.h>
 #include <unistd.h>

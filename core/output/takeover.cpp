@@ -1,10 +1,10 @@
 // The thread that waits for a signal.
-#include "output/takeover.h"
+#include "weft/takeover.h"
 
 #include <cstdlib>
 #include <system_error>
 
-#include "output/interrupt.h"
+#include "weft/interrupt.h"
 
 namespace weft {
 

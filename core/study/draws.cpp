@@ -5,13 +5,11 @@
 #include <cassert>
 #include <utility>
 
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft {
 
 namespace {
-
-using physics::Random;
 
 constexpr int kBits = 32;
 using Directions = std::array<std::uint32_t, kBits>;

@@ -6,7 +6,7 @@
 
 #include <chrono>
 
-#include "output/takeover.h"
+#include "weft/takeover.h"
 
 namespace weft::viewer {
 

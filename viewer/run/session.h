@@ -25,7 +25,7 @@ class Session {
   using Command = std::function<void(Player&)>;
   void post(Command command);
 
-  // Ends after the present frame, or within it where that takes longer than kGrace (output/takeover.h): then
+  // Ends after the present frame, or within it where that takes longer than kGrace (weft/takeover.h): then
   // ended() is false, and the process must end without the destructor, which waits for the frame. What is
   // recorded and exported is written, up to the last frame. What went wrong with that, or "".
   std::string end();

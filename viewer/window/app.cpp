@@ -15,9 +15,9 @@
 #include <numbers>
 
 #include "failure.h"
-#include "output/interrupt.h"
 #include "panel/theme.h"
 #include "picture/cpu_time.h"
+#include "weft/interrupt.h"
 #include "weft/mesh.h"
 #include "weft/output.h"
 #include "weft/printable.h"

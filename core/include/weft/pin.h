@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,20 @@ struct Key {
   Vec3 position{};
   friend bool operator==(const Key&, const Key&) = default;
 };
+
+// Where the path is at `time` [s]; `keys` is not empty.
+inline Vec3 position_at(const std::vector<Key>& keys, double time) {
+  if (time <= keys.front().time) return keys.front().position;
+  for (std::size_t n = 1; n < keys.size(); ++n) {
+    if (time >= keys[n].time) continue;
+    const Key &a = keys[n - 1], &b = keys[n];
+    const double s = (time - a.time) / (b.time - a.time);
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) p[k] = a.position[k] + s * (b.position[k] - a.position[k]);
+    return p;
+  }
+  return keys.back().position;
+}
 
 // One point of a rotation: at `time` [s] it has turned by so many degrees; linear in between, held before
 // the first key and after the last. Times increase strictly.

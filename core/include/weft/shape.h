@@ -43,6 +43,10 @@ Shape at_time(Shape shape, double time);
 // positions of triangulate().
 Vec3 displacement(const Collider& collider, double time);
 
+// Whether the mesh of a cloth, at rest, is fine enough for a collider's features. Where it is not, the collider
+// could slip through between particles, and triangles are kept out of it as well.
+bool resolves(const Cloth& cloth, const Collider& collider);
+
 // Signed distance of a point from a collider's surface at `time` [m], negative inside (never of an open
 // mesh); without the collider's offset.
 double signed_distance(const Collider& collider, double time, const Vec3& point);

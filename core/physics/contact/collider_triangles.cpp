@@ -9,7 +9,6 @@
 #include "physics/contact/body/body_triangle.h"
 #include "physics/contact/friction.h"
 #include "physics/model/clamp_to_int.h"
-#include "physics/model/path.h"
 
 namespace weft::physics {
 namespace {

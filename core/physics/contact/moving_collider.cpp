@@ -8,7 +8,16 @@
 #include "physics/model/path.h"
 #include "weft/mesh.h"
 
-namespace weft::physics {
+namespace weft {
+
+using namespace physics;
+
+bool resolves(const Cloth& cloth, const Collider& collider) {
+  const double feature = std::visit([](const auto& s) { return feature_of(s); }, collider.shape);
+  return feature + collider.offset > kSmallFeature * longest_edge(cloth);
+}
+
+namespace physics {
 namespace {
 
 constexpr double kStrain = 0.2;  // SpeculativeCulling's
@@ -25,11 +34,6 @@ double longest_edge(const Cloth& cloth) {
       longest = std::max(longest, dot(e, e));
     }
   return std::sqrt(longest);
-}
-
-bool resolves(const Cloth& cloth, const Collider& collider) {
-  const double feature = std::visit([](const auto& s) { return feature_of(s); }, collider.shape);
-  return feature + collider.offset > kSmallFeature * longest_edge(cloth);
 }
 
 AllowedDepth::AllowedDepth(const Cloth& cloth, const Collider& collider)
@@ -175,4 +179,5 @@ double SpeculativeCulling::share() const {
   return all > 0 ? double(skipped) / double(all) : 0;
 }
 
-}  // namespace weft::physics
+}  // namespace physics
+}  // namespace weft

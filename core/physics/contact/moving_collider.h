@@ -23,10 +23,9 @@ inline constexpr int kPulledFrames = 10;
 // Of a flat triangle of the cloth [m].
 double longest_edge(const Cloth& cloth);
 
-// Whether the cloth's mesh is fine enough for the collider's features: more than kSmallFeature of those
-// edges. Else it could slip through between the particles.
+// A cloth resolves a collider (weft/shape.h) whose features are larger than so many of those edges.
 inline constexpr double kSmallFeature = 1.5;
-bool resolves(const Cloth& cloth, const Collider& collider);
+
 // How deep a triangle of the cloth may lie below a collider's offset surface.
 //
 // With its corners on a surface of curvature radius R, the middle of an edge of length e lies below it by

@@ -6,7 +6,6 @@
 
 #include "physics/contact/body/body_triangle.h"
 #include "physics/contact/triangle_shape.h"
-#include "physics/model/path.h"
 
 namespace weft::physics {
 namespace {

@@ -6,7 +6,6 @@
 #include "physics/contact/colliders/shapes.h"
 #include "physics/contact/start_inside.h"
 #include "physics/frame/state.h"
-#include "physics/model/path.h"
 
 namespace weft {
 

@@ -6,7 +6,6 @@
 
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/colliders/shapes.h"
-#include "physics/model/path.h"
 #include "weft/shape.h"
 
 namespace weft::physics {

@@ -1,8 +1,6 @@
 // Stage "keyed_pins" (keyed_pins.h).
 #include "physics/model/keyed_pins.h"
 
-#include "physics/model/path.h"
-
 namespace weft::physics {
 
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft::physics {
 

@@ -11,20 +11,6 @@
 
 namespace weft::physics {
 
-// Position on the path at `time` [s], linear between keys, held outside them; `keys` is not empty.
-inline Vec3 position_at(const std::vector<Key>& keys, double time) {
-  if (time <= keys.front().time) return keys.front().position;
-  for (std::size_t n = 1; n < keys.size(); ++n) {
-    if (time >= keys[n].time) continue;
-    const Key &a = keys[n - 1], &b = keys[n];
-    const double s = (time - a.time) / (b.time - a.time);
-    Vec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = a.position[k] + s * (b.position[k] - a.position[k]);
-    return p;
-  }
-  return keys.back().position;
-}
-
 // Mean velocity over the substep that ends at `time` [m/s].
 inline Vec3 velocity_over(const std::vector<Key>& keys, double time, double dt) {
   const Vec3 a = position_at(keys, time - dt), b = position_at(keys, time);

@@ -5,7 +5,7 @@
 
 #include "physics/model/path.h"
 #include "physics/model/push.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft::physics {
 namespace {

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "physics/contact/body/body_surface.h"
-#include "physics/model/path.h"
 
 namespace weft {
 

@@ -11,7 +11,6 @@
 #include "physics/contact/self/held.h"
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/lattice/stages.h"
-#include "physics/model/path.h"
 #include "weft/mesh.h"
 
 namespace weft::physics {

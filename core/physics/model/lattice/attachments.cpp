@@ -11,7 +11,6 @@
 
 #include "physics/kernels/second_order.h"
 #include "physics/model/lattice/stages.h"
-#include "physics/model/path.h"
 #include "physics/model/tethers.h"
 
 namespace weft::physics {

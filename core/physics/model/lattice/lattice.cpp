@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "physics/model/path.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft::physics {
 

@@ -2,7 +2,6 @@
 // Every spring is evaluated once, in the row of its near end; what it exerts on later rows is
 // carried along, so that a row is finished, and moved in place, as soon as its own springs are done.
 #include "physics/model/lattice/plain_rows.h"
-#include "physics/model/path.h"
 
 namespace weft::physics {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "physics/model/largest_eigenvalue.h"
 #include "physics/model/lattice/bending.h"
-#include "physics/model/random.h"
+#include "weft/random.h"
 
 namespace weft::physics {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace weft::physics {
+namespace weft {
 
 class Random {
  public:
@@ -26,4 +26,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace weft::physics
+}  // namespace weft
