@@ -61,7 +61,7 @@ WEFT_COLLIDER(kBox, BoxSurface)
 #include <cmath>
 #include <numbers>
 
-#include "physics/contact/colliders/shapes.h"
+#include "physics/contact/colliders/least_overlap.h"
 
 namespace weft::physics {
 
@@ -131,9 +131,10 @@ Nearest nearest_of(const Box& box, const Vec3& p) {
   return {length - box.rounding, normal};
 }
 
-Vec3 support_of(const Box& box, const Vec3& way) {
+namespace {
+
+Vec3 furthest(const Box& box, const std::array<Vec3, 3>& axes, const Vec3& way) {
   Vec3 furthest{};
-  const std::array<Vec3, 3> axes = axes_of(box);
   for (int k = 0; k < 3; ++k) {
     const double h = box.half[k] - box.rounding;
     furthest = plus(furthest, times(axes[k], dot(axes[k], way) < 0 ? -h : h));
@@ -141,34 +142,21 @@ Vec3 support_of(const Box& box, const Vec3& way) {
   return furthest;
 }
 
-// Separating axes of a box and a triangle (Gottschalk et al. 1996): the faces' three normals, the
-// triangle's, and the nine products of their edges. The one of least overlap leads out.
+}  // namespace
+
+Vec3 support_of(const Box& box, const Vec3& way) {
+  return furthest(box, axes_of(box), way);
+}
+
+// Separating axes of a box and a triangle (Gottschalk et al. 1996): the triangle's normal, the faces' three
+// normals, and the nine products of their edges.
 Overlap overlap_of(const Box& box, const Triangle& t) {
   const std::array<Vec3, 3> axes = axes_of(box);
-  Overlap best{1e300, {}};
-  const auto separates = [&](const Vec3& direction) {
-    const double size = std::sqrt(dot(direction, direction));
-    if (size < 1e-12) return false;
-    const Vec3 n = times(direction, 1 / size);
-    double reach = 0, low = 1e300, high = -1e300;
-    for (int k = 0; k < 3; ++k) {
-      reach += (box.half[k] - box.rounding) * std::abs(dot(n, axes[k]));
-      low = std::min(low, dot(n, t[k]));
-      high = std::max(high, dot(n, t[k]));
-    }
-    const double up = reach - low, down = reach + high;  // to leave along n, or against it
-    if (std::min(up, down) < best.depth)
-      best = up < down ? Overlap{up, n} : Overlap{down, times(n, -1)};
-    return up <= 0 || down <= 0;
-  };
-  const std::array<Vec3, 3> edges{minus(t[1], t[0]), minus(t[2], t[1]), minus(t[0], t[2])};
-  if (separates(cross(edges[0], edges[1]))) return {};
+  LeastOverlap least(t, [&](const Vec3& way) { return furthest(box, axes, way); });
+  for (const Vec3& axis : axes) least.along(axis);
   for (const Vec3& axis : axes)
-    if (separates(axis)) return {};
-  for (const Vec3& axis : axes)
-    for (const Vec3& edge : edges)
-      if (separates(cross(axis, edge))) return {};
-  return best;
+    for (std::size_t k = 0; k < 3; ++k) least.along(cross(axis, minus(t[(k + 1) % 3], t[k])));
+  return least.found();
 }
 
 double feature_of(const Box& box) {

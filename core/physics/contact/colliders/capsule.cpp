@@ -44,7 +44,7 @@ WEFT_COLLIDER(kCapsule, CapsuleSurface)
 #include <algorithm>
 #include <cmath>
 
-#include "physics/contact/colliders/shapes.h"
+#include "physics/contact/colliders/least_overlap.h"
 
 namespace weft::physics {
 
@@ -73,22 +73,12 @@ Vec3 support_of(const Capsule& capsule, const Vec3& way) {
   return dot(e, way) > 0 ? e : Vec3{};
 }
 
-// The axis cuts a triangle when its ends lie on both sides of it, and the point between inside. Out
-// is the way of the end that is nearer.
+// The axis and the triangle are polytopes: the least lies along the normal or across axis and edge.
 Overlap overlap_of(const Capsule& capsule, const Triangle& t) {
-  const Vec3 n = normal_of(t[0], t[1], t[2]);
-  const double size = std::sqrt(dot(n, n));
-  if (size == 0) return {};
   const Vec3 e = minus(capsule.b, capsule.a);
-  const double at_a = -dot(t[0], n), at_b = dot(minus(e, t[0]), n);
-  if (at_a * at_b >= 0) return {};
-  const Vec3 q = times(e, at_a / (at_a - at_b));
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 edge = minus(t[(k + 1) % 3], t[k]);
-    if (dot(cross(edge, minus(q, t[k])), n) < 0) return {};
-  }
-  const double nearer = std::abs(at_a) < std::abs(at_b) ? at_a : at_b;
-  return {std::abs(nearer) / size, times(n, (nearer > 0 ? 1 : -1) / size)};
+  LeastOverlap least(t, [&](const Vec3& way) { return support_of(capsule, way); });
+  for (std::size_t k = 0; k < 3; ++k) least.along(cross(e, minus(t[(k + 1) % 3], t[k])));
+  return least.found();
 }
 
 double feature_of(const Capsule& capsule) {

@@ -25,6 +25,7 @@ namespace {
 
 struct CylinderSurface {
   static constexpr bool kFlat = false;
+  static constexpr float kRounding = 1e-10f;  // of a squared length
   explicit CylinderSurface(const physics::ShapeConstants& c) : radius(wide(c.radius)) {
     const auto own = c.get<physics::CylinderNumbers>();
     across = wide(own.across);
@@ -38,7 +39,7 @@ struct CylinderSurface {
     const Wide z = dot(local, axis);
     const Wide3 radial = fnma(axis, z, local);
     const Wide square = dot(radial, radial);
-    const WideInt off_axis = square > kTinySquare;
+    const WideInt off_axis = square > kRounding * dot(local, local);
     const Wide inverse = reciprocal_root(select(off_axis, square, wide(1)));
     const Wide3 side = select(off_axis, radial * inverse, aside);
     const Wide q1 = select(off_axis, square * inverse, Wide{}) - across, q2 = abs(z) - along;
@@ -66,7 +67,7 @@ WEFT_COLLIDER(kCylinder, CylinderSurface)
 #include <cmath>
 #include <numbers>
 
-#include "physics/contact/colliders/shapes.h"
+#include "physics/contact/colliders/least_overlap.h"
 
 namespace weft::physics {
 namespace {
@@ -88,17 +89,34 @@ struct Frame {
   }
 };
 
-// A point in the plane of axis and point: how far along the axis, how far from it, and to which side.
+// A vector from the middle, or a direction, in its plane with the axis: how much of it lies along the axis, how
+// much across, and to which side; to any where it lies along the axis to rounding.
 struct Polar {
   double z, distance;
   Vec3 side;
 };
-Polar polar_of(const Frame& f, const Vec3& p) {
-  const Vec3 local = minus(p, f.middle);
-  const double z = dot(local, f.axis);
-  const Vec3 radial = minus(local, times(f.axis, z));
-  const double distance = std::sqrt(dot(radial, radial));
-  return {z, distance, distance > 0 ? times(radial, 1 / distance) : f.aside};
+Polar polar_of(const Frame& f, const Vec3& v) {
+  constexpr double kRounding = 1e-24;  // of its square
+  const double z = dot(v, f.axis);
+  const Vec3 radial = minus(v, times(f.axis, z));
+  const double square = dot(radial, radial), distance = std::sqrt(square);
+  return {z, distance, square > kRounding * dot(v, v) ? times(radial, 1 / distance) : f.aside};
+}
+
+// Of the core.
+Nearest nearest_of(const Frame& f, const Polar& at) {
+  const Vec3 end = times(f.axis, at.z < 0 ? -1 : 1);
+  const double q1 = at.distance - f.radius, q2 = std::abs(at.z) - f.along;
+  const double out1 = std::max(q1, 0.0), out2 = std::max(q2, 0.0), length = std::hypot(out1, out2);
+  if (length == 0) return {std::max(q1, q2), q1 >= q2 ? at.side : end};
+  return {length, plus(times(at.side, out1 / length), times(end, out2 / length))};
+}
+
+// The point of the core that lies furthest along `way`.
+Vec3 furthest(const Frame& f, const Vec3& way) {
+  const Polar at = polar_of(f, way);
+  return plus(f.middle,
+              plus(times(f.axis, at.z < 0 ? -f.along : f.along), times(at.side, f.radius)));
 }
 
 }  // namespace
@@ -122,7 +140,7 @@ ShapeConstants constants_of(const Cylinder& cylinder) {
 
 Core core_of(const Cylinder& cylinder, const Vec3& p) {
   const Frame f(cylinder);
-  const Polar at = polar_of(f, p);
+  const Polar at = polar_of(f, minus(p, f.middle));
   const Vec3 along = times(f.axis, std::clamp(at.z, -f.along, f.along));
   return {plus(f.middle, plus(along, times(at.side, std::min(at.distance, f.radius)))),
           cylinder.rounding};
@@ -130,53 +148,27 @@ Core core_of(const Cylinder& cylinder, const Vec3& p) {
 
 Nearest nearest_of(const Cylinder& cylinder, const Vec3& p) {
   const Frame f(cylinder);
-  const Polar at = polar_of(f, p);
-  const Vec3 end = times(f.axis, at.z < 0 ? -1 : 1);
-  const double q1 = at.distance - f.radius, q2 = std::abs(at.z) - f.along;
-  const double out1 = std::max(q1, 0.0), out2 = std::max(q2, 0.0), length = std::hypot(out1, out2);
-  if (length == 0) return {std::max(q1, q2) - cylinder.rounding, q1 >= q2 ? at.side : end};
-  return {length - cylinder.rounding,
-          plus(times(at.side, out1 / length), times(end, out2 / length))};
+  const Nearest core = nearest_of(f, polar_of(f, minus(p, f.middle)));
+  return {core.distance - cylinder.rounding, core.normal};
 }
 
 Vec3 support_of(const Cylinder& cylinder, const Vec3& way) {
-  const Frame f(cylinder);
-  const double along = dot(way, f.axis);
-  const Vec3 across = minus(way, times(f.axis, along));
-  const double size = std::sqrt(dot(across, across));
-  const Vec3 rim = size > 0 ? times(across, f.radius / size) : Vec3{};
-  return plus(f.middle, plus(times(f.axis, along < 0 ? -f.along : f.along), rim));
+  return furthest(Frame(cylinder), way);
 }
 
-// Directions along which the two may be apart: the axis, the triangle's normal, and across the axis
-// those to its sides and corners, seen along the axis. The one of least overlap leads out. Two that
-// touch only between such directions count as overlapping, and are moved out a little too far.
+// Above a corner the least lies along the axis, straight away from it, or, where that corner is outside, between
+// the two.
 Overlap overlap_of(const Cylinder& cylinder, const Triangle& t) {
   const Frame f(cylinder);
-  Overlap best{1e300, {}};
-  const auto separates = [&](const Vec3& direction) {
-    const double size = std::sqrt(dot(direction, direction));
-    if (size < 1e-12) return false;
-    const Vec3 n = times(direction, 1 / size);
-    const double along = dot(n, f.axis);
-    const double reach =
-        f.along * std::abs(along) + f.radius * std::sqrt(std::max(0.0, 1 - along * along));
-    double low = 1e300, high = -1e300;
-    for (const Vec3& x : t) {
-      low = std::min(low, dot(n, minus(x, f.middle)));
-      high = std::max(high, dot(n, minus(x, f.middle)));
-    }
-    const double up = reach - low, down = reach + high;  // to leave along n, or against it
-    if (std::min(up, down) < best.depth)
-      best = up < down ? Overlap{up, n} : Overlap{down, times(n, -1)};
-    return up <= 0 || down <= 0;
-  };
-  if (separates(f.axis) || separates(normal_of(t[0], t[1], t[2]))) return {};
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 edge = minus(t[(k + 1) % 3], t[k]);
-    if (separates(cross(f.axis, edge)) || separates(polar_of(f, t[k]).side)) return {};
+  LeastOverlap least(t, [&](const Vec3& way) { return furthest(f, way); });
+  least.along(f.axis);
+  for (const Vec3& corner : t) {
+    const Polar at = polar_of(f, minus(corner, f.middle));
+    least.towards(at.side);
+    least.towards(nearest_of(f, at).normal);
   }
-  return best;
+  least.across_edges();
+  return least.found();
 }
 
 double feature_of(const Cylinder& cylinder) {

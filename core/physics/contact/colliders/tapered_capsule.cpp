@@ -57,7 +57,7 @@ WEFT_COLLIDER(kTaperedCapsule, TaperedSurface)
 #include <cmath>
 #include <numbers>
 
-#include "physics/contact/colliders/shapes.h"
+#include "physics/contact/colliders/least_overlap.h"
 
 namespace weft::physics {
 namespace {
@@ -95,6 +95,22 @@ Core ball_near(const Hull& hull, const Vec3& p) {
   return {plus(hull.from, times(hull.axis, t)), hull.radius + t * hull.growth};
 }
 
+Nearest nearest_of(const Hull& hull, const Vec3& p) {
+  const Core ball = ball_near(hull, p);
+  const Vec3 d = minus(p, ball.nearest);
+  const double length = std::hypot(d[0], d[1], d[2]);
+  return {length - ball.radius, length > 0 ? times(d, 1 / length) : Vec3{0, 1, 0}};
+}
+
+// The point of the core that lies furthest along `way`.
+Vec3 furthest(const Hull& hull, const Vec3& way) {
+  const double size = std::sqrt(dot(way, way));
+  const double reach = hull.radius - hull.least(), reach_b = reach + hull.growth;
+  const bool second = dot(hull.axis, way) + hull.growth * size > 0;
+  const Vec3 center = second ? plus(hull.from, hull.axis) : hull.from;
+  return size > 0 ? plus(center, times(way, (second ? reach_b : reach) / size)) : center;
+}
+
 }  // namespace
 
 ShapeConstants constants_of(const TaperedCapsule& capsule) {
@@ -116,70 +132,27 @@ ShapeConstants constants_of(const TaperedCapsule& capsule) {
 }
 
 Nearest nearest_of(const TaperedCapsule& capsule, const Vec3& p) {
-  const Core ball = ball_near(Hull(capsule), p);
-  const Vec3 d = minus(p, ball.nearest);
-  const double length = std::hypot(d[0], d[1], d[2]);
-  return {length - ball.radius, length > 0 ? times(d, 1 / length) : Vec3{0, 1, 0}};
+  return nearest_of(Hull(capsule), p);
 }
 
 // The core is the hull of the balls less the smaller one's radius: a cone from a point to a ball.
 Core core_of(const TaperedCapsule& capsule, const Vec3& p) {
-  const Nearest n = nearest_of(capsule, p);
-  const double radius = Hull(capsule).least();
-  return {minus(p, times(n.normal, std::max(n.distance + radius, 0.0))), radius};
+  const Hull hull(capsule);
+  const Nearest n = nearest_of(hull, p);
+  return {minus(p, times(n.normal, std::max(n.distance + hull.least(), 0.0))), hull.least()};
 }
 
 Vec3 support_of(const TaperedCapsule& capsule, const Vec3& way) {
-  const Hull hull(capsule);
-  const double size = std::sqrt(dot(way, way));
-  const double reach = hull.radius - hull.least(), reach_b = reach + hull.growth;
-  const bool second = dot(hull.axis, way) + hull.growth * size > 0;
-  const Vec3 center = second ? plus(hull.from, hull.axis) : hull.from;
-  return size > 0 ? plus(center, times(way, (second ? reach_b : reach) / size)) : center;
+  return furthest(Hull(capsule), way);
 }
 
-// Any direction along which core and triangle overlap leads out, by so much; one along which they do not shows
-// that they are apart. The least lies along the triangle's normal, along the core's above a corner, or across an
-// edge: there directions are tried all around, and the best of them is refined.
+// Above a corner one direction alone can be the least.
 Overlap overlap_of(const TaperedCapsule& capsule, const Triangle& t) {
-  Overlap best{1e300, {}};
-  const auto depth_along = [&](const Vec3& n) {
-    double low = 1e300;
-    for (const Vec3& x : t) low = std::min(low, dot(n, x));
-    const double depth = dot(n, support_of(capsule, n)) - low;
-    if (depth < best.depth) best = {depth, n};
-    return depth;
-  };
-  const Vec3 normal = normal_of(t[0], t[1], t[2]);
-  if (const double size = std::sqrt(dot(normal, normal)); size > 0)
-    for (const double side : {-1.0, 1.0}) depth_along(times(normal, side / size));
-  for (std::size_t k = 0; k < 3; ++k) {
-    depth_along(nearest_of(capsule, t[k]).normal);
-    const Vec3 edge = minus(t[(k + 1) % 3], t[k]);
-    const double length = std::sqrt(dot(edge, edge));
-    if (length == 0) continue;
-    const auto [one, other] = across(times(edge, 1 / length));
-    const auto depth_at = [&, one = one, other = other](double turn) {
-      return depth_along(plus(times(one, std::cos(turn)), times(other, std::sin(turn))));
-    };
-    constexpr int kTries = 24, kThirds = 12;
-    constexpr double kStep = 2 * std::numbers::pi / kTries;
-    double middle = 0, least = 1e300;
-    for (int n = 0; n < kTries; ++n)
-      if (const double depth = depth_at(n * kStep); depth < least) {
-        least = depth;
-        middle = n * kStep;
-      }
-    double low = middle - kStep, high = middle + kStep;
-    for (int n = 0; n < kThirds; ++n) {
-      const double third = (high - low) / 3;
-      if (depth_at(low + third) < depth_at(high - third))
-        high -= third;
-      else
-        low += third;
-    }
-  }
-  return best.depth > 0 ? best : Overlap{};
+  const Hull hull(capsule);
+  LeastOverlap least(t, [&](const Vec3& way) { return furthest(hull, way); });
+  for (const Vec3& corner : t) least.towards(nearest_of(hull, corner).normal);
+  least.across_edges();
+  return least.found();
 }
 
 double feature_of(const TaperedCapsule& capsule) {
