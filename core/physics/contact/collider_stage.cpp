@@ -23,7 +23,7 @@ class ColliderStage final : public ColliderRowStage {
         parts_(parts),
         kernel_(kernel) {
     if (const BodySurface* surface = surface_of(collider))
-      probe_ = std::make_unique<BodyProbe>(*surface, parts.particles);
+      probe_ = std::make_unique<BodyProbe>(*surface, parts);
   }
 
   void run(int j, const Substep& s) override {

@@ -12,6 +12,7 @@ struct LatticeKernels;   // kernels/lattice.h
 struct LineKernels;      // kernels/line.h
 struct MeshKernels;      // kernels/mesh.h
 struct SheetKernels;     // kernels/contact.h
+struct BodyKernels;      // kernels/body.h
 struct ColliderKernels;  // kernels/colliders.h
 
 struct KernelTable {
@@ -20,6 +21,7 @@ struct KernelTable {
   const LineKernels& lines;
   const MeshKernels& mesh;
   const SheetKernels& sheets;
+  const BodyKernels& bodies;
   const ColliderKernels* const* colliders;  // of every shape, in the order of weft::Shape
 };
 

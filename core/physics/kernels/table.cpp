@@ -1,4 +1,5 @@
 // The tables of this instruction set's kernels.
+#include "physics/kernels/body.h"
 #include "physics/kernels/contact.h"
 #include "physics/kernels/kernels.h"
 #include "physics/kernels/lattice.h"
@@ -16,6 +17,7 @@ WEFT_LATTICE_KERNELS(WEFT_DECLARE)
 WEFT_LINE_KERNELS(WEFT_DECLARE)
 WEFT_MESH_KERNELS(WEFT_DECLARE)
 WEFT_SHEET_KERNELS(WEFT_DECLARE)
+WEFT_BODY_KERNELS(WEFT_DECLARE)
 #undef WEFT_DECLARE
 extern const ContactKernels<2> kContactsOfTwo;
 extern const ContactKernels<4> kContactsOfFour;
@@ -32,8 +34,9 @@ const KernelTable& table() {
   static const SheetKernels sheets = {WEFT_SHEET_KERNELS(WEFT_FILL)  //
                                           .contacts_of_two = kContactsOfTwo,
                                       .contacts_of_four = kContactsOfFour};
+  static const BodyKernels bodies = {WEFT_BODY_KERNELS(WEFT_FILL)};
   static const ColliderKernels* const colliders[] = {WEFT_SHAPES(WEFT_SHAPE_KERNELS)};
-  static const KernelTable all = {particles, lattice, lines, mesh, sheets, colliders};
+  static const KernelTable all = {particles, lattice, lines, mesh, sheets, bodies, colliders};
   return all;
 #undef WEFT_SHAPE_KERNELS
 #undef WEFT_FILL

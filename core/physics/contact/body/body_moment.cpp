@@ -71,7 +71,7 @@ BodyMoment::Point BodyMoment::nearest_in(std::size_t number, const Vec3& p, int 
   Candidate best;
   best.square = enough;
   look_at(hint >= part.first && hint < part.last ? hint : part.first, p, best);
-  part.tree.nearest([&](int node) { return part_box(number, node); }, p, best.square,
+  part.tree.nearest([&](int node) { return part_box(number, node).square_from(p); }, best.square,
                     [&](int n) { look_at(part.first + n, p, best); });
   return best.triangle < 0 ? kNothingNear : point_of(best, p);
 }
@@ -109,24 +109,8 @@ BodyMoment::Point BodyMoment::nearest_among(std::span<const int> triangles, cons
   return best;
 }
 
-int BodyMoment::within(const Vec3& p, double distance, std::array<int, kListed>& found) const {
-  AlignedBox around;
-  around.add(p);
-  around = around.grown(distance);
-  int count = 0;
-  for (std::size_t part = 0; part < form_->parts.size(); ++part)
-    form_->parts[part].tree.visit([&](int node) { return part_box(part, node).meets(around); },
-                                  [&](int n) {
-                                    Candidate one;
-                                    const int triangle = form_->parts[part].first + n;
-                                    look_at(triangle, p, one);
-                                    if (one.square > distance * distance) return;
-                                    if (count < kListed) found[std::size_t(count)] = triangle;
-                                    ++count;
-                                  });
-  if (count > kListed) return -1;
-  std::sort(found.begin(), found.begin() + count);
-  return count;
+bool BodyMoment::within_part(std::size_t part, const Vec3& p) const {
+  return part_box(part, 0).square_from(p) <= 0 && nearest_in(part, p, 0, 1e300).distance < 0;
 }
 
 }  // namespace weft::physics

@@ -30,7 +30,6 @@ class BodyMoment {
     Weights weights{};  // of its corners
   };
   using Feature = BodyForm::Feature;
-  static constexpr int kListed = 12;
 
   using Pose = std::shared_ptr<const BodyPose>;
   BodyMoment() = default;
@@ -70,8 +69,8 @@ class BodyMoment {
   Point nearest(const Vec3& p, int hint = 0) const;
   // The same where it is among these triangles, which ascend.
   Point nearest_among(std::span<const int> triangles, const Vec3& p) const;
-  // All triangles within a distance of p, ascending; how many, or -1 where there are more than kListed.
-  int within(const Vec3& p, double distance, std::array<int, kListed>& found) const;
+  // Whether p is inside of a part of a closed body.
+  bool within_part(std::size_t part, const Vec3& p) const;
 
   // Calls visit(feature) for those of a radius below `most` that may meet the box.
   template <class Visit>
@@ -104,13 +103,11 @@ class BodyMoment {
     return box(from_->boxes[part][n], moves() ? &to_->boxes[part][n] : nullptr);
   }
 
-  // Whether two moments lie between the same samples; the end of the way between them [s], and the moment there.
-  bool on_one_way(const BodyMoment& other) const {
-    return from_ == other.from_ && to_ == other.to_;
-  }
+  // The way that it lies on: from a sample to the next [s], and the moments there.
   double begin() const { return begin_; }
   double end() const { return end_; }
-  BodyMoment at_end() const { return {*form_, from_, to_, to_ == from_ ? 0.0 : 1.0, begin_, end_}; }
+  BodyMoment at_begin() const { return {*form_, from_, to_, 0, begin_, end_}; }
+  BodyMoment at_end() const { return {*form_, from_, to_, 1, begin_, end_}; }
 
  private:
   struct Candidate {

@@ -48,44 +48,4 @@ BodyPassage::Point BodyPassage::on_side_of(const Vec3& from, const Vec3& to,
   return {dot(minus(to, now.on(hit.triangle, hit.weights)), back), back, hit.triangle, hit.weights};
 }
 
-double strays(const BodyMoment& begin, const BodyMoment& end, const Vec3& way, int triangle) {
-  const Triangle from = begin.corners(triangle), to = end.corners(triangle);
-  double square = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 d = minus(minus(to[k], from[k]), way);
-    square = std::max(square, dot(d, d));
-  }
-  return std::sqrt(square);
-}
-
-int within_between(const BodyMoment& begin, const BodyMoment& end, const Vec3& from, const Vec3& to,
-                   double distance, std::array<int, BodyMoment::kListed>& found, double& loose) {
-  loose = 0;
-  const Vec3 way = minus(to, from), back = times(way, -1);
-  int count = 0;
-  const std::vector<BodyForm::Part>& parts = begin.form().parts;
-  for (std::size_t part = 0; part < parts.size(); ++part)
-    parts[part].tree.visit(
-        [&](int node) {
-          AlignedBox all = begin.part_box(part, node);
-          all.add(end.part_box(part, node).moved(back));
-          return all.square_from(from) <= distance * distance;
-        },
-        [&](int n) {
-          const int triangle = parts[part].first + n;
-          const Triangle t = begin.corners(triangle);
-          const Weights w = nearest_on(t, from);
-          const Vec3 d =
-              minus(from, plus(plus(times(t[0], w[0]), times(t[1], w[1])), times(t[2], w[2])));
-          const double strayed = strays(begin, end, way, triangle);
-          if (std::sqrt(dot(d, d)) - strayed > distance) return;
-          loose = std::max(loose, strayed);
-          if (count < BodyMoment::kListed) found[std::size_t(count)] = triangle;
-          ++count;
-        });
-  if (count > BodyMoment::kListed) return -1;
-  std::sort(found.begin(), found.begin() + count);
-  return count;
-}
-
 }  // namespace weft::physics

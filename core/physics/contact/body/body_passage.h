@@ -56,13 +56,4 @@ struct BodyPassage {
   Point on_side_of(const Vec3& from, const Vec3& to, const Point& is) const;
 };
 
-// All triangles, ascending, that come within a distance of a point on the way from one moment to a later one
-// between the same samples, while the point goes straight from one place to another; how many, or -1 where there
-// are more than kListed. `loose` [m]: the most that one of them strays.
-int within_between(const BodyMoment& begin, const BodyMoment& end, const Vec3& from, const Vec3& to,
-                   double distance, std::array<int, BodyMoment::kListed>& found, double& loose);
-
-// How much farther a corner of a triangle comes than such a point [m].
-double strays(const BodyMoment& begin, const BodyMoment& end, const Vec3& way, int triangle);
-
 }  // namespace weft::physics

@@ -1,46 +1,63 @@
 #include "physics/contact/body/body_probe.h"
 
 #include <cmath>
+#include <numeric>
 
 #include "physics/contact/body/body_surface.h"
 
 namespace weft::physics {
 namespace {
 
-constexpr double kMargin = 0.25;   // of the body's mean edge, at most: lists are to be short
-constexpr double kMostMargin = 1;  // the same, of a body that moves
-constexpr int kHalvings = 2;       // of the margin, where a list would be long
-constexpr double kWorn = 0.5;      // of a distance: what is left of it where it is measured again
-
-Vec3 at(ConstRow3 r, int i) {
-  return {r.x[i], r.y[i], r.z[i]};
-}
+constexpr std::size_t kGroup = 16;  // particles, at most
+// Of the body's mean edge.
+constexpr double kWide = 6;    // a group is no wider
+constexpr double kMargin = 1;  // what may come near is known so much farther than is needed
+constexpr double kFast = 4;    // what goes farther in a substep than this is looked at one by one
 
 double length(const Vec3& a) {
   return std::sqrt(dot(a, a));
-}
-
-double distance_between(const Vec3& a, const Vec3& b) {
-  return length(minus(a, b));
 }
 
 void put(Rows& rows, int j, int i, const Vec3& value) {
   for (int k = 0; k < 3; ++k) rows.at(k, j, i) = float(value[std::size_t(k)]);
 }
 
+// Halves lanes of a row along their longest side until they are few and near to each other.
+template <class Visit>
+void split(const Particles& particles, int j, std::span<int> lanes, double wide, Visit&& visit) {
+  AlignedBox box;
+  for (const int i : lanes) box.add(particles.position(j, i));
+  const Vec3 size = minus(box.high, box.low);
+  const std::size_t axis = std::size_t(std::max_element(size.begin(), size.end()) - size.begin());
+  if (lanes.size() <= 1 || (lanes.size() <= kGroup && size[axis] <= wide)) return visit(lanes);
+  const auto key = [&](int i) { return std::pair(particles.x.at(int(axis), j, i), i); };
+  const std::size_t half = lanes.size() / 2;
+  std::nth_element(lanes.begin(), lanes.begin() + std::ptrdiff_t(half), lanes.end(),
+                   [&](int a, int b) { return key(a) < key(b); });
+  split(particles, j, lanes.first(half), wide, visit);
+  split(particles, j, lanes.subspan(half), wide, visit);
+}
+
 }  // namespace
 
-BodyProbe::BodyProbe(const BodySurface& surface, const Particles& particles)
+BodyProbe::BodyProbe(const BodySurface& surface, const ClothParts& parts)
     : surface_(surface),
-      stride_(particles.stride),
-      near_(std::size_t(particles.rows) * std::size_t(particles.stride)),
-      normal_(particles.rows, particles.stride),
-      normal_before_(particles.rows, particles.stride),
-      velocity_(surface.moves() ? particles.rows : 0, particles.stride),
-      distance_(near_.size()),
-      distance_before_(near_.size()) {
-  for (int j = 0; j < particles.rows; ++j) {
-    const std::size_t first = std::size_t(j) * std::size_t(stride_);
+      kernels_(parts.kernels.bodies),
+      stride_(parts.particles.stride),
+      groups_(std::size_t(parts.particles.rows)),
+      known_(groups_.size() * std::size_t(stride_)),
+      normal_(parts.particles.rows, stride_),
+      normal_before_(parts.particles.rows, stride_),
+      velocity_(surface.moves() ? parts.particles.rows : 0, stride_),
+      distance_(known_.size()),
+      distance_before_(known_.size()) {
+  for (int j = 0; j < parts.particles.rows; ++j) {
+    std::vector<int> lanes(std::size_t(parts.particles.count(j)));
+    std::iota(lanes.begin(), lanes.end(), 0);
+    split(parts.particles, j, lanes, kWide * surface.mean_edge(), [&](std::span<const int> some) {
+      groups_[std::size_t(j)].push_back({{some.begin(), some.end()}, {}, 0});
+    });
+    const std::size_t first = lane(j, 0);
     found_.push_back({distance_.data() + first, normal_.row(j), distance_before_.data() + first,
                       normal_before_.row(j),
                       surface.moves() ? ConstRow3(velocity_.row(j)) : ConstRow3{}});
@@ -48,101 +65,133 @@ BodyProbe::BodyProbe(const BodySurface& surface, const Particles& particles)
 }
 
 std::size_t BodyProbe::bytes() const {
-  return near_.size() * (sizeof(Near) + 2 * sizeof(float)) + normal_.bytes() +
-         normal_before_.bytes() + velocity_.bytes();
+  std::size_t bytes = known_.size() * (sizeof(Known) + 2 * sizeof(float)) + normal_.bytes() +
+                      normal_before_.bytes() + velocity_.bytes();
+  for (const std::vector<Group>& row : groups_)
+    for (const Group& group : row)
+      bytes += sizeof(Group) + group.lanes.size() * sizeof(int) + group.near.bytes();
+  return bytes;
 }
 
 void BodyProbe::look(CollideRow& row, const BodyPassage& body, int j, const Substep& s) {
-  for (int i = 0; i < row.columns; ++i)
-    if (row.w[i] > 0) look({row, body, s}, j, i);
+  NearTriangles::Placed now, before;
+  NearTriangles::Nearest found;
+  for (Group& group : groups_[std::size_t(j)]) {
+    now.done = before.done = false;
+    for (const int i : group.lanes)
+      if (row.w[i] > 0) look({row, body, s, group, now, before, found}, j, i);
+  }
   row.shape.found = &found_[std::size_t(j)];
 }
 
+BodyProbe::Path BodyProbe::path(const Look& look, int i) const {
+  const CollideRow& r = look.row;
+  const Vec3 p{double(r.x.x[i]) - r.cx, double(r.x.y[i]) - r.cy, double(r.x.z[i]) - r.cz};
+  const Vec3 way{(double(r.v.x[i]) - r.ux) * r.dt, (double(r.v.y[i]) - r.uy) * r.dt,
+                 (double(r.v.z[i]) - r.uz) * r.dt};
+  constexpr double kRounding = 1 + 1e-6;  // kernels see what is farther in single precision
+  const double limit = std::max(double(r.offset) + r.bias, length(way) + look.body.travel);
+  return {minus(p, way), p, limit * kRounding};
+}
+
 void BodyProbe::look(const Look& look, int j, int i) {
-  const CollideRow& row = look.row;
-  const std::size_t lane = std::size_t(j) * std::size_t(stride_) + std::size_t(i);
-  Near& near = near_[lane];
-  const Vec3 p = minus(at(row.x, i), {row.cx, row.cy, row.cz});
-  const Vec3 path = times(minus(at(row.v, i), {row.ux, row.uy, row.uz}), row.dt);
-  const double limit = std::max(double(row.offset) + row.bias, length(path) + look.body.travel);
-  if (const double apart = near.apart(p, look.s.time); apart <= near.known) {
-    constexpr double kRounding = 1 - 1e-6;
-    const double least = near.distance - apart - near.loose;
-    distance_[lane] = float(least * kRounding);
-    if (least > limit) return;
+  const std::size_t at = lane(j, i);
+  Known& known = known_[at];
+  NearTriangles& near = look.group.near;
+  const double time = look.s.time;
+  const Path path = this->path(look, i);
+  const Vec3& p = path.now;
+  double least = this->least(known, near, p, time);
+  if (least <= path.limit && worn(near, p, time, path.limit)) {
+    renew(look, j);
+    least = this->least(known, near, p, time);
   }
-  const Vec3 before = minus(p, path);
-  BodyPassage::Meeting m = look.body.meet(before, p, [&](const BodyMoment& moment, const Vec3& q) {
-    return nearest(near, look, &moment == &look.body.now, q);
-  });
-  if (!m.knows_before && row.resolved && m.now.distance < row.offset)
-    m.before = nearest(near, look, false, before);
-  distance_[lane] = float(m.now.distance);
-  distance_before_[lane] = float(m.before.distance);
+  if (least <= path.limit) {
+    near.nearest(kernels_, near.along().seen(p, time), time, look.now, look.found);
+    if (least > 0 && look.found.least > path.limit)
+      keep(known, near, p, time, least = look.found.least);
+  }
+  if (least > path.limit) {
+    distance_[at] = float(least);
+    return;
+  }
+  BodyPassage::Meeting m =
+      look.body.meet(path.before, p, [&](const BodyMoment& moment, const Vec3& q) {
+        return nearest(look, &moment == &look.body.now, q, known);
+      });
+  if (!m.knows_before && look.row.resolved && m.now.distance < look.row.offset)
+    m.before = nearest(look, false, path.before, known);
+  distance_[at] = float(m.now.distance);
+  distance_before_[at] = float(m.before.distance);
   put(normal_, j, i, m.now.normal);
   put(normal_before_, j, i, m.before.normal);
   if (look.body.moves())
     put(velocity_, j, i, times(look.body.way(m.now.triangle, m.now.weights), 1 / look.s.dt));
 }
 
-double BodyProbe::Near::apart(const Vec3& p, double when) const {
-  if (!(when >= begin && when <= end)) return 1e300;
-  return distance_between(p, plus(at, times(drift, when - time)));
+double BodyProbe::least(const Known& known, const NearTriangles& near, const Vec3& p,
+                        double time) const {
+  if (!near.along().lasts(time)) return -1e300;
+  return known.least - length(minus(near.along().seen(p, time), known.seen)) -
+         near.stray() * std::abs(time - known.time);
 }
 
-// What is found now is what is kept.
-BodyMoment::Point BodyProbe::nearest(Near& near, const Look& look, bool now, const Vec3& p) {
+bool BodyProbe::worn(const NearTriangles& near, const Vec3& p, double time, double limit) const {
+  if (!near.along().lasts(time)) return true;
+  const double wanted = std::min(limit, kFast * surface_.mean_edge());
+  return near.along().since() != time && near.others_from(near.along().seen(p, time)) < wanted;
+}
+
+void BodyProbe::keep(Known& known, const NearTriangles& near, const Vec3& p, double time,
+                     double least) const {
+  known.seen = near.along().seen(p, time);
+  known.time = time;
+  known.least = least;
+}
+
+// What was known of how far particles are goes on from what was found before to what is found now.
+void BodyProbe::renew(const Look& look, int j) {
+  Group& group = look.group;
+  const double time = look.s.time;
+  const double last =
+      std::max(std::min(time, group.near.along().end()), group.near.along().begin());
+  const double travel = surface_.travel(last, time);
+  AlignedBox about;
+  double reach = 0;
+  for (const int i : group.lanes) {
+    if (!(look.row.w[i] > 0)) continue;
+    const Path path = this->path(look, i);
+    Known& known = known_[lane(j, i)];
+    known.least = least(known, group.near, path.now, last) - travel;
+    known.seen = path.now;
+    known.time = time;
+    about.add(path.now);
+    reach = std::max(reach, path.limit);
+  }
+  const double edge = surface_.mean_edge();
+  look.now.done = look.before.done = false;
+  group.near.find(look.body.now, time, about, std::min(reach, kFast * edge) + kMargin * edge,
+                  group.triangle);
+}
+
+// Now, or before the substep. What is found now is what is kept.
+BodyMoment::Point BodyProbe::nearest(const Look& look, bool now, const Vec3& p,
+                                     Known& known) const {
+  const NearTriangles& near = look.group.near;
   const BodyMoment& moment = now ? look.body.now : look.body.before;
   const double time = now ? look.s.time : look.s.time - look.s.dt;
-  if (near.listed > 0 && 2 * near.apart(p, time) <= near.margin)
-    return moment.nearest_among({near.list.data(), std::size_t(near.listed)}, p);
-  const BodyMoment::Point point = moment.nearest(p, near.triangle);
-  if (!now) return point;
-  near.at = p;
-  near.time = time;
-  near.distance = point.distance;
-  near.triangle = point.triangle;
-  if (look.body.moves())
-    know_moving(near, look, point);
-  else
-    know_standing(near, look);
-  return point;
-}
-
-// Far off no list is made: it would be long.
-void BodyProbe::know_standing(Near& near, const Look& look) const {
-  near.begin = -1e300;
-  near.end = 1e300;
-  near.listed = 0;
-  near.known = (1 - kWorn) * near.distance;
-  if (std::abs(near.distance) > surface_.mean_edge()) return;
-  near.margin = kMargin * surface_.mean_edge();
-  for (int n = 0; n <= kHalvings && near.listed <= 0; ++n) {
-    if (n > 0) near.margin /= 2;
-    near.listed = look.body.now.within(near.at, std::abs(near.distance) + near.margin, near.list);
+  const Vec3 seen = near.along().seen(p, time);
+  NearTriangles::Nearest& found = look.found;
+  if (!now && near.along().lasts(time)) near.nearest(kernels_, seen, time, look.before, found);
+  const bool known_by_list = (now || near.along().lasts(time)) && found.known;
+  const BodyMoment::Point point =
+      known_by_list ? moment.nearest_among(found.all(), p) : moment.nearest(p, known.triangle);
+  known.triangle = point.triangle;
+  if (now) {
+    keep(known, near, p, time, std::min(point.distance, near.others_from(seen)));
+    look.group.triangle = point.triangle;
   }
-}
-
-// Parts that overlap may take turns at being nearest in ways that no list bounds.
-void BodyProbe::know_moving(Near& near, const Look& look, const BodyMoment::Point& point) const {
-  const BodyMoment& now = look.body.now;
-  const bool one_way = look.body.before.on_one_way(now);
-  const BodyMoment& begin = one_way ? look.body.before : now;
-  const BodyMoment end = now.at_end();
-  near.begin = now.form().parts.size() > 1 ? 1e300 : look.s.time - (one_way ? look.s.dt : 0);
-  near.end = now.end();
-  const double left = near.end - near.begin;
-  const Vec3 way =
-      minus(end.on(point.triangle, point.weights), begin.on(point.triangle, point.weights));
-  near.drift = left < 1e100 ? times(way, 1 / left) : Vec3{};
-  const Vec3 from = plus(near.at, times(near.drift, near.begin - near.time));
-  const double strayed = strays(begin, end, way, point.triangle);
-  const double far = (1 - kWorn) * near.distance;
-  near.margin = std::clamp(far, kMargin * surface_.mean_edge(), kMostMargin * surface_.mean_edge());
-  near.known = near.margin / 2;
-  near.listed =
-      within_between(begin, end, from, plus(from, way),
-                     std::abs(near.distance) + 2 * strayed + near.margin, near.list, near.loose);
+  return point;
 }
 
 }  // namespace weft::physics

@@ -1,22 +1,21 @@
 // How the surface of a body that is a mesh lies to the particles of a cloth, for the kernels of its stages.
 //
-// Of every particle is kept what was found at some place q near to where it is. Whatever is as near to p as the
-// surface is within |d(q)| + 2 |p - q| of q: a list of the triangles so far from q is enough until p has left it,
-// and what is farther than it has to be is not looked at at all. Where the body moves, q goes along with the
-// surface nearest to it until the body's next sample, and what counts is how much farther others come than q.
+// Of every particle is kept how far the surface was, at least, when it was last looked at: what has moved so little
+// since that it cannot touch is not looked at again. Others ask for the nearest of the triangles that come near to
+// them and to those beside them in their row (near_triangles.h).
 #pragma once
 
 #include <vector>
 
 #include "physics/contact/body/body_passage.h"
-#include "physics/model/particles.h"
-#include "physics/step/stage.h"
+#include "physics/contact/body/near_triangles.h"
+#include "physics/model/cloth_model.h"
 
 namespace weft::physics {
 
 class BodyProbe {
  public:
-  BodyProbe(const BodySurface& surface, const Particles& particles);
+  BodyProbe(const BodySurface& surface, const ClothParts& parts);
 
   // Looks at row j and gives the kernels what it finds: exact where the surface is nearer than the offset
   // and the bias, or than the particle and the surface have come in this substep; else the distance is a lower
@@ -25,38 +24,52 @@ class BodyProbe {
   std::size_t bytes() const;
 
  private:
-  // What is known near to q from one time to another.
-  struct Near {
-    Vec3 at{};                  // q, seen from the body's place
-    Vec3 drift{};               // m/s, of q
-    double time = 0;            // s; when it was at q
-    double begin = 1, end = 0;  // s
-    double margin = 0;          // m; the list is enough within half of it
-    double known = 0;           // m; within that a distance is known to be no less
-    double distance = 0;        // d(q) at that time [m]
-    double loose = 0;           // m; no nearer surface comes farther, seen from q
-    int triangle = 0;
-    int listed = 0;  // of the triangles that can be nearest; none where they are many
-    std::array<int, BodyMoment::kListed> list;
-
-    // How far from q a place is at a time [m]; out of reach at other times.
-    double apart(const Vec3& p, double when) const;
+  // What is known of a particle from when it was looked at.
+  struct Known {
+    Vec3 seen{};            // where it was, from what goes along
+    double time = 0;        // s
+    double least = -1e300;  // m; of its distance
+    int triangle = 0;       // that may be near
   };
-  // One row and the body, in one substep.
+  // Particles of a row that lie beside each other, and what comes near to them.
+  struct Group {
+    std::vector<int> lanes;
+    NearTriangles near;
+    int triangle = 0;  // the nearest that was found last
+  };
+  // One group and the body, in one substep.
   struct Look {
     const CollideRow& row;
     const BodyPassage& body;
     const Substep& s;
+    Group& group;
+    NearTriangles::Placed &now, &before;
+    NearTriangles::Nearest& found;
+  };
+  struct Path {
+    Vec3 before, now;
+    double limit;  // m; what is farther does not matter
   };
 
+  std::size_t lane(int j, int i) const {
+    return std::size_t(j) * std::size_t(stride_) + std::size_t(i);
+  }
   void look(const Look& look, int j, int i);
-  BodyMoment::Point nearest(Near& near, const Look& look, bool now, const Vec3& p);
-  void know_standing(Near& near, const Look& look) const;
-  void know_moving(Near& near, const Look& look, const BodyMoment::Point& point) const;
+  Path path(const Look& look, int i) const;
+  // At least the distance of p at a time.
+  double least(const Known& known, const NearTriangles& near, const Vec3& p, double time) const;
+  void keep(Known& known, const NearTriangles& near, const Vec3& p, double time,
+            double least) const;
+  // Whether what is known to be near does not do for p at a time.
+  bool worn(const NearTriangles& near, const Vec3& p, double time, double limit) const;
+  void renew(const Look& look, int j);
+  BodyMoment::Point nearest(const Look& look, bool now, const Vec3& p, Known& known) const;
 
   const BodySurface& surface_;
+  const BodyKernels& kernels_;
   int stride_;
-  std::vector<Near> near_;
+  std::vector<std::vector<Group>> groups_;  // of each row
+  std::vector<Known> known_;
   Rows normal_, normal_before_, velocity_;
   AlignedArray<float> distance_, distance_before_;
   std::vector<FoundSurface> found_;  // of each row

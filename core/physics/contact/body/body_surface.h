@@ -20,7 +20,6 @@ namespace weft {
 class BodySurface {
  public:
   using Point = physics::BodyMoment::Point;
-  static constexpr int kListed = physics::BodyMoment::kListed;
 
   // `vertices`: those of the mesh, where they are about the place.
   BodySurface(const TriangleMesh& mesh, std::vector<Vec3> vertices);

@@ -22,7 +22,6 @@ struct AlignedBox {
     add(b.low);
     add(b.high);
   }
-  AlignedBox moved(const Vec3& by) const { return {plus(low, by), plus(high, by)}; }
   AlignedBox grown(double by) const {
     AlignedBox b = *this;
     for (std::size_t k = 0; k < 3; ++k) b.low[k] -= by, b.high[k] += by;
@@ -32,7 +31,16 @@ struct AlignedBox {
     return low[0] <= b.high[0] && b.low[0] <= high[0] && low[1] <= b.high[1] &&
            b.low[1] <= high[1] && low[2] <= b.high[2] && b.low[2] <= high[2];
   }
-  // Squared distance of a point [m²]; 0 inside.
+  // Squared distance of another [m²]; 0 where they meet.
+  double square_from(const AlignedBox& b) const {
+    double square = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double out = std::max(std::max(low[k] - b.high[k], b.low[k] - high[k]), 0.0);
+      square += out * out;
+    }
+    return square;
+  }
+  // Of a point; 0 inside.
   double square_from(const Vec3& p) const {
     double square = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -71,10 +79,10 @@ class BoxTree {
     return boxes;
   }
 
-  // Calls visit(item) for all items whose boxes may be nearer to p than the root of `square` [m²], which visit
-  // lowers as it finds them; those as near are visited, too.
-  template <class Boxes, class Visit>
-  void nearest(const Boxes& box, const Vec3& p, const double& square, Visit&& visit) const {
+  // Calls visit(item) for all items whose boxes may be nearer than the root of `square` [m²], which visit lowers as
+  // it finds them; those as near are visited, too. square_of(node): how far its box is [m²].
+  template <class SquareOf, class Visit>
+  void nearest(const SquareOf& square_of, const double& square, Visit&& visit) const {
     // What is as near but for rounding is looked at: which item comes first does not matter.
     constexpr double kRounding = 1 + 1e-9;
     struct Left {
@@ -83,7 +91,7 @@ class BoxTree {
     };
     Left left[kDeepest];
     int count = 0;
-    left[count++] = {0, box(0).square_from(p)};
+    left[count++] = {0, square_of(0)};
     while (count > 0) {
       const Left next = left[--count];
       if (next.square > square * kRounding) continue;
@@ -92,8 +100,8 @@ class BoxTree {
         for (int n = 0; n < node.count; ++n) visit(order_[std::size_t(node.first + n)]);
         continue;
       }
-      Left near{next.node + 1, box(next.node + 1).square_from(p)};
-      Left far{node.first, box(node.first).square_from(p)};
+      Left near{next.node + 1, square_of(next.node + 1)};
+      Left far{node.first, square_of(node.first)};
       if (far.square < near.square) std::swap(near, far);
       left[count++] = far;
       left[count++] = near;
