@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "physics/contact/body/body_triangle.h"
 #include "physics/contact/friction.h"
 #include "physics/model/clamp_to_int.h"
 
@@ -33,8 +32,7 @@ struct Touch {
 };
 
 // The first contact on the way of the triangle, seen from the collider.
-Touch first_touch(const BodyPassage& body, double offset, const Corners& end, double edge) {
-  const DeepestOnBody d = deepest_on(body, end, offset, edge);
+Touch first_touch(const DeepestOnBody& d, double offset) {
   if (d.nearest.distance >= offset) return {};
   return {d.weights, d.nearest.normal, offset - d.nearest.distance, d.way};
 }
@@ -82,7 +80,10 @@ ColliderTriangles::ColliderTriangles(const ClothParts& parts, const Collider& co
       upright_(collider.shape),
       edge_(longest_edge(parts.cloth)),
       allowed_(parts.cloth, collider),
-      lengths_(std::size_t(parts.particles.rows)) {}
+      lengths_(std::size_t(parts.particles.rows)) {
+  if (const BodySurface* surface = surface_of(collider))
+    features_ = std::make_unique<FeatureProbe>(*surface, parts);
+}
 
 void ColliderTriangles::restart() {
   ColliderRowStage::restart();
@@ -132,12 +133,18 @@ bool ColliderTriangles::touch(const ColliderRow& r, const std::array<int, 3>& j,
   const Vec3 place{r.cx, r.cy, r.cz}, u{r.ux, r.uy, r.uz};
   std::array<Vec3, 3> v;
   Corners c;
-  double path = 0;
   for (int k = 0; k < 3; ++k) {
     v[k] = minus({l.v.at(0, j[k], i[k]), l.v.at(1, j[k], i[k]), l.v.at(2, j[k], i[k])}, u);
-    c.x[k] = upright_.into(
-        minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place));
-    c.path[k] = upright_.into(times(v[k], r.dt));
+    c.x[k] = minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place);
+    c.path[k] = times(v[k], r.dt);
+  }
+  std::span<const int> features;
+  if (features_) features = features_->about(r, c, edge_, j[0], i[0]);
+  if (features_ && features.empty()) return false;
+  double path = 0;
+  for (int k = 0; k < 3; ++k) {
+    c.x[k] = upright_.into(c.x[k]);
+    c.path[k] = upright_.into(c.path[k]);
     path = std::max(path, std::sqrt(dot(c.path[k], c.path[k])));
   }
   // It rests as deep as may be: lifted all the way it would fall back and ring.
@@ -147,7 +154,7 @@ bool ColliderTriangles::touch(const ColliderRow& r, const std::array<int, 3>& j,
   Touch touch = std::visit(
       [&](const auto& shape) {
         if constexpr (std::is_same_v<decltype(shape), const MeshBody&>)
-          return first_touch(r.body, offset, c, edge_);
+          return first_touch(deepest_among(features, r.body, c, offset, edge_), offset);
         else {
           const double size = std::max(feature_of(shape) + r.offset, 0.02 * edge_);
           const int places = clamp_to_int(std::ceil(2 * path / size), 1, kMostPlaces);

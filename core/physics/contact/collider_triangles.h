@@ -13,6 +13,7 @@
 #include <array>
 #include <vector>
 
+#include "physics/contact/body/feature_probe.h"
 #include "physics/contact/collider_stage.h"
 #include "physics/contact/triangle_shape.h"
 
@@ -26,6 +27,7 @@ class ColliderTriangles : public ColliderRowStage {
                     const SpeculativeCulling& particles, std::int64_t triangles);
 
   void restart() override;
+  std::size_t bytes() const override { return features_ ? features_->bytes() : 0; }
 
   using RowStage::run;
   void run(int begin, int end, const Substep& s) override;
@@ -80,7 +82,8 @@ class ColliderTriangles : public ColliderRowStage {
   Upright upright_;
   double edge_;  // m, longest of a flat triangle
   AllowedDepth allowed_;
-  std::vector<Length> lengths_;  // of every row
+  std::vector<Length> lengths_;             // of every row
+  std::unique_ptr<FeatureProbe> features_;  // of a body that is a mesh
 };
 
 }  // namespace weft::physics

@@ -32,7 +32,9 @@ class MeshTriangles final : public ColliderTriangles {
     }
   }
 
-  std::size_t bytes() const override { return std::size_t(items) * sizeof(Placed); }
+  std::size_t bytes() const override {
+    return ColliderTriangles::bytes() + std::size_t(items) * sizeof(Placed);
+  }
 
  private:
   struct Placed {

@@ -104,7 +104,7 @@ double MovingCollider::deepest() const {
 
 ColliderRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s) const {
   Particles& l = parts.particles;
-  ColliderRow r{constants_};
+  ColliderRow r{constants_, s.time};
   r.columns = l.count(j);
   r.x = l.x.row(j);
   r.v = l.v.row(j);

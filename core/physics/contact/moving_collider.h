@@ -59,6 +59,7 @@ bool caught_by_triangles(const Collider& collider);
 
 // One row and the collider, and, where that is a mesh, how its surface has come there.
 struct ColliderRow : CollideRow {
+  double time = 0;  // s, at the end of the substep
   BodyPassage body{};
 };
 

@@ -69,7 +69,7 @@ class SquareTriangles final : public ColliderTriangles {
     room_ = AlignedArray<std::int32_t>(room() * std::size_t(slots));
   }
   std::size_t bytes() const override {
-    return bound_.bytes() + room_.size() * sizeof(std::int32_t);
+    return ColliderTriangles::bytes() + bound_.bytes() + room_.size() * sizeof(std::int32_t);
   }
 
  private:

@@ -30,6 +30,7 @@ enum Row {
   kC = 18,
   kInside = 21
 };
+static_assert(kInside + 1 == physics::kPlacedRows);
 
 struct Rows {
   float* at;

@@ -72,18 +72,20 @@ class BodyMoment {
   // Whether p is inside of a part of a closed body.
   bool within_part(std::size_t part, const Vec3& p) const;
 
-  // Calls visit(feature) for those of a radius below `most` that may meet the box.
-  template <class Visit>
-  void features(const AlignedBox& where, double most, Visit&& visit) const {
+  // Whether a feature's radius is below `most`.
+  bool sticks_out(int feature, double most) const {
+    return radius(&BodyPose::radii, feature) < most;
+  }
+  // Calls visit(feature) for those whose radius is below `most` in nodes of their tree of which wanted(node) holds.
+  template <class Wanted, class Visit>
+  void features(double most, Wanted&& wanted, Visit&& visit) const {
     form_->feature_tree.visit(
-        [&](int node) {
-          return radius(&BodyPose::least_radii, node) < most &&
-                 box(&BodyPose::feature_boxes, node).meets(where);
-        },
+        [&](int node) { return radius(&BodyPose::least_radii, node) < most && wanted(node); },
         [&](int n) {
-          if (radius(&BodyPose::radii, n) < most) visit(form_->features[std::size_t(n)]);
+          if (sticks_out(n, most)) visit(n);
         });
   }
+  AlignedBox feature_box(int node) const { return box(&BodyPose::feature_boxes, node); }
 
   // Calls visit(triangle) for those that may meet a box on the way from here to `later`.
   template <class Visit>

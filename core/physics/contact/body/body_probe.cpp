@@ -1,14 +1,13 @@
 #include "physics/contact/body/body_probe.h"
 
 #include <cmath>
-#include <numeric>
 
+#include "physics/contact/body/beside_each_other.h"
 #include "physics/contact/body/body_surface.h"
 
 namespace weft::physics {
 namespace {
 
-constexpr std::size_t kGroup = 16;  // particles, at most
 // Of the body's mean edge.
 constexpr double kWide = 6;    // a group is no wider
 constexpr double kMargin = 1;  // what may come near is known so much farther than is needed
@@ -20,22 +19,6 @@ double length(const Vec3& a) {
 
 void put(Rows& rows, int j, int i, const Vec3& value) {
   for (int k = 0; k < 3; ++k) rows.at(k, j, i) = float(value[std::size_t(k)]);
-}
-
-// Halves lanes of a row along their longest side until they are few and near to each other.
-template <class Visit>
-void split(const Particles& particles, int j, std::span<int> lanes, double wide, Visit&& visit) {
-  AlignedBox box;
-  for (const int i : lanes) box.add(particles.position(j, i));
-  const Vec3 size = minus(box.high, box.low);
-  const std::size_t axis = std::size_t(std::max_element(size.begin(), size.end()) - size.begin());
-  if (lanes.size() <= 1 || (lanes.size() <= kGroup && size[axis] <= wide)) return visit(lanes);
-  const auto key = [&](int i) { return std::pair(particles.x.at(int(axis), j, i), i); };
-  const std::size_t half = lanes.size() / 2;
-  std::nth_element(lanes.begin(), lanes.begin() + std::ptrdiff_t(half), lanes.end(),
-                   [&](int a, int b) { return key(a) < key(b); });
-  split(particles, j, lanes.first(half), wide, visit);
-  split(particles, j, lanes.subspan(half), wide, visit);
 }
 
 }  // namespace
@@ -52,11 +35,9 @@ BodyProbe::BodyProbe(const BodySurface& surface, const ClothParts& parts)
       distance_(known_.size()),
       distance_before_(known_.size()) {
   for (int j = 0; j < parts.particles.rows; ++j) {
-    std::vector<int> lanes(std::size_t(parts.particles.count(j)));
-    std::iota(lanes.begin(), lanes.end(), 0);
-    split(parts.particles, j, lanes, kWide * surface.mean_edge(), [&](std::span<const int> some) {
-      groups_[std::size_t(j)].push_back({{some.begin(), some.end()}, {}, 0});
-    });
+    for (std::vector<int>& lanes :
+         beside_each_other(parts.particles, j, kWide * surface.mean_edge()))
+      groups_[std::size_t(j)].push_back({std::move(lanes), {}, 0});
     const std::size_t first = lane(j, 0);
     found_.push_back({distance_.data() + first, normal_.row(j), distance_before_.data() + first,
                       normal_before_.row(j),

@@ -43,20 +43,23 @@ Pair nearest_to_edge(const Corners& c, std::size_t k, const Vec3& p, const Vec3&
 class Search {
  public:
   Search(const BodyPassage& body, const Corners& c, double offset, double edge)
-      : body_(body), c_(c), longest_(longest_side(c.x)), edge_(std::max(edge, longest_)) {
+      : body_(body),
+        c_(c),
+        edge_(std::max(edge, longest_side(c.x))),
+        about_(about_triangle(body, c, offset, edge)) {
     found_.nearest.distance = offset;
   }
 
-  DeepestOnBody run() {
-    AlignedBox box;
-    double way = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.add(c_.x[k]);
-      way = std::max(way, dot(c_.path[k], c_.path[k]));
-    }
-    reach_ = std::max(found_.nearest.distance, kReach * edge_) + std::sqrt(way) + body_.travel;
-    body_.now.features(box.grown(reach_), kSmallFeature * edge_,
-                       [&](const Feature& f) { look(f); });
+  DeepestOnBody among_all() {
+    const AlignedBox where = about_.box.grown(about_.reach);
+    body_.now.features(
+        about_.most, [&](int node) { return body_.now.feature_box(node).meets(where); },
+        [&](int n) { look(body_.now.form().features[std::size_t(n)]); });
+    return found_;
+  }
+  DeepestOnBody among(std::span<const int> features) {
+    for (const int n : features)
+      if (body_.now.sticks_out(n, about_.most)) look(body_.now.form().features[std::size_t(n)]);
     return found_;
   }
 
@@ -71,7 +74,7 @@ class Search {
     if (!pair.inner) return;
     const Vec3 here = c_.at(pair.weights), out = minus(pair.on, here);
     const double square = dot(out, out);
-    if (square > reach_ * reach_) return;
+    if (square > about_.reach * about_.reach) return;
     const Vec3 normal = body_.now.outward(f);
     const double through = dot(out, normal);
     const bool pierces = body_.now.closed() && through > 0;
@@ -94,14 +97,34 @@ class Search {
 
   const BodyPassage& body_;
   const Corners& c_;
-  double longest_, edge_, reach_ = 0;  // m
+  double edge_;  // m
+  AboutTriangle about_;
   DeepestOnBody found_;
 };
 
 }  // namespace
 
+AboutTriangle about_triangle(const BodyPassage& body, const Corners& c, double offset,
+                             double edge) {
+  const double longest = std::max(edge, longest_side(c.x));
+  AboutTriangle about;
+  double way = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    about.box.add(c.x[k]);
+    way = std::max(way, dot(c.path[k], c.path[k]));
+  }
+  about.reach = std::max(offset, kReach * longest) + std::sqrt(way) + body.travel;
+  about.most = kSmallFeature * longest;
+  return about;
+}
+
 DeepestOnBody deepest_on(const BodyPassage& body, const Corners& c, double offset, double edge) {
-  return Search(body, c, offset, edge).run();
+  return Search(body, c, offset, edge).among_all();
+}
+
+DeepestOnBody deepest_among(std::span<const int> features, const BodyPassage& body,
+                            const Corners& c, double offset, double edge) {
+  return Search(body, c, offset, edge).among(features);
 }
 
 Deepest deepest_on(const MeshBody& body, const Corners& c, double offset, double edge, double) {

@@ -15,6 +15,16 @@ struct DeepestOnBody : Deepest {
   Vec3 way{};  // m; how far the surface there has come
 };
 DeepestOnBody deepest_on(const BodyPassage& body, const Corners& c, double offset, double edge);
+// What of a body that may be about.
+struct AboutTriangle {
+  AlignedBox box;    // of the triangle
+  double reach = 0;  // m, from there
+  double most = 0;   // m; greater radii are of no account
+};
+AboutTriangle about_triangle(const BodyPassage& body, const Corners& c, double offset, double edge);
+// Among these features, by the order of their tree.
+DeepestOnBody deepest_among(std::span<const int> features, const BodyPassage& body,
+                            const Corners& c, double offset, double edge);
 // Of one that stands.
 Deepest deepest_on(const MeshBody& body, const Corners& c, double offset, double edge,
                    double tolerance = kExact);
