@@ -109,22 +109,22 @@ TEST(Conservation, OfMomentumByMethodsThatProject) {
     s.order = order;
     return s;
   };
-  for (const Solver& s : {solver(Method::positional, Sweep::gauss_seidel, 1),
-                          solver(Method::positional, Sweep::jacobi, 1),
-                          solver(Method::positional, Sweep::line, 1),
-                          solver(Method::compliant, Sweep::gauss_seidel, 1),
-                          solver(Method::compliant, Sweep::jacobi, 1),
-                          solver(Method::compliant, Sweep::line, 1),
-                          solver(Method::compliant, Sweep::gauss_seidel, 2),
-                          solver(Method::compliant, Sweep::line, 2)})
+  for (const Solver& s :
+       {solver(Method::positional, Sweep::gauss_seidel, 1),
+        solver(Method::positional, Sweep::jacobi, 1), solver(Method::positional, Sweep::line, 1),
+        solver(Method::compliant, Sweep::gauss_seidel, 1),
+        solver(Method::compliant, Sweep::jacobi, 1), solver(Method::compliant, Sweep::line, 1),
+        solver(Method::compliant, Sweep::gauss_seidel, 2),
+        solver(Method::compliant, Sweep::line, 2)})
     for (const int columns : {5, 70})
       for (const double size : {0.5, 3.5})
         for (const double away : {0.0, 4.0})
           for (const int substeps : {1, 4, 30, 300, 1667}) {
-            SCOPED_TRACE("method " + std::to_string(int(s.method)) + ", sweep " + std::to_string(int(s.sweep)) +
-                         " of order " + std::to_string(s.order) + ", " + std::to_string(columns) +
-                         " columns of " + std::to_string(size) + " m, " + std::to_string(away) +
-                         " m away, " + std::to_string(substeps) + " substeps");
+            SCOPED_TRACE("method " + std::to_string(int(s.method)) + ", sweep " +
+                         std::to_string(int(s.sweep)) + " of order " + std::to_string(s.order) +
+                         ", " + std::to_string(columns) + " columns of " + std::to_string(size) +
+                         " m, " + std::to_string(away) + " m away, " + std::to_string(substeps) +
+                         " substeps");
             constexpr Simd kSets[] = {Simd::scalar, Simd::avx2, Simd::sse2, Simd::avx512};
             Options options;
             options.threads = 1 + runs % 3;

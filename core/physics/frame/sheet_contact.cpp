@@ -18,9 +18,8 @@ std::unique_ptr<SheetContact> SheetContact::make(const Scene& scene, const Cloth
   std::vector<ClothModel*> models = models_of(cloths);
   auto contact = SelfContact::make(scene, models, kernels);
   if (!contact) return nullptr;
-  return std::unique_ptr<SheetContact>(
-      new SheetContact(scene, std::move(models), kernels, std::move(contact),
-                       cloths.front()->sheets_meet_first()));
+  return std::unique_ptr<SheetContact>(new SheetContact(
+      scene, std::move(models), kernels, std::move(contact), cloths.front()->sheets_meet_first()));
 }
 
 SheetContact::SheetContact(const Scene& scene, std::vector<ClothModel*> models,

@@ -97,8 +97,7 @@ WEFT_INLINE Wide3 limit_block(const ProjectRows& p, const ProjectedRow& near,
 // all are at some time in the sweep, and the sheet is in the mean.
 WEFT_INLINE void tear_overlong(const ProjectRows& p, Wide3 e, Wide3 c, Wide inertia, int j, int a,
                                WideInt active) {
-  const WideInt over =
-      active & (squared_length(fnma(c, inertia * 0.5f, e)) > p.longest_square);
+  const WideInt over = active & (squared_length(fnma(c, inertia * 0.5f, e)) > p.longest_square);
   if (!any(over)) return;
   std::int32_t* const alive = p.alive + std::ptrdiff_t(j) * p.stride + a;
   put_lanes(alive, lanes_at(alive) & ~over);

@@ -117,7 +117,7 @@ struct ProjectRows {
   const float* compliance;    // 1/(k dt²) of every row [1/kg], or null
   float* lambda;              // multipliers of row 0 [kg·m], strain limit: forces [N]; or null
   LimitSweep limit;           // one-sided: nothing happens below the rest length
-  std::int32_t* alive;  // of row 0: -1 for constraints, 0 for torn ones; null: cannot tear
+  std::int32_t* alive;        // of row 0: -1 for constraints, 0 for torn ones; null: cannot tear
   // m, squared, past which a constraint ends where the sweep finds it; 0: the sweep ends none. And how many ended,
   // added up by row.
   float longest_square;

@@ -25,7 +25,7 @@ struct LineBatch {
   ConstRow3 x;
   Row3 u;                  // laid out as x [m]
   bool first_corrections;  // u is still zero
-  const float* w;  // inverse mass, laid out as x [1/kg]
+  const float* w;          // inverse mass, laid out as x [1/kg]
   std::ptrdiff_t step;
   int particles;  // rows that lines pass through
   int lean;
@@ -38,7 +38,7 @@ struct LineBatch {
   const float* squares;
   // membrane_line_batch: steps of Newton's. A square is steeper than a length: large moves take two.
   int steps;
-  float share;       // factor on the correction
+  float share;  // factor on the correction
   const float*
       compliance;  // [m][kBatchLines] of constraint m of each line [1/kg; of squares m²/kg]
   std::ptrdiff_t compliance_step;  // kBatchLines, or 0 when all rows are alike

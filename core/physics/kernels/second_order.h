@@ -10,17 +10,17 @@ namespace weft::physics {
 struct SecondOrderRow {
   int columns;
   Row3 x, v;
-  Row3 previous;        // x of the substep before; receives x [m]
-  Row3 v_before;        // v of the substep before; receives v [m/s]
-  Row3 u;               // corrections, which x and v lack, then zero [m]; or null: sweeps have put them in
-  bool v_waits;         // predict: x and v lack them still
-  Row3 v_end;           // v as the substep before left it [m/s]
-  float* w;             // inverse mass, scaled while the constraints are solved [1/kg]
-  const float* mass;    // inverse mass proper [1/kg]
-  bool fresh;           // nothing is known of the substep before
-  float dt;             // s
-  float drag;           // 1/s
-  float gx, gy, gz;     // m/s²
+  Row3 previous;  // x of the substep before; receives x [m]
+  Row3 v_before;  // v of the substep before; receives v [m/s]
+  Row3 u;        // corrections, which x and v lack, then zero [m]; or null: sweeps have put them in
+  bool v_waits;  // predict: x and v lack them still
+  Row3 v_end;    // v as the substep before left it [m/s]
+  float* w;      // inverse mass, scaled while the constraints are solved [1/kg]
+  const float* mass;  // inverse mass proper [1/kg]
+  bool fresh;         // nothing is known of the substep before
+  float dt;           // s
+  float drag;         // 1/s
+  float gx, gy, gz;   // m/s²
 };
 
 // The most tethers a particle has.
@@ -31,7 +31,7 @@ struct TetherRow {
   int columns;
   ConstRow3 x;
   Row3 u;     // receives corrections where there are some; zero before [m]
-  int count;         // of tethers that a particle may have
+  int count;  // of tethers that a particle may have
   struct Tether {
     ConstRow3 pin;       // where each particle's pin is [m]
     const float* reach;  // how far the particle may be from it [m]

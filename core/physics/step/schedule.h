@@ -54,7 +54,7 @@ class Schedule {
   const Stages& stages_;
   const int rows_;
   std::vector<Pass> passes_;
-  std::size_t second_;  // pass that the second part begins with
+  std::size_t second_;              // pass that the second part begins with
   bool velocities_between_ = true;  // substeps
   std::size_t whole_stages_ = 0;
   double prepared_dt_ = 0;

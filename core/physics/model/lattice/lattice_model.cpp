@@ -113,10 +113,11 @@ void LatticeModel::append_projections(StageList& list) {
   if (!gather && solver.tethers) list.stages.push_back(make_corrections(parts_, *corrections_));
   if (lines) {
     const float share = sweep.compliant ? 1.0f : float(2 * parts_.cloth.positional_k);
-    list.choose("line",
-                make_line(parts_, *corrections_,
-                          {sweep.compliant, solver.iterations, share, solves_membrane(), !solver.tethers}),
-                "the cloth has no constraints");
+    list.choose(
+        "line",
+        make_line(parts_, *corrections_,
+                  {sweep.compliant, solver.iterations, share, solves_membrane(), !solver.tethers}),
+        "the cloth has no constraints");
   } else {
     list.skip("line", "sweep is not line");
     // Seed 000 asks constraints as they lie, however unevenly.
@@ -182,7 +183,8 @@ std::size_t LatticeModel::bytes() const {
                       (corrections_ ? corrections_->bytes() : 0) +
                       (limit_forces_ ? limit_forces_->bytes() : 0) +
                       (history_ ? history_->bytes() : 0);
-  if (tearing_) bytes += tearing_->bytes() + overlong_.size() + ended_.size() * sizeof(std::int32_t);
+  if (tearing_)
+    bytes += tearing_->bytes() + overlong_.size() + ended_.size() * sizeof(std::int32_t);
   return bytes;
 }
 

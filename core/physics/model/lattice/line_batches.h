@@ -17,7 +17,8 @@ namespace weft::physics {
 // The memory of one thread.
 struct BatchMemory {
   AlignedArray<float> scratch;
-  Rows tile;         // where the particles of kBatchLines rows are, as lanes: [column][kBatchLines] of x, y, z
+  Rows
+      tile;  // where the particles of kBatchLines rows are, as lanes: [column][kBatchLines] of x, y, z
   Rows corrections;  // that they gain there, laid out as the tile
 };
 

@@ -104,13 +104,12 @@ MembraneSquares MembraneLines::rows(int begin, int end, const Rows* corrections)
 
 void MembraneLines::look(LineBatches& batches, const Rows* corrections) {
   const int all = parts_.lattice.rows, columns = parts_.lattice.columns;
-  batches.share_out(
-      (all + kRowsTogether - 1) / kRowsTogether, kParticleNs * kRowsTogether * columns,
-      [&](int n, BatchMemory&) {
-        const int begin = n * kRowsTogether;
-        const int end = std::min(begin + kRowsTogether, all);
-        parts_.kernels.lattice.membrane_squares(rows(begin, end, corrections));
-      });
+  batches.share_out((all + kRowsTogether - 1) / kRowsTogether,
+                    kParticleNs * kRowsTogether * columns, [&](int n, BatchMemory&) {
+                      const int begin = n * kRowsTogether;
+                      const int end = std::min(begin + kRowsTogether, all);
+                      parts_.kernels.lattice.membrane_squares(rows(begin, end, corrections));
+                    });
 }
 
 const float* MembraneLines::squares(const Stencil& f, int row) const {

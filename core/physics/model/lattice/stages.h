@@ -70,8 +70,8 @@ float compliance_of(const LatticeParts& parts, const Stencil& stencil, int j, do
 struct LineOptions {
   bool compliant = false;
   int iterations = 1;
-  float share = 1;        // of the correction
-  bool membrane = false;  // not springs but the membrane, compliant
+  float share = 1;               // of the correction
+  bool membrane = false;         // not springs but the membrane, compliant
   bool corrections_zero = true;  // when the sweeps begin
 };
 // The line sweep: one stage for all stencils and iterations; null when the cloth has no constraint.

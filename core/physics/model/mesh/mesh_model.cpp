@@ -146,8 +146,7 @@ void MeshModel::append_projections(StageList& list) {
     sweeps().append_hinges(list);
   else
     list.skip("bending", "bending is 0");
-  if (history_)
-    list.stages.push_back(make_velocity_second_order(parts_, *history_, nullptr));
+  if (history_) list.stages.push_back(make_velocity_second_order(parts_, *history_, nullptr));
 }
 
 std::vector<std::vector<Tether>> MeshModel::attachments() const {
@@ -268,8 +267,7 @@ std::size_t MeshModel::bytes() const {
          edges_.ends.size() * (sizeof(Joined) + sizeof(double)) +
          start_.size() * (sizeof(Vec3) + sizeof(double)) + (sweeps_ ? sweeps_->bytes() : 0) +
          (history_ ? history_->bytes() : 0) + (corrections_ ? corrections_->bytes() : 0) +
-         seams_.bytes() + (gas_ ? gas_->bytes() : 0) +
-         (tearing_ ? tearing_->bytes() : 0);
+         seams_.bytes() + (gas_ ? gas_->bytes() : 0) + (tearing_ ? tearing_->bytes() : 0);
 }
 
 }  // namespace weft::physics

@@ -85,7 +85,7 @@ class MeshModel final : public ClothModel {
   std::unique_ptr<GasLoad> gas_;   // null: the cloth has no pressure
   std::unique_ptr<MeshSweeps> sweeps_;
   std::unique_ptr<History> history_;
-  std::unique_ptr<Rows> corrections_;  // of tethers
+  std::unique_ptr<Rows> corrections_;         // of tethers
   std::vector<std::vector<Tether>> tethers_;  // none: the scene has them off
   DrawnMesh drawn_;
   std::unique_ptr<MeshTearing> tearing_;  // null while it cannot

@@ -72,7 +72,8 @@ class StrandSweeps::Solver : private TornParts {
       bytes += (b.lanes.size() * 2 + b.edges.size()) * sizeof(int) +
                sizeof(float) * (3 * b.rest.size() + b.lambda.size());
     for (const Memory& m : memory_)
-      bytes += m.x.bytes() + m.corrections.bytes() + (m.w.size() + m.scratch.size()) * sizeof(float);
+      bytes +=
+          m.x.bytes() + m.corrections.bytes() + (m.w.size() + m.scratch.size()) * sizeof(float);
     return bytes;
   }
   void prepare(double dt) {
