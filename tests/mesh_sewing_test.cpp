@@ -134,7 +134,8 @@ TEST(MeshSewing, IsAsTheSheetInOnePiece) {
       Scene scene = scene_of(std::move(mesh));
       scene.solver = way.solver;
       scene.cloths[0].membrane = way.membrane;
-      if (way.solver.method == Method::compliant) scene.time.substeps = 30;
+      // In longer ones strands may lead a sheet into another fold where they end at a seam.
+      if (way.solver.method == Method::compliant) scene.time.substeps = 60;
       scene.cloths[0].drag = 3;
       scene.cloths[0].pins = {{0, 0, {}}, {16, 0, {}}};
       if (sewn) scene.cloths[0].seams = sheet.seams;
@@ -154,7 +155,7 @@ TEST(MeshSewing, IsAsTheSheetInOnePiece) {
     const double rms = std::sqrt(sum / double(sewn.size()));
     RecordProperty(std::string("rms ") + way.name, std::to_string(rms));
     // Strands end at a seam.
-    EXPECT_LT(rms, way.solver.sweep == Sweep::line ? 1e-2 : 5e-4) << way.name;
+    EXPECT_LT(rms, way.solver.sweep == Sweep::line ? 1e-3 : 5e-4) << way.name;
   }
 }
 
