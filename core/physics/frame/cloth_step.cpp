@@ -45,13 +45,15 @@ void ClothStep::choose_anew(Method method) {
 
 void ClothStep::make_schedule() {
   const Particles& p = particles();
-  std::optional<std::size_t> second;
-  if (sheets_meet_first())
-    second = std::size_t(std::find_if(stages().begin(), stages().end(),
-                                      [&](const auto& s) { return s.get() == after_motion_; }) -
-                         stages().begin());
-  schedule_ =
-      std::make_unique<Schedule>(list_.stages, p.rows, p.bytes() / std::size_t(p.rows), second);
+  schedule_ = std::make_unique<Schedule>(
+      list_.stages, p.rows, p.bytes() / std::size_t(p.rows),
+      sheets_meet_first() ? std::optional(motion_stages()) : std::nullopt);
+}
+
+std::size_t ClothStep::motion_stages() const {
+  return std::size_t(std::find_if(stages().begin(), stages().end(),
+                                  [&](const auto& s) { return s.get() == after_motion_; }) -
+                     stages().begin());
 }
 
 // As in the course where all sheets that meet do so by its rule: then a strain limit has the last word.

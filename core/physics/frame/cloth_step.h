@@ -62,6 +62,8 @@ class ClothStep {
   const Stages& stages() const { return list_.stages; }
   // Whether contact between sheets comes before bodies and the limit, and so between the schedule's two parts.
   bool sheets_meet_first() const;
+  // How many stages come before bodies.
+  std::size_t motion_stages() const;
   // What the cloth does without, and why.
   const std::vector<SkippedStage>& skipped() const { return list_.skipped; }
   Schedule& schedule() { return *schedule_; }

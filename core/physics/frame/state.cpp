@@ -80,9 +80,12 @@ Plan Simulation::State::describe_stages() const {
       all.skipped.push_back({stage.name, why_not});
   };
   const std::int64_t meeting = contact ? contact->pairs().particles() : 0;
-  choose(contact != nullptr,
-         {"self_collision", "all cloths together, as often as they move", 0, meeting, "particles"},
-         "off in the scene");
+  const PlannedStage sheets{"self_collision", "all cloths together, as often as they move", 0,
+                            meeting, "particles"};
+  if (contact && cloths.front()->sheets_meet_first())
+    all.stages.insert(all.stages.begin() + std::ptrdiff_t(cloths.front()->motion_stages()), sheets);
+  else
+    choose(contact != nullptr, sheets, "off in the scene");
   choose(contact && contact->pairs().surfaces(),
          {"self_surface", "vertices against triangles, edges against edges; nothing passes through",
           0, meeting, "squares"},
