@@ -1,4 +1,7 @@
 // Air on the triangles of a mesh, by the law of grids (wind_stage.h).
+#include <algorithm>
+#include <iterator>
+
 #include "physics/kernels/mesh.h"
 #include "physics/model/mesh/batches.h"
 #include "physics/model/mesh/triangle_stage.h"
@@ -46,6 +49,9 @@ class MeshWindStage final : public WindStage, private TornParts {
       }
       ++b.count;
     }
+    // Places of no triangle look at one of the batch: the vertices of other rows may be moving.
+    for (std::size_t k = 0; k < 3; ++k)
+      std::fill(b.corner[k] + b.count, std::end(b.corner[k]), b.corner[k][0]);
     return b;
   }
   void set_triangle(int triangle) override {
