@@ -1,8 +1,8 @@
 // Line sweeps: all constraints of a line (a row, column or diagonal of the sheet) solved as one
 // tridiagonal system in their multipliers, with lanes across the lines.
 //
-// For constraints c = 0, 1, … along a line of particles at x + u, e_c from particle c to particle c+1, and the multiplier
-// of c written as μ_c |e_c| (which frees the equations of every division but the pivot's):
+// For constraints c = 0, 1, … along a line of particles at x + u, e_c from particle c to particle c+1, and
+// the multiplier of c written as μ_c |e_c| (which frees the equations of every division but the pivot's):
 //
 //   (w_c + w_{c+1} + α̃) |e_c|² μ_c - w_c e_{c-1}·e_c μ_{c-1} - w_{c+1} e_c·e_{c+1} μ_{c+1}
 //       = |e_c|² - |e_c| (l - α̃ λ_c) = r_c,      α̃ = 1/(k dt²)
