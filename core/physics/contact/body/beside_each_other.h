@@ -7,6 +7,9 @@
 
 namespace weft::physics {
 
+// How wide such groups are for a body, of its mean edge: wider ones have longer lists, narrower ones more of them.
+inline constexpr double kGroupWidth = 6;
+
 // The lanes of row j, in groups of few that are not far from each other where they are now: no wider than so [m], if
 // they are more than one.
 std::vector<std::vector<int>> beside_each_other(const Particles& particles, int j, double wide);

@@ -9,7 +9,6 @@ namespace weft::physics {
 namespace {
 
 // Of the body's mean edge.
-constexpr double kWide = 6;    // a group is no wider
 constexpr double kMargin = 1;  // what may come near is known so much farther than is needed
 constexpr double kFast = 4;    // what goes farther in a substep than this is looked at one by one
 
@@ -36,7 +35,7 @@ BodyProbe::BodyProbe(const BodySurface& surface, const ClothParts& parts)
       distance_before_(known_.size()) {
   for (int j = 0; j < parts.particles.rows; ++j) {
     for (std::vector<int>& lanes :
-         beside_each_other(parts.particles, j, kWide * surface.mean_edge()))
+         beside_each_other(parts.particles, j, kGroupWidth * surface.mean_edge()))
       groups_[std::size_t(j)].push_back({std::move(lanes), {}, 0});
     const std::size_t first = lane(j, 0);
     found_.push_back({distance_.data() + first, normal_.row(j), distance_before_.data() + first,

@@ -6,10 +6,9 @@
 namespace weft::physics {
 namespace {
 
-constexpr double kWide = 6;  // of the body's mean edge: a group is no wider
-constexpr double kMargin =
-    0.5;  // of a triangle's reach: what may come near is known so much farther
-constexpr double kGrown = 1.1;  // triangles may grow so much longer until it is looked for again
+// What may come near is known so much farther than a triangle's reach, as a share of it; and triangles may grow so
+// much longer until it is looked for again.
+constexpr double kMargin = 0.5, kGrown = 1.1;
 
 }  // namespace
 
@@ -21,7 +20,8 @@ FeatureProbe::FeatureProbe(const BodySurface& surface, const ClothParts& parts)
   for (int j = 0; j < particles_.rows; ++j) {
     std::vector<Group>& groups = groups_[std::size_t(j)];
     group_of_[std::size_t(j)].resize(std::size_t(particles_.count(j)));
-    for (std::vector<int>& lanes : beside_each_other(particles_, j, kWide * surface.mean_edge())) {
+    for (std::vector<int>& lanes :
+         beside_each_other(particles_, j, kGroupWidth * surface.mean_edge())) {
       for (const int i : lanes) group_of_[std::size_t(j)][std::size_t(i)] = int(groups.size());
       groups.push_back({std::move(lanes), {}, 0});
     }
