@@ -11,16 +11,10 @@
 namespace bench {
 namespace {
 
+using weft::distance;
+
 // Of positions, added up over a run, relative to the size of the scene.
 constexpr double kRounding = 1e-6;
-
-double norm(const Vec3& a) {
-  return std::hypot(a[0], a[1], a[2]);
-}
-
-double distance(const Vec3& a, const Vec3& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
 
 // Where the colliders put what starts inside them.
 void push_out(const weft::Scene& scene, std::vector<Vec3>& x) {
@@ -99,7 +93,7 @@ double Ledger::mass_of_all() const {
 
 double Ledger::kinetic(const std::vector<Vec3>& v) const {
   double sum = 0;
-  for (std::size_t p = 0; p < v.size(); ++p) sum += 0.5 * mass(p) * norm(v[p]) * norm(v[p]);
+  for (std::size_t p = 0; p < v.size(); ++p) sum += 0.5 * mass(p) * weft::dot(v[p], v[p]);
   return sum;
 }
 
@@ -181,7 +175,7 @@ double Ledger::tethered(const std::vector<Vec3>& x) const {
 // What rounding of the positions puts into the springs.
 double Ledger::noise(const std::vector<Vec3>& x) const {
   double size = 1;
-  for (const Vec3& p : x) size = std::max(size, norm(p));
+  for (const Vec3& p : x) size = std::max(size, weft::length(p));
   const double off = kRounding * size;
   std::vector<Vec3> ripples(x.size());
   for (std::size_t p = 0; p < x.size(); ++p) {

@@ -36,13 +36,10 @@ Vec3 plus(const Vec3& a, const Vec3& b, double times) {
   return {a[0] + times * b[0], a[1] + times * b[1], a[2] + times * b[2]};
 }
 
-double size(const Vec3& v) {
-  return std::hypot(v[0], v[1], v[2]);
-}
-
 double greatest_side(const Scene& scene) {
   double side = 0;
-  for (const Cloth& c : scene.cloths) side = std::max({side, size(c.grid.u), size(c.grid.v)});
+  for (const Cloth& c : scene.cloths)
+    side = std::max({side, weft::length(c.grid.u), weft::length(c.grid.v)});
   return side;
 }
 
@@ -156,7 +153,8 @@ Meeting run_meeting(const Scene& scene, int threads) {
   const weft::Report start = simulation.report();
   double motion = 0;
   for (const Cloth& c : scene.cloths)
-    motion += c.density * size(c.grid.u) * size(c.grid.v) * size(c.velocity);
+    motion +=
+        c.density * weft::length(c.grid.u) * weft::length(c.grid.v) * weft::length(c.velocity);
   const double side = greatest_side(scene);
   Meeting m;
   while (m.finite && simulation.time() < scene.time.seconds - 1e-9) {

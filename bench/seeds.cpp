@@ -150,14 +150,8 @@ struct Shape {
   double roughness = 0;      // mean angle between neighbouring normals along rows [degrees]
 };
 
-weft::Vec3 minus(const weft::Vec3& a, const weft::Vec3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-weft::Vec3 unit_cross(const weft::Vec3& a, const weft::Vec3& b) {
-  const weft::Vec3 c{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                     a[0] * b[1] - a[1] * b[0]};
-  const double l = std::max(std::hypot(c[0], c[1], c[2]), 1e-30);
-  return {c[0] / l, c[1] / l, c[2] / l};
+weft::Vec3 unit(const weft::Vec3& a) {
+  return weft::times(a, 1 / std::max(weft::length(a), 1e-30));
 }
 
 Shape shape_of(const weft::Simulation& simulation) {
@@ -174,13 +168,13 @@ Shape shape_of(const weft::Simulation& simulation) {
     shape.mean += x[k] / (double(x.size()) / 3);
   }
   const auto normal = [&](int i, int j) {
-    return unit_cross(minus(at(i + 1, j), at(i, j)), minus(at(i, j + 1), at(i, j)));
+    return unit(weft::normal_of(at(i, j), at(i + 1, j), at(i, j + 1)));
   };
   double sum = 0;
   for (int j = 0; j + 1 < g.ny; ++j)
     for (int i = 0; i + 2 < g.nx; ++i) {
       const weft::Vec3 a = normal(i, j), b = normal(i + 1, j);
-      sum += std::acos(std::clamp(a[0] * b[0] + a[1] * b[1] + a[2] * b[2], -1.0, 1.0));
+      sum += std::acos(std::clamp(weft::dot(a, b), -1.0, 1.0));
     }
   shape.roughness = sum / ((g.ny - 1) * (g.nx - 2)) * 180 / 3.14159265358979;
   return shape;

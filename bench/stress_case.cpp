@@ -29,10 +29,6 @@ std::vector<double> as_values(const std::vector<Vec3>& points) {
   return flat;
 }
 
-double length(const Vec3& a) {
-  return std::hypot(a[0], a[1], a[2]);
-}
-
 bool is_spring(const weft::Scene& scene) {
   return scene.solver.method == weft::Method::spring ||
          scene.solver.method == weft::Method::spring_friction;
@@ -81,7 +77,7 @@ weft::Scene scene_of(const StressCase& c) {
   if (c.start == Start::inside) {
     weft::Collider ball;
     ball.shape = weft::Sphere{grid_point(g, 0.5 * (g.nx - 1), 0.5 * (g.ny - 1)),
-                              0.3 * std::min(length(g.u), length(g.v))};
+                              0.3 * std::min(weft::length(g.u), weft::length(g.v))};
     scene.colliders.push_back(ball);
   }
   if (c.start == Start::shreds) cloth.tear_strain = 0.05;

@@ -54,7 +54,7 @@ TEST(ContactShapes, NormalIsTheGradientOfTheDistance) {
               kink = std::max(kink, std::abs(slope - here.normal[k]));
             }
             EXPECT_LT(kink, 1e-5) << shape.index();
-            EXPECT_NEAR(physics::dot(here.normal, here.normal), 1, 1e-12);
+            EXPECT_NEAR(dot(here.normal, here.normal), 1, 1e-12);
           },
           shape);
     }
@@ -68,8 +68,8 @@ double volume_of(const Shape& shape) {
   }
   if (const auto* c = std::get_if<TaperedCapsule>(&shape)) {
     // Caps of both balls and the frustum between the circles where they touch the side.
-    const Vec3 e = physics::minus(c->b, c->a);
-    const double l = std::sqrt(physics::dot(e, e)), a = c->radius_a, b = c->radius_b;
+    const Vec3 e = minus(c->b, c->a);
+    const double l = length(e), a = c->radius_a, b = c->radius_b;
     if (std::abs(a - b) >= l) return 4 / 3. * M_PI * std::pow(std::max(a, b), 3);
     const double k = (a - b) / l, side = std::sqrt(1 - k * k), height = l + k * (b - a);
     const auto cap = [](double r, double share) {  // of the height (1 + share) r
@@ -78,8 +78,8 @@ double volume_of(const Shape& shape) {
     return cap(a, k) + cap(b, -k) + M_PI / 3 * height * side * side * (a * a + a * b + b * b);
   }
   if (const auto* c = std::get_if<Cylinder>(&shape)) {
-    const Vec3 e = physics::minus(c->b, c->a);
-    const double r = c->rounding, big = c->radius - r, l = std::sqrt(physics::dot(e, e)) - 2 * r;
+    const Vec3 e = minus(c->b, c->a);
+    const double r = c->rounding, big = c->radius - r, l = length(e) - 2 * r;
     // Steiner's formula of the core: volume, surface, mean width.
     return M_PI * big * big * l + (2 * M_PI * big * big + 2 * M_PI * big * l) * r +
            (M_PI * M_PI * big + M_PI * l) * r * r + 4 / 3. * M_PI * r * r * r;
@@ -101,10 +101,10 @@ TEST(ContactShapes, TrianglesCloseTheSurface) {
     EXPECT_LT(greatest, 1e-9) << shape.index();
     for (const auto& t : mesh.triangles) {
       const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
-      const Vec3 u = physics::minus(b, a), v = physics::minus(c, a);
+      const Vec3 u = minus(b, a), v = minus(c, a);
       const Vec3 n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-      EXPECT_GE(physics::dot(n, mesh.normals[t[0]]), -1e-12) << shape.index();
-      volume += physics::dot(n, a) / 6;
+      EXPECT_GE(dot(n, mesh.normals[t[0]]), -1e-12) << shape.index();
+      volume += dot(n, a) / 6;
     }
     if (std::holds_alternative<Plane>(shape)) continue;
     EXPECT_NEAR(volume / volume_of(shape), 1, 0.01) << shape.index();
@@ -133,8 +133,8 @@ void expect_lifted_out(const Shape& shape, const std::vector<Vec3>& points, doub
     const std::vector<double> after = simulation.positions();
     for (std::size_t p = 0; p < points.size(); ++p) {
       const double before = signed_distance(scene.colliders[0], 0, points[p]);
-      const Vec3 moved = physics::minus(at(after, p), points[p]);
-      EXPECT_NEAR(std::sqrt(physics::dot(moved, moved)), std::max(0.0, 0.01 - before), tolerance);
+      const Vec3 moved = minus(at(after, p), points[p]);
+      EXPECT_NEAR(length(moved), std::max(0.0, 0.01 - before), tolerance);
       EXPECT_GT(signed_distance(scene.colliders[0], 0, at(after, p)), 0.01 - tolerance);
     }
     if (hash == 0) hash = simulation.hash();
@@ -149,18 +149,18 @@ TEST(ContactShapes, KernelsLiftParticlesOutTheShortestWay) {
 // On the axis of a cylinder no side is nearer than others; what rounding leaves across it is no direction.
 TEST(ContactShapes, TheAxisOfACylinderLeadsOutStraight) {
   for (const Vec3& way : random_points(20, 1)) {
-    const Vec3 axis = physics::times(way, 1 / std::sqrt(physics::dot(way, way)));
-    const Vec3 a{-0.3, 0, 0.1}, e = physics::times(axis, 0.6);
-    const Cylinder rod{a, physics::plus(a, e), 0.02, 0.001};
+    const Vec3 axis = times(way, 1 / length(way));
+    const Vec3 a{-0.3, 0, 0.1}, e = times(axis, 0.6);
+    const Cylinder rod{a, plus(a, e), 0.02, 0.001};
     std::vector<Vec3> points;
     for (int n = 0; n < 23 * 23; ++n) {
-      const Vec3 along = physics::times(e, 0.1 + 0.8 * n / (23 * 23));
-      EXPECT_NEAR(physics::dot(nearest_of(rod, along).normal, axis), 0, 1e-9);
-      points.push_back(physics::plus(a, along));
+      const Vec3 along = times(e, 0.1 + 0.8 * n / (23 * 23));
+      EXPECT_NEAR(dot(nearest_of(rod, along).normal, axis), 0, 1e-9);
+      points.push_back(plus(a, along));
     }
     expect_lifted_out(rod, points, 1e-5);
     for (const double end : {0.0, 1.0}) {
-      const Vec3 furthest = physics::support_of(rod, physics::times(axis, 2 * end - 1));
+      const Vec3 furthest = physics::support_of(rod, times(axis, 2 * end - 1));
       EXPECT_NEAR(nearest_of(rod, furthest).distance, -rod.rounding, 1e-12);
     }
   }

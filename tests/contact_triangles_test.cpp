@@ -40,12 +40,12 @@ TEST(ContactTriangles, LeaveACoreTheShortestWay) {
         for (std::size_t k = 0; k < 3; ++k) x[k] = middle[k] + 0.2 * unit(random);
       const auto depth_along = [&](const Vec3& way) {
         double low = 1e300;
-        for (const Vec3& x : t) low = std::min(low, physics::dot(way, x));
-        return physics::dot(way, physics::support_of(shape, way)) - low;
+        for (const Vec3& x : t) low = std::min(low, dot(way, x));
+        return dot(way, physics::support_of(shape, way)) - low;
       };
       std::vector<physics::Overlap> looks;
       const auto look = [&](const Vec3& way) {
-        const Vec3 normal = physics::times(way, 1 / std::sqrt(physics::dot(way, way)));
+        const Vec3 normal = times(way, 1 / length(way));
         return physics::Overlap{depth_along(normal), normal};
       };
       for (int k = 0; k < 1500; ++k) looks.push_back(look({any(random), any(random), any(random)}));

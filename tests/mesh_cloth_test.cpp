@@ -6,16 +6,13 @@
 #include <fstream>
 
 #include "mesh_scenes.h"
-#include "physics/model/vector.h"
 #include "weft/output.h"
 #include "weft/read_scene.h"
 #include "weft/recording.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
-
-using physics::plus;
-using physics::times;
 
 TEST(MeshCloth, IsTheSameOnAnyThreadsAndInstructionSets) {
   const auto mesh = made_up({.nx = 37, .ny = 29, .shift = 0.3, .shuffled = true});

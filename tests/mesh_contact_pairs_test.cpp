@@ -11,17 +11,13 @@
 #include "physics/contact/self/crossings.h"
 #include "physics/contact/self/self_contact.h"
 #include "physics/frame/cloth_step.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
 
 constexpr int kPoints = 9;
 constexpr double kSpacing = 1.0 / (kPoints - 1);
-
-double length(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
 
 // A mesh, and a grid that lies through it.
 Scene scene_of(SelfCollisionMode mode, double thickness, unsigned seed) {

@@ -7,8 +7,8 @@
 #include "made_up_balloon.h"
 #include "physics/model/mesh/gas.h"
 #include "physics/model/mesh/mesh_order.h"
-#include "physics/model/vector.h"
 #include "weft/simulation.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
@@ -74,8 +74,8 @@ TEST(MeshGas, GradientsAreThoseOfTheVolume) {
         for (const auto& member : gas.members(p)) {
           const auto n = std::size_t(member.number);
           gradient[n] = work.gradients[std::size_t(p)];
-          sum = physics::plus(sum, gradient[n]);
-          moment = physics::plus(moment, physics::cross(x[n], gradient[n]));
+          sum = plus(sum, gradient[n]);
+          moment = plus(moment, cross(x[n], gradient[n]));
         }
       for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_NEAR(sum[k], 0, 1e-14);

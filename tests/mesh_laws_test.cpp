@@ -4,15 +4,10 @@
 
 #include "mesh_scenes.h"
 #include "physics/model/mesh/rest_triangles.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
-
-using physics::dot;
-using physics::minus;
-using physics::plus;
-using physics::times;
 
 TEST(MeshCloth, ForcesAreTheSlopeOfTheEnergy) {
   const auto mesh = made_up({.nx = 5, .ny = 4, .shift = 0.3});

@@ -12,7 +12,7 @@
 #include "physics/model/mesh/mesh_attachments.h"
 #include "physics/model/mesh/mesh_edges.h"
 #include "physics/model/mesh/strands.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft {
 

@@ -6,14 +6,12 @@
 
 #include "made_up_balloon.h"
 #include "made_up_mesh.h"
-#include "physics/model/vector.h"
 #include "weft/estimate.h"
 #include "weft/simulation.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
-
-using physics::dot, physics::minus;
 
 constexpr double kRadius = 0.2, kDensity = 0.2;  // m, kg/m²
 
@@ -136,12 +134,12 @@ TEST(MeshPressure, FreeBalloonsKeepTheirMomentum) {
       ASSERT_TRUE(run.status().ok) << way.name;
       EXPECT_FALSE(run.plan().fallback) << way.name << ": " << run.plan().notes.back();
       // Against the motion of the parts to each other, which rounding is in proportion to.
-      const double mass = std::sqrt(dot(before.momentum, before.momentum)) / std::sqrt(0.14);
+      const double mass = length(before.momentum) / std::sqrt(0.14);
       const double scale = std::sqrt(2 * most * mass);
       const Vec3 p = minus(after.momentum, before.momentum);
       const Vec3 l = minus(after.angular_momentum, before.angular_momentum);
-      const double lost = std::sqrt(dot(p, p)) / scale;
-      const double turned = std::sqrt(dot(l, l)) / (scale * kRadius);
+      const double lost = length(p) / scale;
+      const double turned = length(l) / (scale * kRadius);
       std::printf("%-16s %6g Pa, %g times: momentum %.1e, angular %.1e, %d substeps\n", way.name,
                   pressure.over, pressure.inflate, lost, turned, run.substeps());
       EXPECT_LT(lost, way.sweep == Sweep::line ? 1e-3 : 1e-5) << way.name;
@@ -280,10 +278,9 @@ TEST(MeshPressure, ContactCarriesTheWeight) {
           ideal ? 30000 * (1.06 * enclosed_volume(cloth) / volume - 1) : cloth.pressure.over;
       double mass = 0;
       for (const auto& t : mesh.triangles) {
-        const Vec3 n =
-            physics::normal_of(mesh.vertices[std::size_t(t[0])], mesh.vertices[std::size_t(t[1])],
-                               mesh.vertices[std::size_t(t[2])]);
-        mass += cloth.density * std::sqrt(dot(n, n)) / 2;
+        const Vec3 n = normal_of(mesh.vertices[std::size_t(t[0])], mesh.vertices[std::size_t(t[1])],
+                                 mesh.vertices[std::size_t(t[2])]);
+        mass += cloth.density * length(n) / 2;
       }
       std::printf("weight %.2f N, pressure %.0f Pa times contact %.2f N\n", 9.81 * mass, over,
                   over * touching);
@@ -349,7 +346,7 @@ TEST(MeshPressure, SeamsCloseACushion) {
     for (const std::string& note : run.plan().notes)
       EXPECT_EQ(note.find("open"), std::string::npos) << way.name << ": " << note;
     const Report report = run.report();
-    EXPECT_LT(std::sqrt(dot(report.momentum, report.momentum)), 1e-4) << way.name;
+    EXPECT_LT(length(report.momentum), 1e-4) << way.name;
     // A round cushion of two discs of radius a holds 0.2185·(π a)³/π² … of a sheet that does not stretch at most.
     const double volume = enclosed(run.positions(), *cloth.mesh.shape);
     EXPECT_GT(volume, 0.6 * 0.3 * 0.3 * 0.3) << way.name;

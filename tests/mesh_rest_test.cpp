@@ -8,8 +8,8 @@
 #include "folder.h"
 #include "mesh_scenes.h"
 #include "physics/model/mesh/rest_triangles.h"
-#include "physics/model/vector.h"
 #include "weft/read_scene.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
@@ -100,7 +100,7 @@ TEST(MeshRest, ForcesAreTheSlopeOfTheEnergy) {
     for (double& value : p) value += 0.02 * (double(random()) / 2147483648.0 - 1);
   physics::add_mesh_forces(triangles, made_of, x, nullptr, force);
   double greatest = 0;
-  for (const Vec3& f : force) greatest = std::max(greatest, std::sqrt(physics::dot(f, f)));
+  for (const Vec3& f : force) greatest = std::max(greatest, length(f));
   for (std::size_t p = 0; p < x.size(); ++p)
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_NEAR(force[p][k], energy_slope(triangles, made_of, x, p, k), 1e-6 * greatest);
@@ -119,9 +119,9 @@ TEST(MeshRest, ForcesAddUpToNothingAndTurnNothing) {
   Vec3 sum{}, turn{};
   double all = 0;
   for (std::size_t p = 0; p < x.size(); ++p) {
-    sum = physics::plus(sum, force[p]);
-    turn = physics::plus(turn, physics::cross(x[p], force[p]));
-    all += std::sqrt(physics::dot(force[p], force[p]));
+    sum = plus(sum, force[p]);
+    turn = plus(turn, cross(x[p], force[p]));
+    all += length(force[p]);
   }
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(sum[k], 0, 1e-12 * all);

@@ -7,8 +7,8 @@
 
 #include "made_up_mesh.h"
 #include "physics/model/mesh/rest_triangles.h"
-#include "physics/model/vector.h"
 #include "weft/simulation.h"
+#include "weft/vec3.h"
 
 namespace weft {
 
@@ -84,8 +84,8 @@ inline std::vector<double> flat(const std::vector<Vec3>& x) {
 inline double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double most = 0;
   for (std::size_t n = 0; n < a.size(); ++n) {
-    const Vec3 e = physics::minus(a[n], b[n]);
-    most = std::max(most, std::sqrt(physics::dot(e, e)));
+    const Vec3 e = minus(a[n], b[n]);
+    most = std::max(most, length(e));
   }
   return most;
 }

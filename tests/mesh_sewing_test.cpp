@@ -6,14 +6,11 @@
 
 #include "mesh_scenes.h"
 #include "physics/model/mesh/mesh_order.h"
-#include "physics/model/vector.h"
 #include "weft/read_scene.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
-
-using physics::dot;
-using physics::minus;
 
 struct Way {
   const char* name;
@@ -40,11 +37,6 @@ const Way kWays[] = {{"spring", by(Method::spring)},
                      {"strands", projected(1, Sweep::line, 2)},
                      {"membrane", projected(1, Sweep::gauss_seidel, 2), kCanvas},
                      {"membrane by strands", projected(2, Sweep::line, 1), kCanvas}};
-
-double distance(const Vec3& a, const Vec3& b) {
-  const Vec3 e = minus(a, b);
-  return std::sqrt(dot(e, e));
-}
 
 // A sheet, cut in two along a column of its points that both parts have.
 struct CutSheet {

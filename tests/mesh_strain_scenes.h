@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh_scenes.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft {
 
@@ -51,13 +51,9 @@ inline std::vector<Vec3> after(const Scene& scene, int frames) {
 inline double apart(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double sum = 0;
   for (std::size_t n = 0; n < a.size(); ++n) {
-    const Vec3 e = physics::minus(a[n], b[n]);
-    sum += physics::dot(e, e) / double(a.size());
+    const Vec3 e = minus(a[n], b[n]);
+    sum += dot(e, e) / double(a.size());
   }
   return std::sqrt(sum);
 }
-inline double length(const Vec3& a) {
-  return std::sqrt(physics::dot(a, a));
-}
-
 }  // namespace weft

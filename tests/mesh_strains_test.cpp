@@ -11,8 +11,6 @@
 namespace weft {
 namespace {
 
-using physics::minus;
-
 // The sweeps in double precision by dense matrices, with strains from the deformation gradient.
 class StrainOracle final : public Oracle {
  public:

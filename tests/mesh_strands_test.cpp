@@ -8,13 +8,10 @@
 #include "physics/model/mesh/mesh_attachments.h"
 #include "physics/model/mesh/mesh_edges.h"
 #include "physics/model/mesh/strands.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
-
-using physics::dot;
-using physics::minus;
 
 TEST(MeshStrands, MakesStrandsOfAllEdges) {
   for (const double shift : {0.0, 0.3}) {
@@ -55,7 +52,7 @@ TEST(MeshStrands, TethersAreAsLongAsTheWayOverTheMesh) {
       for (std::size_t p = 0; p < slot.size(); ++p) {
         if (slot[p].pin < 0) continue;
         const Vec3 e = minus(mesh->vertices[p], mesh->vertices[std::size_t(slot[p].pin)]);
-        const double over = slot[p].reach / std::sqrt(dot(e, e)) - 1;
+        const double over = slot[p].reach / length(e) - 1;
         EXPECT_GT(over, -1e-9);
         most = std::max(most, over);
         mean += over;

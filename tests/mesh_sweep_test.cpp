@@ -4,15 +4,10 @@
 
 #include "mesh_oracle.h"
 #include "mesh_scenes.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
-
-using physics::dot;
-using physics::minus;
-using physics::plus;
-using physics::times;
 
 const Way kWays[] = {{"colours", Sweep::gauss_seidel, 1, 1, 0},
                      {"colours, three times", Sweep::gauss_seidel, 1, 3, 0},
@@ -210,7 +205,7 @@ TEST(MeshSweep, HangsAsTheSameGridDoes) {
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i) {
         const Vec3 e = minus(x[std::size_t(j * n + i)], y[std::size_t(j * n + n - 1 - i)]);
-        off = std::max(off, std::sqrt(dot(e, e)));
+        off = std::max(off, length(e));
       }
     EXPECT_LT(off, 0.01);
   }

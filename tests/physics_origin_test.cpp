@@ -15,10 +15,6 @@ namespace {
 
 constexpr Vec3 kFar{4000, 200, -7000}, kFarther{-9000, 9000, 5000};
 
-Vec3 plus(const Vec3& a, const Vec3& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-
 // A sheet with a moving pin, a keyed ball and a wall, that a hand pulls, cuts and pushes about.
 Scene busy_scene(Method method) {
   Scene scene;

@@ -5,11 +5,7 @@
 namespace weft {
 namespace {
 
-using physics::dot;
 using physics::Joined;
-using physics::minus;
-using physics::plus;
-using physics::times;
 
 // By how much a strip whose ends fly apart changes its angular momentum at most, if it cannot tear: what sweeps over
 // positions do by themselves.
@@ -126,7 +122,7 @@ class WhatIsLeft {
   void pull(std::size_t a, std::size_t b, const std::vector<Vec3>& x, const std::vector<Vec3>& v,
             std::vector<Vec3>& f) const {
     const Vec3 e = minus(x[b], x[a]);
-    const double l = std::sqrt(dot(e, e)), rest = distance(mesh_.vertices[a], mesh_.vertices[b]);
+    const double l = length(e), rest = distance(mesh_.vertices[a], mesh_.vertices[b]);
     const double rate = dot(e, minus(v[b], v[a])) / l;
     const Vec3 by =
         times(e, (material_.stiffness * (l - rest) + material_.spring_damping * rate) / l);

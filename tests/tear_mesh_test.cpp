@@ -12,10 +12,7 @@
 namespace weft {
 namespace {
 
-using physics::cross;
-using physics::dot;
 using physics::Joined;
-using physics::minus;
 
 TEST(TearMesh, WhatDoesNotTearMovesBitForBitAsIfItCouldNot) {
   for (const Way& way : ways()) {
@@ -248,7 +245,7 @@ TEST(TearMesh, ATearShowsAsALineAndNotAsAHole) {
     double sum = 0;
     const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& d) {
       const Vec3 n = cross(minus(b, a), minus(d, a));
-      sum += 0.5 * std::sqrt(dot(n, n));
+      sum += 0.5 * length(n);
     };
     const auto corner = [&](std::uint32_t p) { return Vec3{c.x[p], c.y[p], c.z[p]}; };
     const auto point = [&](std::uint32_t p) {

@@ -8,14 +8,9 @@
 #include "contact_scenes.h"
 #include "mesh_scenes.h"
 #include "physics/model/tearing.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft {
-
-inline double distance(const Vec3& a, const Vec3& b) {
-  const Vec3 e = physics::minus(a, b);
-  return std::sqrt(physics::dot(e, e));
-}
 
 // Every way that a mesh is moved.
 struct Way {

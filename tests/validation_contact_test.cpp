@@ -316,7 +316,7 @@ double distance_to_triangle(const Vec3& p, const std::array<Vec3, 3>& t) {
     over = over && dot(cross(minus(b, a), minus(p, a)), normal) >= 0;
     edge = std::min(edge, distance_to_segment(p, a, b));
   }
-  return over ? std::abs(dot(minus(p, t[0]), normal)) / std::sqrt(dot(normal, normal)) : edge;
+  return over ? std::abs(dot(minus(p, t[0]), normal)) / length(normal) : edge;
 }
 
 // A ball as small as a fifth of the spacing meets the inside of a triangle and carries it along.

@@ -27,19 +27,6 @@ Simulation course(const std::string& scene, const std::string& key, double value
   return Simulation(changed);
 }
 
-Vec3 minus(const Vec3& a, const Vec3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-double length(const Vec3& a) {
-  return std::sqrt(dot(a, a));
-}
-
 // How often the bend along a row or column changes sides, on average; bends of less than `least`
 // radians from one spring to the next do not count.
 double folds(const Simulation& simulation, double least) {

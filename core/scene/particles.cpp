@@ -1,5 +1,4 @@
 // What follows from a cloth: how many particles it has, how far apart and how heavy they are (scene.h).
-#include "scene/vectors.h"
 #include "weft/mesh.h"
 
 namespace weft {
@@ -18,11 +17,16 @@ int particle_count(const Cloth& cloth) {
 }
 
 double spacing_u(const Grid& grid) {
-  return text::length(grid.u) / (grid.nx - 1);
+  return hypot(grid.u) / (grid.nx - 1);
 }
 
 double spacing_v(const Grid& grid) {
-  return text::length(grid.v) / (grid.ny - 1);
+  return hypot(grid.v) / (grid.ny - 1);
+}
+
+Vec3 place_on(const Grid& grid, int i, int j) {
+  return plus(grid.origin,
+              plus(times(grid.u, i / double(grid.nx - 1)), times(grid.v, j / double(grid.ny - 1))));
 }
 
 double particle_mass(const Cloth& cloth, int i, int j) {
@@ -31,7 +35,7 @@ double particle_mass(const Cloth& cloth, int i, int j) {
     return cloth.masses[static_cast<std::size_t>(j) * static_cast<std::size_t>(grid.nx) +
                         static_cast<std::size_t>(i)];
   if (cloth.particle_mass > 0) return cloth.particle_mass;
-  const double mass = cloth.density * text::length(text::cross(grid.u, grid.v));
+  const double mass = cloth.density * hypot(cross(grid.u, grid.v));
   if (!lumps_by_area(cloth)) return mass / grid.nx / grid.ny;
   return mass / ((grid.nx - 1.0) * (grid.ny - 1.0)) * border_share(i, grid.nx) *
          border_share(j, grid.ny);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <map>
 
-#include "scene/vectors.h"
 #include "weft/mesh.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
@@ -17,7 +17,7 @@ std::vector<Vec3> starts_of(const Cloth& cloth) {
   std::vector<Vec3> starts;
   const Grid& grid = cloth.grid;
   for (int j = 0; j < grid.ny; ++j)
-    for (int i = 0; i < grid.nx; ++i) starts.push_back(text::place_on(grid, i, j));
+    for (int i = 0; i < grid.nx; ++i) starts.push_back(place_on(grid, i, j));
   return starts;
 }
 
@@ -203,7 +203,7 @@ class Pins {
   void path(const Pin& pin, const std::string& here) {
     check_keys(pin.keys, here + "/keys", result_);
     check_keys(pin.rotate.keys, here + "/rotate/keys", result_);
-    if (length(pin.rotate.axis) < 1e-6)
+    if (hypot(pin.rotate.axis) < 1e-6)
       fault(here + "/rotate/axis", "axis is zero", "a direction at least 1e-6 long");
     const auto colliders = static_cast<int>(scene_.colliders.size());
     if (pin.follow >= colliders)

@@ -17,8 +17,8 @@
 #include "scene/mesh/refused.h"
 #include "scene/mesh/seams.h"
 #include "scene/pins.h"
-#include "scene/vectors.h"
 #include "weft/mesh.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace text {
@@ -128,7 +128,7 @@ class Together {
   bool grid(const Grid& grid, const std::string& place) {
     const std::size_t before = result_.faults.size();
     const auto side = [&](const char* key, const Vec3& vector, double spacing) {
-      if (length(vector) == 0)
+      if (hypot(vector) == 0)
         fault(place + "/" + key, std::string(key) + " is zero", "a side with a length");
       else if (spacing < kMinSpacing)
         fault(place + "/" + key,
@@ -138,7 +138,7 @@ class Together {
     side("u", grid.u, spacing_u(grid));
     side("v", grid.v, spacing_v(grid));
     if (result_.faults.size() > before) return false;
-    if (length(cross(grid.u, grid.v)) < kMinSine * length(grid.u) * length(grid.v)) {
+    if (hypot(cross(grid.u, grid.v)) < kMinSine * hypot(grid.u) * hypot(grid.v)) {
       fault(place, "u and v are parallel", "two directions");
       return false;
     }
@@ -250,9 +250,9 @@ class Together {
       if constexpr (std::is_same_v<decltype(value), const Vec3&>) {
         if (is == ShapeValue::place) first = key, from = value;
         const Vec3 axis{value[0] - from[0], value[1] - from[1], value[2] - from[2]};
-        if (is == ShapeValue::point && length(axis) < kMinSpacing)
+        if (is == ShapeValue::point && hypot(axis) < kMinSpacing)
           fault(at, key + (" is where " + first) + " is", "at least 1e-6 m from " + first);
-        if (is == ShapeValue::direction && length(value) < kMinSpacing)
+        if (is == ShapeValue::direction && hypot(value) < kMinSpacing)
           fault(at, std::string(key) + " is zero", "a direction at least 1e-6 long");
       } else if (is == ShapeValue::rounding && value > shape.half_thickness()) {
         fault(at, std::string(key) + " is " + number_words(value),

@@ -13,10 +13,6 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 }  // namespace
 
-Vec3 plus(const Vec3& a, const Vec3& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-
 Matrix rotation(std::size_t axis, double angle) {
   Matrix m{};
   const std::size_t a = (axis + 1) % 3, b = (axis + 2) % 3;

@@ -9,7 +9,6 @@ namespace weft::viewer {
 
 using Matrix = std::array<Vec3, 3>;  // rows
 
-Vec3 plus(const Vec3& a, const Vec3& b);
 Vec3 times(const Matrix& m, const Vec3& v);
 Matrix times(const Matrix& m, const Matrix& n);
 

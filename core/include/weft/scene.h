@@ -265,6 +265,9 @@ double spacing_v(const Grid& grid);
 // The scene with all that has a place, and all paths, moved by so much [m].
 Scene moved(Scene scene, const Vec3& by);
 
+// Where particle (i,j) of a grid starts, but for jitter [m].
+Vec3 place_on(const Grid& grid, int i, int j);
+
 // The number of particle (i,j): row after row.
 inline int particle_number(const Grid& grid, int i, int j) {
   return j * grid.nx + i;

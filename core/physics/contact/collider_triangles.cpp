@@ -55,7 +55,7 @@ Touch first_touch(const Shape& shape, double offset, const Corners& end, int pla
 std::pair<Vec3, Vec3> rub(const CollideRow& r, const Touch& touch, const Vec3& speed) {
   const double into = dot(speed, touch.normal);
   const Vec3 tangential = minus(speed, times(touch.normal, into));
-  const double distance = std::sqrt(dot(tangential, tangential)) * r.dt;
+  const double distance = length(tangential) * r.dt;
   const double pressed = std::max(0.0, -into * r.dt);
   const double taken = taken_by_friction(r.friction_static, r.friction_dynamic, distance, pressed);
   const Vec3 lost = times(tangential, -taken);
@@ -145,7 +145,7 @@ bool ColliderTriangles::touch(const ColliderRow& r, const std::array<int, 3>& j,
   for (int k = 0; k < 3; ++k) {
     c.x[k] = upright_.into(c.x[k]);
     c.path[k] = upright_.into(c.path[k]);
-    path = std::max(path, std::sqrt(dot(c.path[k], c.path[k])));
+    path = std::max(path, length(c.path[k]));
   }
   // It rests as deep as may be: lifted all the way it would fall back and ring.
   const double longest = longest_side(c.x);

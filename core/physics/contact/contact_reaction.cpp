@@ -18,8 +18,7 @@ constexpr double kAtRest = 1e-2;    // of what a substep adds to the velocity in
 // What friction leaves of an acceleration along a surface onto which it is pressed [m/s²].
 Vec3 rubbed(const Friction& friction, const Vec3& along, double pressed) {
   if (friction.model == FrictionModel::course) return times(along, 1 - friction.dynamic);
-  const double taken =
-      taken_by_friction(friction.statik, friction.dynamic, std::sqrt(dot(along, along)), pressed);
+  const double taken = taken_by_friction(friction.statik, friction.dynamic, length(along), pressed);
   return taken == 1 ? Vec3{} : times(along, 1 - taken);
 }
 
@@ -81,7 +80,7 @@ void support(const Scene& scene, const Cloth& cloth, double time, const Lag& lag
       // A substep ends on the surface, or off a curved one by what it went into it before.
       const double rounding =
           kRounding * std::max({1.0, std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
-      const double most = std::sqrt(dot(own, own)) * lag.dt * lag.dt;
+      const double most = length(own) * lag.dt * lag.dt;
       if (least_distance(body, time, p) > c.offset + rounding + most) return;
       const Nearest surface = nearest_at(c.shape, time, p);
       const double inward = -dot(own, surface.normal);

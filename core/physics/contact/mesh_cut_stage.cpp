@@ -42,7 +42,7 @@ class MeshCutStage final : public ColliderRowStage {
       const auto [near, far] = ends_[std::size_t(edge)];
       const Vec3 from = upright_.into(minus(p.position(near.j, near.i), center));
       const Vec3 e = minus(upright_.into(minus(p.position(far.j, far.i), center)), from);
-      const double clearance = nearest_of(shape, from).distance - row.offset - std::sqrt(dot(e, e));
+      const double clearance = nearest_of(shape, from).distance - row.offset - length(e);
       if (clearance <= 0 && comes_inside(shape, row.offset, from, e)) {
         tearing_.end(edge);
         continue;

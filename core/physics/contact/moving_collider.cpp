@@ -91,7 +91,7 @@ void MovingCollider::follow_keys() {
   for (std::size_t n = 1; n < collider_.keys.size(); ++n) {
     const Key &a = collider_.keys[n - 1], &b = collider_.keys[n];
     const Vec3 e = minus(b.position, a.position);
-    along = std::max(along, std::sqrt(dot(e, e)) / (b.time - a.time));
+    along = std::max(along, length(e) / (b.time - a.time));
   }
   fastest_ = along + deepest() / growth_ + (body_ ? body_->fastest() : 0);
 }

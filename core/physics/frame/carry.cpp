@@ -23,7 +23,7 @@ void Carry::begin_anew(double time) {
 }
 
 double Carry::speed() const {
-  return std::sqrt(dot(velocity_, velocity_));
+  return length(velocity_);
 }
 
 void Carry::run(int j, const Substep& s) {

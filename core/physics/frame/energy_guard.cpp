@@ -62,7 +62,7 @@ double fastest_drive(const Scene& scene, double from, double to) {
     for (std::size_t n = 1; n < keys.size(); ++n) {
       if (keys[n].time <= from || keys[n - 1].time >= to) continue;
       const Vec3 e = minus(keys[n].position, keys[n - 1].position);
-      most = std::max(most, std::sqrt(dot(e, e)) / (keys[n].time - keys[n - 1].time));
+      most = std::max(most, length(e) / (keys[n].time - keys[n - 1].time));
     }
     return most;
   };
@@ -73,8 +73,7 @@ double fastest_drive(const Scene& scene, double from, double to) {
       if (keys[n].time <= from || keys[n - 1].time >= to) continue;
       const Vec3 r = minus(pin_alone_at(cloth, pin, keys[n].time), pin.rotate.about);
       const double turn = (keys[n].degrees - keys[n - 1].degrees) * std::numbers::pi / 180;
-      most =
-          std::max(most, std::abs(turn) * std::sqrt(dot(r, r)) / (keys[n].time - keys[n - 1].time));
+      most = std::max(most, std::abs(turn) * length(r) / (keys[n].time - keys[n - 1].time));
     }
     return most;
   };

@@ -100,7 +100,7 @@ void Simulation::State::move_collider(int collider, const Vec3& target) {
   touch();
   set_path(std::size_t(collider), {{now, from}, {now + scene.time.frame, target}});
   const Vec3 way = minus(target, from);
-  guard_.energy().drive(std::sqrt(dot(way, way)) / scene.time.frame);
+  guard_.energy().drive(length(way) / scene.time.frame);
 }
 
 // A collider goes another way, by keys where it stands.

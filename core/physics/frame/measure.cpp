@@ -10,8 +10,8 @@
 #include "physics/contact/self/crossings.h"
 #include "physics/contact/start_inside.h"
 #include "physics/model/path.h"
-#include "physics/model/vector.h"
 #include "weft/shape.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {

@@ -40,7 +40,7 @@ Fineness fineness_of(const Cloth& c, const Solver& solver) {
   for (const auto& [p, q, r] : c.mesh.shape->triangles) {
     const Vec3 n = cross(minus(x[std::size_t(q)], x[std::size_t(p)]),
                          minus(x[std::size_t(r)], x[std::size_t(p)]));
-    area += std::sqrt(dot(n, n)) / 2;
+    area += length(n) / 2;
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const auto [low, high] = std::minmax_element(

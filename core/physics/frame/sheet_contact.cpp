@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "physics/model/path.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
@@ -57,7 +57,7 @@ void SheetContact::begin_frame(Threads& threads) {
 void SheetContact::run_contact(const Substeps& frame, int end, int count, Threads& threads) {
   const auto start = std::chrono::steady_clock::now();
   const Vec3 g = gravity_at(scene_, frame.time + end * frame.dt);
-  until_ = contact_->run({frame.dt, count, std::sqrt(dot(g, g))}, threads);
+  until_ = contact_->run({frame.dt, count, length(g)}, threads);
   if (untangle_->due()) untangle_->calm(count * frame.dt);
   spent_ += std::chrono::steady_clock::now() - start;
   ++runs_;

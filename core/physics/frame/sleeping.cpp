@@ -143,7 +143,7 @@ bool Sleeping::met_by_collider(const Block& block, double time) const {
     if (c.keys.empty() && !(body && body->moves())) continue;
     const double later = time + scene_.time.frame;
     const Vec3 way = minus(displacement(c, later), displacement(c, time));
-    const double path = std::sqrt(dot(way, way)) + (body ? body->travel(time, later) : 0);
+    const double path = length(way) + (body ? body->travel(time, later) : 0);
     if (path == 0) continue;
     const double reach = c.offset + (c.friction.damps() ? c.friction.bias : 0);
     if (signed_distance(c, later, middle) < std::sqrt(square) + reach + path) return true;

@@ -8,8 +8,8 @@
 #include "physics/model/lattice/cuts.h"
 #include "physics/model/number.h"
 #include "physics/model/path.h"
-#include "physics/model/vector.h"
 #include "weft/mesh.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {

@@ -9,7 +9,7 @@
 #include "physics/frame/projection_substep.h"
 #include "physics/frame/velocities.h"
 #include "physics/model/clamp_to_int.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft {
 

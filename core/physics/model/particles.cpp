@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 

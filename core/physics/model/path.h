@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "physics/model/vector.h"
 #include "weft/scene.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 
@@ -45,7 +45,7 @@ inline Vec3 gravity_at(const Scene& scene, double time) {
 }
 inline double greatest_gravity(const Scene& scene) {
   if (!scene.gravity_keys.empty()) return greatest_of(scene.gravity_keys);
-  return std::sqrt(dot(scene.gravity, scene.gravity));
+  return length(scene.gravity);
 }
 
 // Of the air at a time, and the greatest speed [m/s].
@@ -54,7 +54,7 @@ inline Vec3 wind_at(const Wind& wind, double time) {
 }
 inline double greatest_wind(const Wind& wind) {
   if (!wind.velocity_keys.empty()) return greatest_of(wind.velocity_keys);
-  return std::sqrt(dot(wind.velocity, wind.velocity));
+  return length(wind.velocity);
 }
 
 // By how much it has turned at a time [rad].
@@ -76,16 +76,10 @@ inline double angle_at(const Rotation& rotation, double time) {
 // A point that turns (Rodrigues).
 inline Vec3 turned(const Rotation& rotation, const Vec3& point, double time) {
   const double angle = angle_at(rotation, time), c = std::cos(angle), s = std::sin(angle);
-  const Vec3 n = times(rotation.axis, 1 / std::sqrt(dot(rotation.axis, rotation.axis)));
+  const Vec3 n = times(rotation.axis, 1 / length(rotation.axis));
   const Vec3 r = minus(point, rotation.about);
   return plus(rotation.about,
               plus(times(r, c), plus(times(cross(n, r), s), times(n, dot(n, r) * (1 - c)))));
-}
-
-// Where particle (i, j) of a grid starts.
-inline Vec3 place_on(const Grid& grid, int i, int j) {
-  return plus(grid.origin,
-              plus(times(grid.u, i / double(grid.nx - 1)), times(grid.v, j / double(grid.ny - 1))));
 }
 
 // Where a pin is at a time whose particle starts at `place`; but for what it follows.

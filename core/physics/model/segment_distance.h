@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 
@@ -20,7 +20,7 @@ inline double segment_distance(const Vec3& p, const Vec3& d, const Vec3& q, cons
     s = std::clamp((b * t - c) / std::max(a, 1e-300), 0.0, 1.0);
   }
   const Vec3 apart = minus(plus(p, times(d, s)), plus(q, times(e, t)));
-  return std::sqrt(dot(apart, apart));
+  return length(apart);
 }
 
 }  // namespace weft::physics

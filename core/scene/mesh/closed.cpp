@@ -6,13 +6,12 @@
 
 #include "scene/mesh/faces.h"
 #include "scene/pins.h"
-#include "scene/vectors.h"
 #include "weft/mesh.h"
+#include "weft/vec3.h"
 
 namespace weft {
 
 double enclosed_volume(const Cloth& cloth) {
-  using text::cross, text::dot, text::minus;
   const std::vector<Vec3> x = placed_vertices(cloth.mesh);
   const EnclosingSurface surface = enclosing_surface(cloth);
   std::vector<Vec3> points(surface.members.size(), Vec3{});

@@ -7,7 +7,7 @@
 
 #include "scene/mesh/gltf_data.h"
 #include "scene/mesh/polygons.h"
-#include "scene/vectors.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace text {

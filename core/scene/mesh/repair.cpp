@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "scene/mesh/faces.h"
-#include "scene/vectors.h"
+#include "weft/vec3.h"
 
 namespace weft::text {
 namespace {
@@ -106,7 +106,7 @@ class Repair {
       const Vec3 u = minus(at(b), at(a)), v = minus(at(c), at(a)), w = minus(at(c), at(b));
       const Vec3 n = cross(u, v);
       const double longest = std::max({dot(u, u), dot(v, v), dot(w, w)});
-      if (!(std::sqrt(dot(n, n)) > kFlat * longest))
+      if (!(length(n) > kFlat * longest))
         raw_.fault(line(int(t)), "the triangle of vertices " + corners(int(t)) + " has no area",
                    "three corners that are not in line");
     }

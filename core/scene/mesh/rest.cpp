@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "scene/mesh/faces.h"
-#include "scene/vectors.h"
+#include "weft/vec3.h"
 
 namespace weft::text {
 namespace {

@@ -148,7 +148,7 @@ void BodyForm::list_corners(const std::vector<Vec3>& x) {
   for (const auto& t : triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 on = minus(x[std::size_t(t[(k + 1) % 3])], x[std::size_t(t[k])]);
-      edges += std::sqrt(dot(on, on));
+      edges += length(on);
       ++first_at[std::size_t(t[k]) + 1];
     }
   mean_edge = edges / double(3 * triangles.size());

@@ -11,10 +11,6 @@ constexpr double kTouching = 1e-10;  // m; nearer points have no direction of th
 // What is near to a place that is no number: the first triangle, as far off as can be.
 constexpr BodyMoment::Point kNothingNear{1e300, {}, 0, {1, 0, 0}};
 
-double length(const Vec3& a) {
-  return std::sqrt(dot(a, a));
-}
-
 }  // namespace
 
 Vec3 BodyMoment::face_normal(int triangle) const {

@@ -60,8 +60,8 @@ std::vector<double> radii_of(const BodyForm& form, const std::vector<Vec3>& x,
       const double angle = small_angle(n, m);
       const bool inward = form.closed() && dot(minus(far, a), n) > 0;
       const Vec3 one = cross(side, minus(near, a)), two = cross(side, minus(far, a));
-      const double heights = (std::sqrt(dot(one, one)) + std::sqrt(dot(two, two))) /
-                             std::sqrt(std::max(dot(side, side), 1e-300));
+      const double heights =
+          (length(one) + length(two)) / std::sqrt(std::max(dot(side, side), 1e-300));
       radius = angle < kFlat || inward ? infinite : angle > kSharp ? 0 : heights / (3 * angle);
       if (!inward)
         for (const int v : {f.a, f.b}) bends[std::size_t(v)] += angle;
@@ -93,7 +93,7 @@ double least_radius_of(const BodyForm& form, const std::vector<Vec3>& vertices) 
 // Halved three times, then by the series of the arc tangent.
 double angle_between(const Vec3& u, const Vec3& v) {
   const Vec3 apart = minus(u, v), together = plus(u, v);
-  const double y = std::sqrt(dot(apart, apart)), x = std::sqrt(dot(together, together));
+  const double y = length(apart), x = length(together);
   double t = y / (x + std::sqrt(x * x + y * y));
   for (int n = 0; n < 2; ++n) t = t / (1 + std::sqrt(1 + t * t));
   const double s = t * t;

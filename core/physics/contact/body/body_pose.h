@@ -32,7 +32,7 @@ struct BodyPose {
 double least_radius_of(const BodyForm& form, const std::vector<Vec3>& vertices);
 
 inline Vec3 unit(const Vec3& a) {
-  return times(a, 1 / std::max(std::sqrt(dot(a, a)), 1e-300));
+  return times(a, 1 / std::max(length(a), 1e-300));
 }
 
 // Of two unit vectors [rad], by operations that have the same bits everywhere, to 1e-11.

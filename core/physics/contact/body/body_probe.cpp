@@ -12,10 +12,6 @@ namespace {
 constexpr double kMargin = 1;  // what may come near is known so much farther than is needed
 constexpr double kFast = 4;    // what goes farther in a substep than this is looked at one by one
 
-double length(const Vec3& a) {
-  return std::sqrt(dot(a, a));
-}
-
 void put(Rows& rows, int j, int i, const Vec3& value) {
   for (int k = 0; k < 3; ++k) rows.at(k, j, i) = float(value[std::size_t(k)]);
 }

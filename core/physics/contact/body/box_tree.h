@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 

@@ -11,10 +11,6 @@ int padded(int count) {
   return (count + 15) & ~15;
 }
 
-double length(const Vec3& a) {
-  return std::sqrt(dot(a, a));
-}
-
 }  // namespace
 
 void NearTriangles::find(const BodyMoment& now, double time, const AlignedBox& about, double reach,

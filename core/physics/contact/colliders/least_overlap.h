@@ -21,7 +21,7 @@ class LeastOverlap {
 
   // Looks along a direction of any length, there and back.
   void along(const Vec3& direction) {
-    const double size = std::sqrt(dot(direction, direction));
+    const double size = length(direction);
     if (size == 0) return;
     for (const double side : {-1.0, 1.0}) towards(times(direction, side / size));
   }
@@ -32,12 +32,12 @@ class LeastOverlap {
   // Looks across all edges at a core that is round, to a hundredth of the depth.
   void across_edges() {
     const Vec3 normal = normal_of(t_[0], t_[1], t_[2]);
-    const double size = std::sqrt(dot(normal, normal));
+    const double size = length(normal);
     if (size == 0) return;
     const Vec3 up = times(normal, 1 / size);
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 edge = minus(t_[(k + 1) % 3], t_[k]);
-      const View view{t_[k], times(cross(up, edge), 1 / std::sqrt(dot(edge, edge))), up};
+      const View view{t_[k], times(cross(up, edge), 1 / length(edge)), up};
       narrow(view, seen(view, 0, -1), seen(view, 0, 1), kChords);
     }
   }

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "physics/kernels/colliders.h"
-#include "physics/model/vector.h"
 #include "weft/scene.h"
 #include "weft/shape.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 
@@ -74,7 +74,7 @@ Nearest nearest_at(const Shape& shape, double time, const Vec3& p);
 inline std::array<Vec3, 2> across(const Vec3& axis) {
   const Vec3 other = std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
   const Vec3 square = minus(other, times(axis, dot(axis, other)));
-  const Vec3 aside = times(square, 1 / std::sqrt(dot(square, square)));
+  const Vec3 aside = times(square, 1 / length(square));
   return {aside, cross(axis, aside)};
 }
 

@@ -91,7 +91,7 @@ Core ball_near(const Hull& hull, const Vec3& p) {
   const Vec3 d = minus(p, hull.from);
   const double along = dot(d, hull.axis) * hull.inverse_square;
   const Vec3 radial = minus(d, times(hull.axis, along));
-  const double t = std::clamp(along - hull.lean * std::sqrt(dot(radial, radial)), 0.0, 1.0);
+  const double t = std::clamp(along - hull.lean * length(radial), 0.0, 1.0);
   return {plus(hull.from, times(hull.axis, t)), hull.radius + t * hull.growth};
 }
 
@@ -104,7 +104,7 @@ Nearest nearest_of(const Hull& hull, const Vec3& p) {
 
 // The point of the core that lies furthest along `way`.
 Vec3 furthest(const Hull& hull, const Vec3& way) {
-  const double size = std::sqrt(dot(way, way));
+  const double size = length(way);
   const double reach = hull.radius - hull.least(), reach_b = reach + hull.growth;
   const bool second = dot(hull.axis, way) + hull.growth * size > 0;
   const Vec3 center = second ? plus(hull.from, hull.axis) : hull.from;

@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
@@ -50,7 +50,7 @@ bool FlatPatches::lay_flat(std::vector<Flat>& at) const {
   for (const auto& t : triangles) {
     const Vec3 &a = rest[std::size_t(t[0])], &b = rest[std::size_t(t[1])];
     const Vec3 n = normal_of(a, b, rest[std::size_t(t[2])]), e = minus(b, a);
-    edges += std::sqrt(dot(e, e));
+    edges += length(e);
     if (dot(n, n) <= largest) continue;
     largest = dot(n, n), normal = n;
   }
@@ -60,7 +60,7 @@ bool FlatPatches::lay_flat(std::vector<Flat>& at) const {
   Vec3 side{};
   side[std::size_t(std::min_element(normal.begin(), normal.end(), steep) - normal.begin())] = 1;
   side = minus(side, times(normal, dot(normal, side)));
-  side = times(side, 1 / std::sqrt(dot(side, side)));
+  side = times(side, 1 / length(side));
   const Vec3 across = cross(normal, side), origin = rest[std::size_t(triangles[0][0])];
   for (const Vec3& x : rest) {
     const Vec3 from = minus(x, origin);

@@ -7,7 +7,7 @@
 #include <queue>
 #include <span>
 
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
@@ -28,7 +28,7 @@ bool shorter(double way, double straight) {
 
 double apart(const Vec3& a, const Vec3& b) {
   const Vec3 d = minus(a, b);
-  return std::sqrt(dot(d, d));
+  return length(d);
 }
 
 // Halves of halves, each cut across where it is longest (a k-d tree, Bentley 1975), down to a size.

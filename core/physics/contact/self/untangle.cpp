@@ -11,7 +11,7 @@
 #include "physics/contact/colliders/shapes.h"
 #include "physics/model/lattice/stages.h"
 #include "physics/model/path.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
@@ -34,7 +34,7 @@ bool starts_flat(const Cloth& cloth) {
   return std::all_of(cloth.pins.begin(), cloth.pins.end(), [&](const Pin& p) {
     if (!p.moves()) return true;
     const Vec3 off = minus(pin_alone_at(cloth, p, 0), place_on(g, p.i, p.j));
-    return std::sqrt(dot(off, off)) < kOnGrid * std::min(spacing_u(g), spacing_v(g));
+    return length(off) < kOnGrid * std::min(spacing_u(g), spacing_v(g));
   });
 }
 
@@ -43,7 +43,7 @@ double area_of(const SurfaceMesh& mesh, const std::vector<Vec3>& x) {
   double area = 0;
   for (const auto& t : mesh.all()) {
     const Vec3 n = normal_of(x[std::size_t(t[0])], x[std::size_t(t[1])], x[std::size_t(t[2])]);
-    area += 0.5 * std::sqrt(dot(n, n));
+    area += 0.5 * length(n);
   }
   return area;
 }
@@ -51,7 +51,7 @@ double area_of(const SurfaceMesh& mesh, const std::vector<Vec3>& x) {
 // Whether flat sheet a lies on one side of flat sheet b's plane.
 bool on_one_side(const Grid& a, const Grid& b) {
   const Vec3 normal = cross(b.u, b.v);
-  const double margin = (a.jitter + b.jitter) * std::sqrt(dot(normal, normal));
+  const double margin = (a.jitter + b.jitter) * length(normal);
   bool above = true, below = true;
   for (const Vec3& corner :
        {a.origin, plus(a.origin, a.u), plus(a.origin, a.v), plus(a.origin, plus(a.u, a.v))}) {
@@ -252,7 +252,7 @@ void Untangle::move_ends() {
 // itself, and half the triangle comes to meet it, but by no more than a part of its size.
 void Untangle::take_through(std::int32_t end, std::int32_t other, const Face& f, Moves& m) const {
   const Vec3 normal = normal_of(at(f[0]), at(f[1]), at(f[2])), edge = minus(at(other), at(end));
-  const double area = std::sqrt(dot(normal, normal));
+  const double area = length(normal);
   // Where the edge passes, by its length and by the triangle's corners.
   const double along = dot(normal, minus(at(f[0]), at(end))) / dot(normal, edge);
   if (!(area > 0) || !(along > 0 && along < 1)) return;
@@ -266,8 +266,7 @@ void Untangle::take_through(std::int32_t end, std::int32_t other, const Face& f,
     sum_of_squares += share[c] * share[c];
   }
   const Vec3 direction = times(normal, (dot(normal, edge) > 0 ? 1 : -1) / area);
-  const double beyond =
-      std::min(kBeyond * sheet_of(end).thickness, kMostOfEdge * std::sqrt(dot(edge, edge)));
+  const double beyond = std::min(kBeyond * sheet_of(end).thickness, kMostOfEdge * length(edge));
   const double far = along * dot(direction, edge) + beyond;
   const bool held = !(inverse_mass(end) > 0), triangle_held = !(sum_of_squares > 0);
   const double most = kMostOfEdge * std::sqrt(sheet_of(f[0]).area);

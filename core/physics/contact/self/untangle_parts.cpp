@@ -8,7 +8,7 @@
 
 #include "physics/contact/self/untangle.h"
 #include "physics/model/lattice/stages.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "physics/model/lattice/bending.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
@@ -30,7 +30,7 @@ double elastic_energy(const Cloth& cloth, const std::vector<Stencil>& stencils,
   for (const Stencil& f : stencils)
     for_each_constraint(cloth, f, [&](int a, int b, double k) {
       const Vec3 e = minus(x[b], x[a]);
-      const double stretch = std::sqrt(dot(e, e)) - f.rest;
+      const double stretch = length(e) - f.rest;
       energy += 0.5 * k * stretch * stretch;
     });
   return energy;
@@ -78,7 +78,7 @@ Strain structural_strain(const Cloth& cloth, const std::vector<Stencil>& stencil
     if (f.kind != Kind::structural) continue;
     for_each_constraint(cloth, f, [&](int a, int b, double) {
       const Vec3 e = minus(x[b], x[a]);
-      const double s = std::sqrt(dot(e, e)) / f.rest - 1;
+      const double s = length(e) / f.rest - 1;
       strain.max = n == 0 ? s : std::max(strain.max, s);
       strain.mean += s;
       ++n;

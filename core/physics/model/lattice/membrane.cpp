@@ -1,7 +1,7 @@
 // The membrane energy in double precision (membrane.h).
 #include "physics/model/lattice/membrane.h"
 
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "physics/model/vector.h"
 #include "weft/mesh.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
@@ -174,7 +174,7 @@ double Gas::finish(Work& work) const {
 
 double Gas::area(const Work& work) const {
   double sum = 0;
-  for (const Vec3& n : work.normals) sum += 0.5 * std::sqrt(dot(n, n));
+  for (const Vec3& n : work.normals) sum += 0.5 * length(n);
   return sum;
 }
 
@@ -188,7 +188,7 @@ double Gas::turning(const Work& work, int point) const {
       const int a = t[(k + 1) % 3], b = t[(k + 2) % 3];
       if (t[k] != point) continue;
       const Vec3 side = minus(work.points[std::size_t(a)], work.points[std::size_t(b)]);
-      sum += std::sqrt(dot(side, side)) / 3;
+      sum += length(side) / 3;
     }
   }
   return sum / double(members(point).size());

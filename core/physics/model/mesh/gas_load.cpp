@@ -6,8 +6,8 @@
 
 #include "physics/model/number.h"
 #include "physics/model/push.h"
-#include "physics/model/vector.h"
 #include "physics/step/threads.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {

@@ -6,17 +6,12 @@
 #include <tuple>
 
 #include "physics/kernels/second_order.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
 
 constexpr double kNone = -1;
-
-double distance(const Vec3& a, const Vec3& b) {
-  const Vec3 e = minus(a, b);
-  return std::sqrt(dot(e, e));
-}
 
 // How far c is from what is so far from a and from b, beyond the side ab of a flat triangle; kNone where the
 // straight line does not cross it.

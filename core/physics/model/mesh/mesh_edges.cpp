@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 
@@ -21,7 +21,7 @@ MeshEdges edges_of(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
     }
     edges.ends.push_back(side);
     const Vec3 e = minus(x[std::size_t(side[1])], x[std::size_t(side[0])]);
-    edges.rest.push_back(std::sqrt(dot(e, e)));
+    edges.rest.push_back(length(e));
     edges.triangles.push_back(1);
   }
   return edges;

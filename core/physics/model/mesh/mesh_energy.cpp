@@ -4,17 +4,12 @@
 
 #include "physics/model/largest_eigenvalue.h"
 #include "physics/model/mesh/mesh_model.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
 
 constexpr double kRounding = 4e-7;  // of positions in single precision, of the scene's size
-
-double distance(const Vec3& a, const Vec3& b) {
-  const Vec3 e = minus(a, b);
-  return std::sqrt(dot(e, e));
-}
 
 }  // namespace
 

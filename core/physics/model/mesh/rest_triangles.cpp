@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
-
-double length(const Vec3& a) {
-  return std::sqrt(dot(a, a));
-}
 
 // The direction of warp in a triangle, of unit length.
 Vec3 warp_of(const TriangleMesh& mesh, std::size_t t, const Vec3& p, const Vec3& q, const Vec3& n) {

@@ -5,17 +5,13 @@
 
 #include "physics/kernels/mesh_sweep.h"
 #include "physics/model/projected_motion.h"
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
 
 using Members = std::span<const Particles::Place>;
 constexpr double kOpen = 1e-4;  // m; what is nearer than that to its centre counts as closed
-
-double length(const Vec3& e) {
-  return std::sqrt(dot(e, e));
-}
 
 // The mean of what is held, or else by mass; `value(n)` and the inverse mass `w(n)` of each of `count`.
 template <class Value, class InverseMass>

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "physics/model/vector.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
