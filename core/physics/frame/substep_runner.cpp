@@ -26,17 +26,16 @@ void SubstepRunner::run(const Cloths& cloths, const Substeps& substeps, const Sl
   apart_.clear();
   for (std::size_t c = 0; c < cloths.size(); ++c)
     if (!is_asleep(sleeping, c)) apart_.push_back(c);
-  bool apart = worth_running_apart(cloths, substeps.count) && keeps_busy(cloths);
+  bool apart = worth_running_apart(cloths, substeps.count, part) && keeps_busy(cloths, part);
   if (!apart) {
     std::size_t small = 0;
     for (const std::size_t c : apart_)
-      if (cloths[c]->schedule().worth_sharing(cloths[c]->particles().count(), substeps.count,
-                                              threads_.standing_by()))
+      if (cloths[c]->schedule().worth_sharing(substeps.count, threads_.standing_by(), part))
         run(c, threads_);
       else
         apart_[small++] = c;
     apart_.resize(small);
-    apart = worth_running_apart(cloths, substeps.count);
+    apart = worth_running_apart(cloths, substeps.count, part);
   }
   const auto run_apart = [&] {
     threads_.share(apart_.size(), !apart, [&](std::size_t n) { run(apart_[n], one_thread_); });
@@ -44,24 +43,25 @@ void SubstepRunner::run(const Cloths& cloths, const Substeps& substeps, const Sl
   apart ? threads_.together(run_apart) : run_apart();
 }
 
-bool SubstepRunner::worth_running_apart(const Cloths& cloths, int substeps) const {
-  std::int64_t all = 0;
-  for (const std::size_t c : apart_) all += cloths[c]->particles().count();
+bool SubstepRunner::worth_running_apart(const Cloths& cloths, int substeps,
+                                        Schedule::Part part) const {
+  double all = 0;
+  for (const std::size_t c : apart_) all += cloths[c]->schedule().cost(part);
   return apart_.size() > 1 && Schedule::worth_running_apart(all, substeps, threads_.standing_by());
 }
 
 // Whether these cloths, each going to the thread that is free first, keep threads busy for nearly all of
 // the time.
-bool SubstepRunner::keeps_busy(const Cloths& cloths) {
+bool SubstepRunner::keeps_busy(const Cloths& cloths, Schedule::Part part) {
   busy_.assign(std::size_t(threads_.count()), 0);
-  std::int64_t all = 0;
+  double all = 0;
   for (const std::size_t c : apart_) {
-    const int particles = cloths[c]->particles().count();
-    *std::min_element(busy_.begin(), busy_.end()) += particles;
-    all += particles;
+    const double cost = cloths[c]->schedule().cost(part);
+    *std::min_element(busy_.begin(), busy_.end()) += cost;
+    all += cost;
   }
-  const std::int64_t longest = *std::max_element(busy_.begin(), busy_.end());
-  return kBusy * double(longest) * threads_.count() <= double(all);
+  const double longest = *std::max_element(busy_.begin(), busy_.end());
+  return kBusy * longest * threads_.count() <= all;
 }
 
 }  // namespace weft::physics

@@ -1,7 +1,6 @@
 // Who runs which cloth: the threads of a simulation, and how cloths are shared out to them.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -27,13 +26,13 @@ class SubstepRunner {
            std::span<RollbackBuffer> observers, Schedule::Part part = Schedule::Part::whole);
 
  private:
-  bool worth_running_apart(const Cloths& cloths, int substeps) const;
-  bool keeps_busy(const Cloths& cloths);
+  bool worth_running_apart(const Cloths& cloths, int substeps, Schedule::Part part) const;
+  bool keeps_busy(const Cloths& cloths, Schedule::Part part);
 
   Threads threads_;
   Threads one_thread_{1};           // for a cloth that one thread runs, whichever
   std::vector<std::size_t> apart_;  // cloths that take a thread each
-  std::vector<std::int64_t> busy_;  // of each thread, with so many particles
+  std::vector<double> busy_;        // of each thread, in a substep [ns]
 };
 
 }  // namespace weft::physics

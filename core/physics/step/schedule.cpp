@@ -13,10 +13,17 @@ namespace {
 // Rough cost of a constraint or particle, for sizing tasks only [ns].
 constexpr double kItemNs = 0.5;
 
-// Particles times substeps, and particles, from which several threads are faster than one.
-constexpr double kSharedRun = 150000;
-constexpr double kSharedStandingBy = 30000;
-constexpr int kSharedSubstep = 15000;
+// From which work on, for one thread, several are faster [ns]: a run of rows alone, whose threads have to be woken or
+// stand by; a substep with whole stages, where threads meet several times. Springs took so long at the sizes from
+// which two threads gained.
+constexpr double kSharedRun = 2e5, kSharedStandingBy = 4e4, kSharedSubstep = 8e4;
+
+using Clock = std::chrono::steady_clock;
+
+double nanoseconds_since(Clock::time_point before) {
+  return double(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - before).count());
+}
 
 double row_nanoseconds(const std::vector<RowStage*>& stages, int rows) {
   double ns = 0;
@@ -53,19 +60,40 @@ Schedule::Schedule(const Stages& stages, int rows, std::size_t row_bytes,
   }
   close(stages.size());
   if (!second || *second >= stages.size()) second_ = passes_.size();
+  for (Cost& cost : costs_)
+    for (const std::unique_ptr<Stage>& s : stages) cost.alone += double(s->items) * kItemNs;
 }
 
 // Threads meet at the end of the frame, or in every substep.
-bool Schedule::worth_sharing(int particles, int substeps, bool standing_by) const {
-  if (!rows_only()) return particles >= kSharedSubstep;
-  return worth_running_apart(particles, substeps, standing_by);
+bool Schedule::worth_sharing(int substeps, bool standing_by, Part part) const {
+  if (!rows_only()) return cost(part) >= kSharedSubstep;
+  return worth_running_apart(cost(part), substeps, standing_by);
 }
-bool Schedule::worth_running_apart(std::int64_t particles, int substeps, bool standing_by) {
-  return double(particles) * substeps >= (standing_by ? kSharedStandingBy : kSharedRun);
+bool Schedule::worth_running_apart(double cost, int substeps, bool standing_by) {
+  return cost * substeps >= (standing_by ? kSharedStandingBy : kSharedRun);
+}
+
+// What several threads take tells by how much the work has grown since one did it, and bounds it.
+void Schedule::Cost::took(double nanoseconds, int threads) {
+  if (threads == 1) {
+    *this = {nanoseconds, 0};
+    return;
+  }
+  if (shared > 0) alone *= nanoseconds / shared;
+  alone = std::clamp(alone, nanoseconds, nanoseconds * threads);
+  shared = nanoseconds;
 }
 
 void Schedule::run(const Substeps& given, Threads& threads, std::span<const RowSpan> awake,
                    RowObserver* observer, Part part) {
+  const Clock::time_point before = Clock::now();
+  run_all(given, threads, awake, observer, part);
+  costs_[std::size_t(part)].took(nanoseconds_since(before) / std::max(given.count, 1),
+                                 threads.count());
+}
+
+void Schedule::run_all(const Substeps& given, Threads& threads, std::span<const RowSpan> awake,
+                       RowObserver* observer, Part part) {
   assert(part == Part::whole || given.count == 1);
   if (given.dt != prepared_dt_) prepare(given.dt);
   Substeps substeps = given;
@@ -103,11 +131,9 @@ void Schedule::run_substep(const Substeps& substeps, int s, Threads& threads,
       p.wavefront->run(substeps.only(s), threads, awake);
       continue;
     }
-    const auto before = std::chrono::steady_clock::now();
+    const Clock::time_point before = Clock::now();
     p.whole->run(substeps.at(s), threads);
-    if (profile_.empty()) continue;
-    const auto spent = std::chrono::steady_clock::now() - before;
-    profile_[p.first] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+    if (!profile_.empty()) profile_[p.first] += std::int64_t(nanoseconds_since(before));
   }
 }
 

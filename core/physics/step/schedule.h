@@ -4,6 +4,7 @@
 // in two parts, with something else in between.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -32,10 +33,13 @@ class Schedule {
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds);
   bool profiled() const { return !profile_.empty(); }
 
-  // Whether so many substeps of so many particles are work enough for several threads, that stand by
-  // or have to be woken: of this cloth, or of several side by side, a thread each.
-  bool worth_sharing(int particles, int substeps, bool standing_by) const;
-  static bool worth_running_apart(std::int64_t particles, int substeps, bool standing_by);
+  // About what a substep costs one thread [ns]: as it was the last time, at first by what stages touch.
+  double cost(Part part) const { return costs_[std::size_t(part)].alone; }
+
+  // Whether so many substeps are work enough for several threads, that stand by or have to be woken: of this cloth,
+  // or of several side by side that cost so much together, a thread each.
+  bool worth_sharing(int substeps, bool standing_by, Part part) const;
+  static bool worth_running_apart(double cost, int substeps, bool standing_by);
 
   // Whether one wavefront runs everything.
   bool rows_only() const { return whole_stages_ == 0 && second_ >= passes_.size(); }
@@ -47,7 +51,16 @@ class Schedule {
     std::unique_ptr<Wavefront> wavefront;
     std::size_t count = 1;  // stages
   };
+  // Of a substep [ns].
+  struct Cost {
+    double alone = 0;
+    double shared = 0;  // as the threads took it last; 0: one thread ran it last
+    // `threads` took so much.
+    void took(double nanoseconds, int threads);
+  };
   void prepare(double dt);
+  void run_all(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake,
+               RowObserver* observer, Part part);
   void run_substep(const Substeps& substeps, int s, Threads& threads,
                    std::span<const RowSpan> awake, Part part);
 
@@ -58,6 +71,7 @@ class Schedule {
   bool velocities_between_ = true;  // substeps
   std::size_t whole_stages_ = 0;
   double prepared_dt_ = 0;
+  std::array<Cost, 3> costs_;  // by part
   std::span<std::atomic<std::int64_t>> profile_;
 };
 
