@@ -22,9 +22,9 @@ foreach(simd scalar sse2 avx2 avx512)
   target_sources(weft_core PRIVATE $<TARGET_OBJECTS:weft_kernels_${simd}>)
 endforeach()
 # Multiply-adds of SSE2 are worked out lane by lane in double precision: with checks for undefined behaviour
-# they take longer to compile than all the rest. The other sets have them for the same sources.
-if(WEFT_SANITIZE MATCHES undefined)
+# or races they take longer to compile than all the rest. The other sets have them for the same sources.
+if(WEFT_SANITIZE)
   add_library(weft_unchecked INTERFACE)
-  target_compile_options(weft_unchecked INTERFACE -fno-sanitize=undefined)
+  target_compile_options(weft_unchecked INTERFACE -fno-sanitize=undefined -fno-sanitize=thread)
   target_link_libraries(weft_kernels_sse2 PRIVATE weft_unchecked)
 endif()

@@ -145,31 +145,49 @@ Double sum_to_odd(Double a, Double b) {
 
 #if WEFT_LANES == 4
 
+WEFT_INLINE __m128d lower(Wide v) {
+  return _mm_cvtps_pd((__m128)v);
+}
+WEFT_INLINE __m128d upper(Wide v) {
+  return _mm_cvtps_pd(_mm_movehl_ps((__m128)v, (__m128)v));
+}
+WEFT_INLINE Wide single(__m128d low, __m128d high) {
+  return (Wide)_mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
+}
+
+// Seldom called: by itself, compilers need half as long for all that multiplies.
+[[gnu::noinline, gnu::cold]] inline Wide fma_to_odd(Wide a, Wide b, Wide c) {
+  const auto sum = [](__m128d one, __m128d two, __m128d third) {
+    return sum_to_odd<__m128d, __m128i>(one * two, third);
+  };
+  return single(sum(lower(a), lower(b), lower(c)), sum(upper(a), upper(b), upper(c)));
+}
+
 WEFT_INLINE Wide fma(Wide a, Wide b, Wide c) {
-  const auto upper = [](Wide v) { return _mm_cvtps_pd(_mm_movehl_ps((__m128)v, (__m128)v)); };
-  const auto lower = [](Wide v) { return _mm_cvtps_pd((__m128)v); };
-  const __m128d product[] = {lower(a) * lower(b), upper(a) * upper(b)};
-  const __m128d third[] = {lower(c), upper(c)};
-  __m128d sum[] = {product[0] + third[0], product[1] + third[1]};
+  const __m128d sum[] = {lower(a) * lower(b) + lower(c), upper(a) * upper(b) + upper(c)};
   const __m128 halves[] = {_mm_castpd_ps(sum[0]), _mm_castpd_ps(sum[1])};
   const WideInt low = (WideInt)_mm_shuffle_ps(halves[0], halves[1], 0x88) & 0x1fffffff;
   const WideInt high = (WideInt)_mm_shuffle_ps(halves[0], halves[1], 0xdd) & 0x7fffffff;
   if (_mm_movemask_epi8((__m128i)((low == 0x10000000) | ((high > 0) & (high < 0x38100000)))))
       [[unlikely]]
-    for (int k = 0; k < 2; ++k) sum[k] = sum_to_odd<__m128d, __m128i>(product[k], third[k]);
-  return (Wide)_mm_movelh_ps(_mm_cvtpd_ps(sum[0]), _mm_cvtpd_ps(sum[1]));
+    return fma_to_odd(a, b, c);
+  return single(sum[0], sum[1]);
 }
 
 #else
 
+typedef double One __attribute__((vector_size(8)));
+typedef std::int64_t OneLong __attribute__((vector_size(8)));
+
+[[gnu::noinline, gnu::cold]] inline float fma_to_odd(float a, float b, float c) {
+  return float(sum_to_odd<One, OneLong>(One{double(a) * double(b)}, One{double(c)})[0]);
+}
+
 WEFT_INLINE Wide fma(Wide a, Wide b, Wide c) {
-  typedef double One __attribute__((vector_size(8)));
-  typedef std::int64_t OneLong __attribute__((vector_size(8)));
-  const One product{double(a[0]) * double(b[0])}, third{double(c[0])};
-  One sum = product + third;
+  const One sum = One{double(a[0]) * double(b[0])} + One{double(c[0])};
   const std::int64_t bits = ((OneLong)sum)[0], size = bits >> 32 & 0x7fffffff;
   if ((bits & 0x1fffffff) == 0x10000000 || (size > 0 && size < 0x38100000)) [[unlikely]]
-    sum = sum_to_odd<One, OneLong>(product, third);
+    return Wide{fma_to_odd(a[0], b[0], c[0])};
   return Wide{float(sum[0])};
 }
 
