@@ -108,8 +108,7 @@ class Stage {
 using Stages = std::vector<std::unique_ptr<Stage>>;
 
 // Works on one row after another: work on row j may read and write rows j … j+reach of the lattice,
-// and comes in the order j = 0, 1, 2 … within a substep; with a reach of 0 in any order, several rows
-// at once. A stage of more reach may carry data from row to row in buffers of its own, one set per
+// and comes in the order j = 0, 1, 2 … within a substep, but where rows are apart. A stage of more reach may carry data from row to row in buffers of its own, one set per
 // slot. It overrides run for one row, or for a range of rows.
 class RowStage : public Stage {
  public:
@@ -123,6 +122,8 @@ class RowStage : public Stage {
   virtual void run(int begin, int end, const Substep& substep) {
     for (int j = begin; j < end; ++j) run(j, substep);
   }
+  // Whether rows may run in any order and several at once, for no two have a particle in common.
+  virtual bool rows_apart() const { return reach == 0; }
   // Called before a row that does not follow on from the row before it, where rows are passed over:
   // what is carried from row to row starts anew.
   virtual void start(const Substep& substep) { (void)substep; }

@@ -23,7 +23,7 @@ constexpr int kManyStagesLeast = 4, kManyStagesMost = 16;  // rows
 constexpr int kSharedHeight = 16;  // so that all threads are busy to the end of a frame
 // The least work worth a task [ns].
 constexpr double kTaskNanoseconds = 12000;
-constexpr double kSharedNanoseconds = 4000;  // and sharing out where nobody has to be woken
+constexpr int kShares = 4;  // of a stage, for each thread: rows are not alike
 
 // Substeps of a chunk: shorter ones have threads hand rows to each other too often.
 constexpr int kShortChunk = 2;
@@ -147,20 +147,13 @@ void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const 
            return a.end > b.begin;
          }) == awake.end());
   assert(awake.empty() || (awake.front().begin >= 0 && awake.back().end <= rows_));
-  // Tiles of one substep follow one on the other, unless no row reaches another.
-  const bool apart = reach_ == 0 && substeps.count == 1;
-  const int at_once = substeps.count > 1 || apart ? threads.count() : 1;
-  choose_tiles(substeps.count, at_once);
-  prepare(substeps.dt);
   const Run r{substeps, awake, observer};
+  const bool several = threads.count() > 1;
+  choose_tiles(substeps.count, substeps.count > 1 ? threads.count() : 1);
+  prepare(substeps.dt);
   for (RowStage* s : stages_) s->reserve(chunk_substeps_ * ring_);
-  if (apart) {
-    const Chunk only = chunk(0, 0, 1);
-    return threads.share(std::size_t(only.tiles),
-                         at_once == 1 || row_nanoseconds_ * rows_ < kSharedNanoseconds,
-                         [&](std::size_t k) { run_tile(r, int(k), only); });
-  }
-  if (at_once > 1 && rows_ > height_) return run_parallel(r, threads);
+  if (several && substeps.count == 1) return run_one_by_one(r, threads);
+  if (several && rows_ > height_) return run_parallel(r, threads);
   for (int first = 0; first < substeps.count; first += chunk_substeps_) {
     const Chunk next = chunk(0, first, std::min(chunk_substeps_, substeps.count - first));
     for (int k = 0; k < next.tiles; ++k) run_tile(r, k, next);
@@ -182,6 +175,31 @@ RowSpan Wavefront::tile_rows(int tile, int offset) const {
           std::clamp((tile + 1) * height_ - offset, 0, rows_)};
 }
 
+// Tiles of a single substep follow one on the other: stages whose rows are apart are shared out by themselves.
+void Wavefront::run_one_by_one(const Run& r, Threads& threads) {
+  const RowSpan all{0, rows_};
+  const Substep substep = r.substeps.at(0);
+  const int share = std::max(1, rows_ / (kShares * threads.count()));  // rows
+  if (r.observer) r.observer->before(all);
+  for (std::size_t q = 0; q < stages_.size(); ++q) {
+    const bool alone = !stages_[q]->rows_apart();
+    const int height = alone ? rows_ : share;
+    threads.share(std::size_t((rows_ + height - 1) / height), alone, [&](std::size_t k) {
+      const int begin = int(k) * height;
+      run_stage(r, q, {begin, std::min(begin + height, rows_)}, substep);
+    });
+  }
+  if (r.observer) r.observer->after(all);
+}
+
+void Wavefront::run_stage(const Run& r, std::size_t q, RowSpan rows, const Substep& substep) const {
+  if (profile_.empty()) return run_rows(r, *stages_[q], rows, substep);
+  const auto before = std::chrono::steady_clock::now();
+  run_rows(r, *stages_[q], rows, substep);
+  const auto spent = std::chrono::steady_clock::now() - before;
+  profile_[q] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+}
+
 void Wavefront::run_tile(const Run& r, int tile, const Chunk& chunk) const {
   // The first stage reaches ahead of the tile.
   const int ahead = stages_.front()->reach;
@@ -192,16 +210,7 @@ void Wavefront::run_tile(const Run& r, int tile, const Chunk& chunk) const {
     const Substep substep = r.substeps.at(chunk.first + s, chunk.slot + s);
     for (std::size_t q = 0; q < stages_.size(); ++q, ++level) {
       const RowSpan rows = tile_rows(tile, offset_[level]);
-      if (rows.begin == rows.end) continue;
-      RowStage& stage = *stages_[q];
-      if (profile_.empty()) {
-        run_rows(r, stage, rows, substep);
-        continue;
-      }
-      const auto before = std::chrono::steady_clock::now();
-      run_rows(r, stage, rows, substep);
-      const auto spent = std::chrono::steady_clock::now() - before;
-      profile_[q] += std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+      if (rows.begin < rows.end) run_stage(r, q, rows, substep);
     }
   }
   // What the last stage leaves behind is final.

@@ -9,7 +9,7 @@
 // nothing else. Tiles of several chunks are under way at once, without a barrier, and a tile's rows
 // stay in the cache for all its substeps (time skewing: Wonnacott 2000; Strzodka et al. 2011). The
 // first and the last chunks of a frame are shorter, but of a tall sheet: the later threads can begin
-// sooner, and the earlier ones have work for longer.
+// sooner, and the earlier ones have work for longer. A substep by itself runs stage after stage.
 #pragma once
 
 #include <atomic>
@@ -54,6 +54,8 @@ class Wavefront {
   Chunk chunk(int number, int first, int count) const;
   void run_tile(const Run& run, int tile, const Chunk& chunk) const;
   RowSpan tile_rows(int tile, int offset) const;
+  void run_one_by_one(const Run& run, Threads& threads);
+  void run_stage(const Run& run, std::size_t stage, RowSpan rows, const Substep& substep) const;
   static void run_rows(const Run& run, RowStage& stage, RowSpan rows, const Substep& substep);
   void run_parallel(const Run& run, Threads& threads);
   void work(const Run& run);

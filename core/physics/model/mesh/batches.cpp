@@ -117,7 +117,10 @@ std::vector<Batches> coloured_batches(const MeshOrder& order,
     }
   }
   std::vector<Batches> all;
-  for (const Elements& colour : colours) all.push_back(all_packed(colour, elements));
+  for (const Elements& colour : colours) {
+    all.push_back(all_packed(colour, elements));
+    all.back().disjoint = all.size() < kColours;
+  }
   return all;
 }
 

@@ -15,6 +15,7 @@ struct MeshBatch;  // kernels/mesh.h
 struct Batches {
   std::vector<std::vector<int>> elements;  // of each batch, at most kBatch
   std::vector<int> first;                  // batch of each row, and how many there are
+  bool disjoint = false;                   // whether no two elements share a vertex
 };
 
 // All triangles. Each belongs to the first row that it reaches. `corners`: that count, 3, or 6 with those

@@ -28,6 +28,7 @@ class SweepEdges final : public RowStage {
         records_(records),
         options_(options) {}
   Velocities velocities() const override { return Velocities::left_alone; }
+  bool rows_apart() const override { return colour_.disjoint; }
   void run(int begin, int end, const Substep& s) override {
     const int first = colour_.first[std::size_t(begin)];
     const double h = s.dt * implicit_share(parts_.scene.solver);
@@ -69,6 +70,7 @@ class SweepHinges final : public RowStage, private TornParts {
   }
   std::size_t bytes() const override { return place_.size() * 8 * sizeof(int); }
   Velocities velocities() const override { return Velocities::left_alone; }
+  bool rows_apart() const override { return colour_.disjoint; }
   void prepare(double dt) override {
     dt_ = dt;
     set_matrices();
@@ -159,6 +161,7 @@ void MeshSweeps::make_edges(const MeshEdges& edges, double stiffness) {
   for (const Batches& all : coloured_batches(order_, elements)) {
     EdgeColour& colour = edges_.emplace_back();
     colour.first = all.first;
+    colour.disjoint = all.disjoint;
     for (int j = 0; j < p.rows; ++j)
       for (int n = all.first[std::size_t(j)]; n < all.first[std::size_t(j) + 1]; ++n) {
         EdgeBatch& b = colour.batches.emplace_back();
@@ -189,6 +192,7 @@ void MeshSweeps::make_hinges(const std::vector<RestTriangle>& triangles) {
   for (const Batches& all : coloured_batches(order_, elements)) {
     HingeColour& colour = hinges_.emplace_back();
     colour.first = all.first;
+    colour.disjoint = all.disjoint;
     for (int j = 0; j < p.rows; ++j)
       for (int n = all.first[std::size_t(j)]; n < all.first[std::size_t(j) + 1]; ++n) {
         MeshBatch& b = colour.batches.emplace_back();

@@ -16,6 +16,7 @@ namespace weft::physics {
 struct EdgeColour {
   std::vector<EdgeBatch> batches;
   std::vector<int> first;  // batch of each row, and how many there are
+  bool disjoint = false;   // its edges share no vertex
   std::int64_t edges = 0;
   AlignedArray<float> lambda;  // multipliers; none: a single sweep
 };
@@ -24,6 +25,7 @@ struct HingeColour {
   std::vector<MeshBatch> batches;
   std::vector<int> triangles;  // of each place in the batches, -1: none
   std::vector<int> first;
+  bool disjoint = false;
   std::int64_t count = 0;
 };
 

@@ -21,6 +21,7 @@ class SweepStrains final : public RowStage {
         before_(before),
         fresh_(fresh) {}
   Velocities velocities() const override { return Velocities::left_alone; }
+  bool rows_apart() const override { return colour_.disjoint; }
   void run(int begin, int end, const Substep& s) override {
     const int first = colour_.first[std::size_t(begin)];
     const Membrane& m = parts_.cloth.membrane;
@@ -80,6 +81,7 @@ StrainSweeps::StrainSweeps(const ClothParts& parts, const MeshOrder& order,
   for (const Batches& all : coloured_batches(order, elements)) {
     StrainColour& colour = colours_.emplace_back();
     colour.first = all.first;
+    colour.disjoint = all.disjoint;
     for (int j = 0; j < p.rows; ++j)
       for (int n = all.first[std::size_t(j)]; n < all.first[std::size_t(j) + 1]; ++n) {
         const std::vector<int>& chosen = all.elements[std::size_t(n)];

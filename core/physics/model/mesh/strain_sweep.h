@@ -11,6 +11,7 @@ namespace weft::physics {
 struct StrainColour {
   std::vector<StrainBatch> batches;
   std::vector<int> first;  // batch of each row, and how many there are
+  bool disjoint = false;   // its triangles share no vertex
   std::int64_t triangles = 0;
   AlignedArray<float> stress;  // multipliers; none: a single sweep
 };
