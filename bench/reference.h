@@ -1,6 +1,6 @@
 // The truth that errors are measured against: a double-precision integration of
 //
-//   m x'' = -∇E + m g - m·drag·x',   E = Σ ½ k (|xᵢ - xⱼ| - l)²
+//   m x'' = -∇E + m g - m·drag·x',   E = Σ ½ k (|xᵢ - xⱼ| - l)², or of a membrane, and of curvatures
 //
 // by velocity Verlet, written independently of the library (whole arrays, no rows in flight, no
 // floats). The substep is halved until two successive runs agree; Verlet being of second order, a

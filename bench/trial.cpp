@@ -111,10 +111,10 @@ Trial run_trial(const Problem& problem, const Setting& setting, weft::Simd simd,
   return t;
 }
 
-void mark_front(std::vector<Trial>& trials) {
+void mark_front(std::vector<Trial>& trials, bool any_size) {
   for (Trial& t : trials)
     t.on_front = t.ok() && std::none_of(trials.begin(), trials.end(), [&](const Trial& o) {
-                   return o.ok() && o.problem == t.problem && o.size == t.size &&
+                   return o.ok() && o.problem == t.problem && (any_size || o.size == t.size) &&
                           o.run_ms <= t.run_ms && o.rms <= t.rms &&
                           (o.run_ms < t.run_ms || o.rms < t.rms);
                  });

@@ -40,7 +40,8 @@ struct Repeats {
 Trial run_trial(const Problem& problem, const Setting& setting, weft::Simd simd, int threads,
                 const std::vector<double>& truth, const Repeats& repeats);
 
-// Marks the trials that no other trial of the same problem and size beats in both time and error.
-void mark_front(std::vector<Trial>& trials);
+// Marks the trials that no other trial of the same problem, and of the same size or of any, beats in both time and
+// error.
+void mark_front(std::vector<Trial>& trials, bool any_size = false);
 
 }  // namespace bench

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace bench {
 namespace {
@@ -58,6 +59,7 @@ double rest_length(const weft::Grid& g, int di, int dj) {
 
 std::vector<Springs> springs_of(const weft::Cloth& cloth) {
   std::vector<Springs> all;
+  if (cloth.membrane.given()) return all;
   const weft::Grid& g = cloth.grid;
   const auto stencil = [&](int di, int dj, double k) {
     if (k <= 0 || std::abs(di) >= g.nx || dj >= g.ny) return;
@@ -108,7 +110,9 @@ Verlet::Verlet(const weft::Scene& scene)
       columns_(scene.cloths[0].grid.nx),
       rows_(scene.cloths[0].grid.ny),
       particles_(std::size_t(columns_) * std::size_t(rows_)),
-      springs_(springs_of(scene.cloths[0])) {
+      springs_(springs_of(scene.cloths[0])),
+      hu_(weft::spacing_u(scene.cloths[0].grid)),
+      hv_(weft::spacing_v(scene.cloths[0].grid)) {
   const weft::Cloth& cloth = scene_.cloths[0];
   const weft::Grid& g = cloth.grid;
   for (auto* a : {&x_, &y_, &z_, &vx_, &vy_, &vz_, &fx_, &fy_, &fz_, &inverse_mass_})
@@ -143,6 +147,19 @@ double Verlet::safe_step() const {
         k[std::size_t(j * columns_ + a + s.near)] += 2 * stiffness;
         k[std::size_t((j + s.dj) * columns_ + a + s.far)] += 2 * stiffness;
       }
+  // Every curvature adds w (Σ |w|) times its stiffness; the strains of a cell less than this at its corners.
+  for_each_curvature([&](const double* w, int count, const std::size_t* at, double stiffness) {
+    double sum = 0;
+    for (int n = 0; n < count; ++n) sum += std::abs(w[n]);
+    for (int n = 0; n < count; ++n) k[at[n]] += stiffness * std::abs(w[n]) * sum;
+  });
+  const weft::Membrane& m = scene_.cloths[0].membrane;
+  const double cell = m.warp * hv_ / hu_ + m.weft * hu_ / hv_ + 2 * std::abs(m.coupling) +
+                      m.shear * (hv_ / hu_ + hu_ / hv_ + 2) / 2;
+  for (int j = 0; j + 1 < rows_ && m.given(); ++j)
+    for (int i = 0; i + 1 < columns_; ++i)
+      for (const int corner : {0, 1, columns_, columns_ + 1})
+        k[std::size_t(j * columns_ + i + corner)] += cell;
   double omega_squared = 0;
   for (std::size_t p = 0; p < particles_; ++p)
     omega_squared = std::max(omega_squared, k[p] * inverse_mass_[p]);
@@ -164,8 +181,90 @@ void Verlet::spring_forces(const Springs& s) {
   }
 }
 
+// E = hu hv Σ cells [C11 (e² + e'²)/4 + C22 (f² + f'²)/4 + C12 (e + e')(f + f')/4 + C66 γ²/2], with the strains
+// e = (a·a/hu² - 1)/2 of its sides along u, f likewise, and γ = (a + a')·(b + b')/(4 hu hv).
+void Verlet::membrane_forces() {
+  const weft::Membrane& m = scene_.cloths[0].membrane;
+  const double uu = 1 / (hu_ * hu_), vv = 1 / (hv_ * hv_), area = hu_ * hv_;
+  for (int j = 0; j + 1 < rows_; ++j)
+    for (int i = 0; i + 1 < columns_; ++i) {
+      const std::size_t p[4] = {std::size_t(j * columns_ + i), std::size_t(j * columns_ + i + 1),
+                                std::size_t((j + 1) * columns_ + i),
+                                std::size_t((j + 1) * columns_ + i + 1)};
+      double a[2][3], b[2][3], across[3], down[3];
+      double aa[2] = {}, bb[2] = {}, ab = 0;
+      for (int c = 0; c < 3; ++c) {
+        const std::vector<double>& x = c == 0 ? x_ : c == 1 ? y_ : z_;
+        for (int n = 0; n < 2; ++n) {
+          a[n][c] = x[p[2 * n + 1]] - x[p[2 * n]];
+          b[n][c] = x[p[n + 2]] - x[p[n]];
+          aa[n] += a[n][c] * a[n][c];
+          bb[n] += b[n][c] * b[n][c];
+        }
+        across[c] = a[0][c] + a[1][c];
+        down[c] = b[0][c] + b[1][c];
+        ab += across[c] * down[c];
+      }
+      double e[2], f[2];
+      for (int n = 0; n < 2; ++n) e[n] = (aa[n] * uu - 1) / 2, f[n] = (bb[n] * vv - 1) / 2;
+      const double slant = m.shear * ab / (16 * area);
+      for (int c = 0; c < 3; ++c) {
+        std::vector<double>& force = c == 0 ? fx_ : c == 1 ? fy_ : fz_;
+        for (int n = 0; n < 2; ++n) {
+          const double along =
+              area * uu * (m.warp * e[n] + m.coupling * (f[0] + f[1]) / 2) / 2 * a[n][c] +
+              slant * down[c];
+          force[p[2 * n]] += along;
+          force[p[2 * n + 1]] -= along;
+          const double beside =
+              area * vv * (m.weft * f[n] + m.coupling * (e[0] + e[1]) / 2) / 2 * b[n][c] +
+              slant * across[c];
+          force[p[n]] += beside;
+          force[p[n + 2]] -= beside;
+        }
+      }
+    }
+}
+
+// Curvatures along u and v at every point between two others, of the width that it stands for; twists of cells.
+template <class Visit>
+void Verlet::for_each_curvature(Visit&& visit) const {
+  const weft::Bending& bending = scene_.cloths[0].bending;
+  if (!bending.given()) return;
+  constexpr double kLine[] = {1, -2, 1}, kTwist[] = {1, -1, -1, 1};
+  const auto width = [](int line, int lines) { return line == 0 || line == lines - 1 ? 0.5 : 1; };
+  for (int j = 0; j < rows_; ++j)
+    for (int i = 0; i < columns_; ++i) {
+      const auto at = [&](int di, int dj) { return std::size_t((j + dj) * columns_ + i + di); };
+      if (i > 0 && i + 1 < columns_) {
+        const std::size_t p[] = {at(-1, 0), at(0, 0), at(1, 0)};
+        visit(kLine, 3, p, bending.warp * width(j, rows_) * hv_ / (hu_ * hu_ * hu_));
+      }
+      if (j > 0 && j + 1 < rows_) {
+        const std::size_t p[] = {at(0, -1), at(0, 0), at(0, 1)};
+        visit(kLine, 3, p, bending.weft * width(i, columns_) * hu_ / (hv_ * hv_ * hv_));
+      }
+      if (i + 1 < columns_ && j + 1 < rows_) {
+        const std::size_t p[] = {at(0, 0), at(1, 0), at(0, 1), at(1, 1)};
+        visit(kTwist, 4, p, 2 * bending.twist / (hu_ * hv_));
+      }
+    }
+}
+
+void Verlet::bending_forces() {
+  for_each_curvature([&](const double* w, int count, const std::size_t* at, double stiffness) {
+    for (const auto& [x, f] : {std::pair{&x_, &fx_}, {&y_, &fy_}, {&z_, &fz_}}) {
+      double sum = 0;
+      for (int n = 0; n < count; ++n) sum += w[n] * (*x)[at[n]];
+      for (int n = 0; n < count; ++n) (*f)[at[n]] -= stiffness * w[n] * sum;
+    }
+  });
+}
+
 void Verlet::forces() {
   for (const Springs& s : springs_) spring_forces(s);
+  if (scene_.cloths[0].membrane.given()) membrane_forces();
+  bending_forces();
 }
 
 void Verlet::move(double h, double keep) {

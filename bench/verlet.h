@@ -33,6 +33,11 @@ class Verlet {
  private:
   void forces();
   void spring_forces(const Springs& springs);
+  void membrane_forces();
+  void bending_forces();
+  // Calls visit(weights, count, particles, stiffness) for all curvatures: of the energy stiffness |Σ w x|²/2.
+  template <class Visit>
+  void for_each_curvature(Visit&& visit) const;
   void move(double h, double keep);
   void contact(double h);
   double largest_acceleration() const;
@@ -45,6 +50,7 @@ class Verlet {
   std::vector<double> inverse_mass_;  // 1/kg; 0 = pinned
   std::vector<double> gx_, gy_, gz_;  // m/s²; 0 where pinned
   std::vector<double> ex_, ey_, ez_;  // one row of spring forces
+  double hu_ = 0, hv_ = 0;            // m, spacings
 };
 
 }  // namespace bench
