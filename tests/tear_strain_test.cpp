@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <string>
-#include <utility>
 
 #include "made_up_mesh.h"
 #include "weft/simulation.h"
@@ -92,16 +91,22 @@ TEST(Tear, AStretchedSheetTearsWhereItsStrainSaysHoweverFewSweeps) {
   }
 }
 
-// Other sweeps are asked for what they leave; where that is uneven, a note says so.
-TEST(Tear, WhereSweepsSpreadStrainUnevenlyANoteSaysSo) {
+struct Sheet {
+  bool mesh, membrane;
+};
+
+// Springs of a mesh are measured in the midst of their colours, triangles by the mean of both sides' own, lines as
+// their own solution leaves them. What spreads strain unevenly all the same, a note tells.
+TEST(Tear, AnySweepTearsASheetWhereItsStrainSaysOrANoteTellsThatItMayNot) {
   int silent = 0, told = 0;
   for (const bool along_rows : {true, false})
-    for (const auto& [mesh, membrane] : {std::pair(false, false), {true, false}, {true, true}}) {
+    for (const auto& [mesh, membrane] :
+         {Sheet{false, false}, Sheet{false, true}, Sheet{true, false}, Sheet{true, true}}) {
       Drawn drawn{solver(Method::spring, Sweep::gauss_seidel, 1), 200, mesh, membrane, along_rows};
       const FirstTear truth = first_tear(drawn);
       EXPECT_FALSE(truth.told);
       for (const Sweep sweep : {Sweep::gauss_seidel, Sweep::jacobi, Sweep::line})
-        for (const int substeps : {4, 16, 64, 200})
+        for (const int substeps : {4, 16, 64})
           for (const int iterations : {2, 8}) {
             if (mesh && (sweep == Sweep::jacobi || (membrane && sweep == Sweep::line))) continue;
             if (!mesh && sweep == Sweep::gauss_seidel) continue;
@@ -109,10 +114,16 @@ TEST(Tear, WhereSweepsSpreadStrainUnevenlyANoteSaysSo) {
             drawn.substeps = substeps;
             const FirstTear torn = first_tear(drawn);
             ++(torn.told ? told : silent);
+            const std::string which = std::to_string(int(sweep)) + ", " + std::to_string(substeps) +
+                                      " substeps of " + std::to_string(iterations) + " sweeps, " +
+                                      (mesh ? "mesh" : "grid") + (membrane ? ", membrane" : "");
+            // Springs that are solved one by one need no note, and few substeps of several sweeps are enough for
+            // lines and for triangles.
+            const bool even = sweep == Sweep::gauss_seidel ? !membrane || substeps > 4
+                                                           : sweep == Sweep::line && iterations > 2;
+            EXPECT_FALSE(even && torn.told) << which;
             if (torn.told) continue;
-            EXPECT_NEAR(torn.stretch, truth.stretch, 0.15 * truth.stretch)
-                << int(sweep) << ", " << substeps << " substeps of " << iterations << " sweeps, "
-                << (mesh ? "mesh" : "grid") << (membrane ? ", membrane" : "");
+            EXPECT_NEAR(torn.stretch, truth.stretch, 0.15 * truth.stretch) << which;
           }
     }
   std::printf("%d told, %d silent\n", told, silent);

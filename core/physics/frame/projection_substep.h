@@ -17,10 +17,10 @@ inline constexpr double kLongestProjection = 1.0 / 960;
 // sweep do all that the material's own stiffness asks for, k dt² = m; at most kLongestProjection.
 double projection_substep(const Scene& scene);
 
-// The longest substep in which sweeps that project leave strain so evenly that the cloth tears where its tear_strain
-// says, to a tenth or so: where they do little at once, k dt² = m/4 for each sweep. 0: none, for constraints are
-// rigid; infinite: it cannot tear, or its sweeps measure strain in their midst (kernels/gauss_seidel.cpp), or as
-// seed 000 does.
+// The longest substep in which sweeps that project spread strain as the material does, so that the cloth tears where
+// its tear_strain says, to a fifth or nearer. 0: none, for constraints are rigid. Infinite: it cannot tear, or tears
+// as seed 000 does; or it is held by springs that are solved one by one, which are measured in the midst of their sweep
+// (kernels/gauss_seidel.cpp, mesh_sweeps.cpp).
 double tearing_substep(const Scene& scene, const Cloth& cloth, Method method);
 
 // Jacobi adds up corrections that each constraint works out for two ends of like mass; where a light

@@ -39,7 +39,7 @@ void note_tearing(const Scene& scene, Method method, int count, std::vector<std:
     const double longest = tearing_substep(scene, scene.cloths[c], method);
     if (dt <= longest) continue;
     notes.push_back("cloth " + std::to_string(c) + ": in substeps of " + number(dt) +
-                    " s sweeps leave strain spread unevenly, so that it may tear at a third of its "
+                    " s sweeps leave strain spread unevenly, so that it may tear at a fifth of its "
                     "tear_strain, or later than there; " +
                     (longest > 0 ? "in substeps of " + number(longest) + " s they spread it evenly"
                                  : "compliant sweeps of gauss_seidel tear it as they should"));

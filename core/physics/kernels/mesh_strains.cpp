@@ -110,8 +110,9 @@ struct Triangles {
   }
 };
 
-template <bool kMultipliers, bool kDamped>
-WEFT_INLINE void solve(const Triangles& t, float* stress) {
+// kMidst: tells how long sides are in the mean of before and after (mesh_sweeps.cpp).
+template <bool kMultipliers, bool kDamped, bool kMidst>
+WEFT_INLINE void solve(const Triangles& t, float* stress, float* midst) {
   const StrainSweep& s = t.s;
   Wide3 x[3];
   Wide w[3];
@@ -143,29 +144,37 @@ WEFT_INLINE void solve(const Triangles& t, float* stress) {
   const Wide3 q = (d.u * by.of[2] + d.v * by.of[1]) * scale;
   const Wide3 one = p * load(t.b.du[0] + t.lane) + q * load(t.b.dv[0] + t.lane);
   const Wide3 two = p * load(t.b.du[1] + t.lane) + q * load(t.b.dv[1] + t.lane);
-  const auto correct = [&](int k, const Wide3& by_force) {
-    add_records(s.records + 4, 1, t.b.corner[k] + t.lane, by_force);
-  };
-  correct(0, (one + two) * w[0]);
-  correct(1, one * (-w[1]));
-  correct(2, two * (-w[2]));
+  const Wide3 moved[3] = {(one + two) * w[0], one * (-w[1]), two * (-w[2])};
+  for (int k = 0; k < 3; ++k) add_records(s.records + 4, 1, t.b.corner[k] + t.lane, moved[k]);
+  if constexpr (kMidst)
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3;
+      const Wide3 side = fma(moved[next] - moved[k], wide(0.5f), x[next] - x[k]);
+      store(midst + k * kBatch + t.lane, dot(side, side));
+    }
 }
 
-template <bool kMultipliers, bool kDamped>
+template <bool kMultipliers, bool kDamped, bool kMidst>
 void sweep(const StrainSweep& given) {
   const StrainSweep s = given;  // a copy that no store can alias
   for (int n = 0; n < s.count; ++n)
     for (int lane = 0; lane < kBatch; lane += kLanes)
-      solve<kMultipliers, kDamped>(
+      solve<kMultipliers, kDamped, kMidst>(
           {s, s.batches[n], lane},
-          kMultipliers ? s.stress + std::ptrdiff_t(n) * kStrains * kBatch : nullptr);
+          kMultipliers ? s.stress + std::ptrdiff_t(n) * kStrains * kBatch : nullptr,
+          kMidst ? s.midst + std::ptrdiff_t(n) * 3 * kBatch : nullptr);
+}
+
+template <bool kMidst>
+void sweep(const StrainSweep& s) {
+  if (s.before) return s.stress ? sweep<true, true, kMidst>(s) : sweep<false, true, kMidst>(s);
+  s.stress ? sweep<true, false, kMidst>(s) : sweep<false, false, kMidst>(s);
 }
 
 }  // namespace
 
 void sweep_strains(const StrainSweep& s) {
-  if (s.before) return s.stress ? sweep<true, true>(s) : sweep<false, true>(s);
-  s.stress ? sweep<true, false>(s) : sweep<false, false>(s);
+  s.midst ? sweep<true>(s) : sweep<false>(s);
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -35,6 +35,9 @@ struct EdgeSweep {
   float* lambda;      // multipliers of the batches; null: a single sweep [kg·m]
   bool fresh;         // the multipliers are still zero, whatever the memory says
   float longest;      // > 0: nothing but what is so many times its length is shortened to that
+  // Of the batches' edges: squared lengths in the mean of before and after their own correction [m²]; null: nobody
+  // asks.
+  float* midst;
 };
 
 // 16 triangles, no two of which share a vertex; corners are told by where their records begin. Those of no
@@ -56,6 +59,9 @@ struct StrainSweep {
   float rate;           // damping over dt
   float* stress;  // multipliers of the batches, each three times 16 [N/m]; null: a single sweep
   bool fresh;     // they are still zero, whatever the memory says
+  // Of the batches' sides, from corner k to the next, three times 16: squared lengths in the mean of before and
+  // after their triangle's own correction [m²]; null: nobody asks.
+  float* midst;
 };
 
 // Triangles in batches; corners are told by where their records begin, and moments are those of their constraints:

@@ -30,9 +30,13 @@ WEFT_INLINE void correct(float* records, const std::int32_t* offset, Wide3 by) {
   add_records(records + 4, 1, offset, by);
 }
 
-// Lanes from `lane` on of one batch.
-template <Rule R>
-WEFT_INLINE void project_edges(const EdgeSweep& s, const EdgeBatch& b, float* lambda, int lane) {
+// Lanes from `lane` on of one batch. kMidst: tells lengths in the mean of before and after the correction. Where
+// sweeps are few, constraints solved last are at rest and others have all that these have lost. In the mean a
+// constraint is as long as its force by the compliance and half of the inertia makes it, and the forces are in
+// balance.
+template <Rule R, bool kMidst>
+WEFT_INLINE void project_edges(const EdgeSweep& s, const EdgeBatch& b, int n, int lane) {
+  float* const lambda = s.lambda + std::ptrdiff_t(n) * physics::kBatch;
   const Wide4 p = vertices_at(s.records, b.near + lane), q = vertices_at(s.records, b.far + lane);
   const Wide3 e = q.xyz - p.xyz;
   Wide rest = load(b.rest + lane), inertia = p.last + q.last;
@@ -57,16 +61,19 @@ WEFT_INLINE void project_edges(const EdgeSweep& s, const EdgeBatch& b, float* la
     store(lambda + lane, fnma(scale, length, before));
   }
   const Wide3 pull = e * scale;
+  if constexpr (kMidst)
+    store(s.midst + std::ptrdiff_t(n) * physics::kBatch + lane,
+          squared_length(fnma(pull, (p.last + q.last) * 0.5f, e)));
   correct(s.records, b.near + lane, pull * p.last);
   correct(s.records, b.far + lane, pull * (-q.last));
 }
 
-template <Rule R>
+template <Rule R, bool kMidst>
 void sweep(const EdgeSweep& given) {
   const EdgeSweep s = given;  // a copy that no store can alias
   for (int n = 0; n < s.count; ++n)
     for (int lane = 0; lane < physics::kBatch; lane += kLanes)
-      project_edges<R>(s, s.batches[n], s.lambda + std::ptrdiff_t(n) * physics::kBatch, lane);
+      project_edges<R, kMidst>(s, s.batches[n], n, lane);
 }
 
 }  // namespace
@@ -88,8 +95,10 @@ void store_records(const RecordRow& r) {
 }
 
 void sweep_edges(const EdgeSweep& s) {
-  if (s.longest > 0) return sweep<Rule::limit>(s);
-  s.lambda ? sweep<Rule::multipliers>(s) : sweep<Rule::compliant>(s);
+  if (s.longest > 0) return sweep<Rule::limit, false>(s);
+  if (s.midst)
+    return s.lambda ? sweep<Rule::multipliers, true>(s) : sweep<Rule::compliant, true>(s);
+  s.lambda ? sweep<Rule::multipliers, false>(s) : sweep<Rule::compliant, false>(s);
 }
 
 void sweep_hinges(const HingeSweep& s) {

@@ -5,10 +5,17 @@
 
 namespace weft::physics {
 
-// Constraints of one stencil in one row: number a joins near + a and far + a. What is longer ends.
+// Where the ends of a row's constraints are, or what they have moved by.
+struct TearEnds {
+  ConstRow3 near, far;  // number a joins near + a and far + a
+};
+
+// Constraints of one stencil in one row. What is longer ends.
 struct TearRow {
   int count;
-  ConstRow3 near, far;
+  TearEnds x;
+  const TearEnds*
+      moved;            // two, in the mean of which they are moved from there; null: they are there
   std::int32_t* alive;  // -1 for constraints, 0 for torn ones and beyond the last
   float longest;        // m
 };

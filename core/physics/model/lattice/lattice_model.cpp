@@ -111,20 +111,21 @@ void LatticeModel::append_projections(StageList& list) {
   list.choose("tethers", solver.tethers ? make_attachments(parts_, *corrections_) : nullptr,
               solver.tethers ? "nothing is pinned" : "off in the scene");
   if (!gather && solver.tethers) list.stages.push_back(make_corrections(parts_, *corrections_));
+  // Where sweeps hold every constraint for itself or with its line, its length changes in their midst. Seed 000
+  // asks constraints as they lie, however unevenly.
+  const bool tears = parts_.cloth.tear_strain > 0 && gather && !stencils_.empty() &&
+                     parts_.cloth.tears != Tears::particles;
+  if (tears) ended_.resize(std::size_t(lattice_.rows));
+  if (tears) parts_.ended = ended_.data();
   if (lines) {
     const float share = sweep.compliant ? 1.0f : float(2 * parts_.cloth.positional_k);
-    list.choose(
-        "line",
-        make_line(parts_, *corrections_,
-                  {sweep.compliant, solver.iterations, share, solves_membrane(), !solver.tethers}),
-        "the cloth has no constraints");
+    list.choose("line",
+                make_line(parts_, *corrections_,
+                          {sweep.compliant, solver.iterations, share, solves_membrane(),
+                           !solver.tethers, tears}),
+                "the cloth has no constraints");
   } else {
     list.skip("line", "sweep is not line");
-    // Seed 000 asks constraints as they lie, however unevenly.
-    const bool tears = parts_.cloth.tear_strain > 0 && solver.sweep == Sweep::gauss_seidel &&
-                       parts_.cloth.tears != Tears::particles;
-    if (tears) ended_.resize(std::size_t(lattice_.rows));
-    if (tears) parts_.ended = ended_.data();
     for (int n = 0; n < solver.iterations && !stencils_.empty(); ++n) {
       sweep.tears = tears && n + 1 == solver.iterations;
       if (solver.sweep == Sweep::jacobi)

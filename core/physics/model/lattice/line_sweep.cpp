@@ -78,6 +78,8 @@ class Line final : public WholeStage {
             f.dj == 0 ? std::size_t(groups) * kBatchLines * parts.lattice.columns
                       : std::size_t(parts.lattice.rows) * parts.lattice.stride);
     }
+    if (options.tears && !options.compliant)
+      before_ = Rows(parts.lattice.rows, parts.lattice.stride);
     if (options.membrane) membrane_ = std::make_unique<MembraneLines>(parts);
     if (parts.scene.solver.order == 2) batches_.follow_masses();
     // Longest constraints first.
@@ -96,7 +98,8 @@ class Line final : public WholeStage {
     for (const auto* stencils : {&diagonal_, &along_columns_, &along_rows_})
       for (const LineStencil& l : *stencils)
         floats += l.compliance.size() + l.lambda.size() + l.links.bytes() / sizeof(float);
-    return floats * sizeof(float) + batches_.bytes() + (membrane_ ? membrane_->bytes() : 0);
+    return floats * sizeof(float) + before_.bytes() + batches_.bytes() +
+           (membrane_ ? membrane_->bytes() : 0);
   }
   void restart() override {
     batches_.turn_masses();
@@ -107,7 +110,8 @@ class Line final : public WholeStage {
   void run(const Substep& s, Threads& threads) override {
     if (s.dt != dt_) set_compliance(s.dt);
     batches_.begin(threads);
-    for (int n = 0; n < options_.iterations; ++n) sweep(n == 0);
+    for (int n = 0; n < options_.iterations; ++n)
+      sweep(n == 0, options_.tears && n + 1 == options_.iterations);
   }
 
  private:
@@ -115,12 +119,43 @@ class Line final : public WholeStage {
     return {&diagonal_, &along_columns_, &along_rows_};
   }
 
-  void sweep(bool fresh) {
+  void sweep(bool fresh, bool tears) {
     const bool zero = fresh && options_.corrections_zero;
     if (membrane_) membrane_->look(batches_, zero ? nullptr : &corrections_);
-    for (LineStencil& l : diagonal_) solve_batches({&l, 1}, fresh);
-    if (!along_columns_.empty()) solve_batches(along_columns_, fresh);
-    if (!along_rows_.empty()) solve_rows(fresh);
+    const auto solve = [&](std::span<LineStencil> lines) {
+      if (lines.empty()) return;
+      if (tears && !options_.compliant) before_.copy(corrections_);
+      lines[0].stencil->dj > 0 ? solve_batches(lines, fresh) : solve_rows(fresh);
+      if (tears) end_overlong(lines);
+    };
+    for (LineStencil& l : diagonal_) solve({&l, 1});
+    solve(along_columns_);
+    solve(along_rows_);
+  }
+
+  // Ends constraints past their tear length, each as long as its own line's solution leaves it: as its force, which is
+  // in balance along the line, stretches it. Others move it again. Rigid lines have no such length: there it is the
+  // mean of before and after, as constraint by constraint (gauss_seidel.cpp).
+  void end_overlong(std::span<const LineStencil> lines) {
+    Lattice& lattice = parts_.lattice;
+    const auto end_in = [&](int j) {
+      for (const LineStencil& l : lines) {
+        const Stencil& f = *l.stencil;
+        if (j + f.dj >= lattice.rows) continue;
+        const TearEnds after = ends_of(f, corrections_, j);
+        const TearEnds moved[2] = {options_.compliant ? after : ends_of(f, before_, j), after};
+        parts_.ended[j] +=
+            parts_.kernels.lattice.tear({f.per_row(lattice.columns), ends_of(f, lattice.x, j),
+                                         moved, f.links->row(j), tear_length(parts_.cloth, f)});
+      }
+    };
+    batches_.share_out(batches_.row_groups(),
+                       kConstraintNs * kBatchLines * lattice.columns * double(lines.size()),
+                       [&](int group, BatchMemory&) {
+                         const int begin = group * kBatchLines;
+                         for (int j = begin; j < std::min(begin + kBatchLines, lattice.rows); ++j)
+                           end_in(j);
+                       });
   }
 
   // All lines of stencils between rows, batch by batch: of several only where these are the same
@@ -242,6 +277,7 @@ class Line final : public WholeStage {
 
   LatticeParts parts_;
   Rows& corrections_;
+  Rows before_;  // corrections before the last lines, where rigid ones may tear
   LineOptions options_;
   void (*solve_)(const LineBatch&);
   LineBatches batches_;

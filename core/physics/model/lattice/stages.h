@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "physics/kernels/tear.h"
 #include "physics/model/cloth_model.h"
 #include "physics/model/lattice/lattice.h"
 #include "physics/model/lattice/stencil.h"
@@ -37,6 +38,10 @@ std::unique_ptr<RowStage> make_membrane(const LatticeParts& parts);
 // m, past which a constraint tears.
 inline float tear_length(const Cloth& cloth, const Stencil& stencil) {
   return float(stencil.rest * (1 + cloth.tear_strain));
+}
+// Of a stencil's constraints in row j, in an array that is laid out as the lattice.
+inline TearEnds ends_of(const Stencil& stencil, Rows& rows, int j) {
+  return {rows.row(j).from(stencil.near()), rows.row(j + stencil.dj).from(stencil.far())};
 }
 std::unique_ptr<RowStage> make_tear(const LatticeParts& parts, LatticeTearing& tearing);
 std::unique_ptr<RowStage> make_wind(const LatticeParts& parts, std::uint64_t seed);
@@ -73,6 +78,7 @@ struct LineOptions {
   float share = 1;               // of the correction
   bool membrane = false;         // not springs but the membrane, compliant
   bool corrections_zero = true;  // when the sweeps begin
+  bool tears = false;            // the last sweep ends constraints past their tear strain
 };
 // The line sweep: one stage for all stencils and iterations; null when the cloth has no constraint.
 std::unique_ptr<Stage> make_line(const LatticeParts& parts, Rows& corrections,

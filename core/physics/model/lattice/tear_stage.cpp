@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "physics/kernels/lattice.h"
-#include "physics/kernels/tear.h"
 #include "physics/model/lattice/stages.h"
 #include "physics/model/lattice/tearing.h"
 
@@ -25,15 +24,11 @@ class TearStage final : public RowStage {
     }
     if (parts_.overlong && !parts_.overlong[j]) return;
     Lattice& l = parts_.lattice;
-    const auto from = [&](int row, int column) {
-      const Row3 r = l.x.row(row);
-      return ConstRow3{r.x + column, r.y + column, r.z + column};
-    };
     for (const Stencil& f : parts_.stencils) {
       if (j + f.dj >= l.rows) continue;
-      const int torn = parts_.kernels.lattice.tear({f.per_row(l.columns), from(j, f.near()),
-                                                    from(j + f.dj, f.far()), f.links->row(j),
-                                                    tear_length(parts_.cloth, f)});
+      const int torn =
+          parts_.kernels.lattice.tear({f.per_row(l.columns), ends_of(f, l.x, j), nullptr,
+                                       f.links->row(j), tear_length(parts_.cloth, f)});
       if (torn > 0) tearing_.died(j, torn);
     }
   }

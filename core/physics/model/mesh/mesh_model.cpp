@@ -89,6 +89,7 @@ void MeshModel::append_motion(Method method, StageList& list) {
   method_ = method;
   material_ = material_of(parts_.cloth, method == Method::spring_friction);
   history_.reset();
+  midst_ = {};
   if (tearing_) tearing_->tell_nobody();
   if (sweeps_) sweeps_->follow_tears();
   is_explicit(method) ? append_forces(list) : append_projections(list);
@@ -138,15 +139,20 @@ void MeshModel::append_projections(StageList& list) {
   else if (material_.stiffness == 0)
     list.skip("gauss_seidel", "stiffness is 0");
   else if (solver.sweep == Sweep::line)
-    list.stages.push_back(StrandSweeps(parts_, edges_, material_.stiffness, start_, tearing_.get())
-                              .stage(solver.iterations, true));
+    append_strands(list);
   else
-    edge_sweeps().append_edges(solver.iterations, list);
+    midst_.edges = edge_sweeps().append_edges(solver.iterations, list);
   if (material_.bends)
     sweeps().append_hinges(list);
   else
     list.skip("bending", "bending is 0");
   if (history_) list.stages.push_back(make_velocity_second_order(parts_, *history_, nullptr));
+}
+
+void MeshModel::append_strands(StageList& list) {
+  StrandSweeps strands(parts_, edges_, material_.stiffness, start_, tearing_.get());
+  list.stages.push_back(strands.stage(parts_.scene.solver.iterations, true));
+  midst_.edges = strands.midst();
 }
 
 std::vector<std::vector<Tether>> MeshModel::attachments() const {
@@ -179,8 +185,11 @@ StrainSweeps& MeshModel::strain_sweeps() {
 void MeshModel::append_membrane(StageList& list) {
   const Solver& solver = parts_.scene.solver;
   StrainSweeps& strains = strain_sweeps();
-  if (solver.sweep != Sweep::line || tearing_)
-    return sweeps_->append_strains(solver.iterations, true, list);
+  if (solver.sweep != Sweep::line || tearing_) {
+    sweeps_->append_strains(solver.iterations, true, list);
+    midst_.triangles = strains.midst();
+    return;
+  }
   StrandSweeps strands(parts_, edges_,
                        std::make_unique<StrandMembrane>(parts_, triangles_, edges_, strains),
                        start_);
@@ -191,7 +200,8 @@ void MeshModel::append_membrane(StageList& list) {
 }
 
 void MeshModel::append_limits(StageList& list) {
-  list.choose("tear", parts_.cloth.tear_strain > 0 ? make_mesh_tear(parts_, *tearing_) : nullptr,
+  list.choose("tear",
+              parts_.cloth.tear_strain > 0 ? make_mesh_tear(parts_, *tearing_, midst_) : nullptr,
               "tear_strain is 0");
   if (parts_.cloth.strain_limit > 0)
     edge_sweeps().append_limit(parts_.cloth.strain_limit, list);

@@ -59,6 +59,7 @@ class MeshModel final : public ClothModel {
   void append_projections(StageList& list);
   void append_gas(StageList& list);
   void append_membrane(StageList& list);
+  void append_strands(StageList& list);
   MeshSweeps& sweeps();  // of bending, where there is any
   MeshSweeps& edge_sweeps();
   StrainSweeps& strain_sweeps();
@@ -89,6 +90,7 @@ class MeshModel final : public ClothModel {
   std::vector<std::vector<Tether>> tethers_;  // none: the scene has them off
   DrawnMesh drawn_;
   std::unique_ptr<MeshTearing> tearing_;  // null while it cannot
+  MidstLengths midst_;
 };
 
 }  // namespace weft::physics

@@ -14,6 +14,7 @@ struct EdgeOptions {
   int colour;
   bool fresh = true;   // the first sweep of a substep
   double longest = 0;  // > 0: a limit
+  bool last = false;   // of a substep; tells lengths, if anybody asks
 };
 
 class SweepEdges final : public RowStage {
@@ -41,6 +42,8 @@ class SweepEdges final : public RowStage {
     sweep.longest = float(options_.longest);
     if (colour_.lambda.size() > 0 && options_.longest == 0)
       sweep.lambda = colour_.lambda.data() + std::ptrdiff_t(kBatch) * first;
+    if (options_.last && colour_.midst.size() > 0)
+      sweep.midst = colour_.midst.data() + std::ptrdiff_t(kBatch) * first;
     parts_.kernels.mesh.sweep_edges(sweep);
   }
 
@@ -180,6 +183,7 @@ void MeshSweeps::make_edges(const MeshEdges& edges, double stiffness) {
         }
         colour.edges += std::int64_t(chosen.size());
       }
+    if (tears_by_strain()) colour.midst = AlignedArray<float>(colour.batches.size() * kBatch);
   }
   follow_torn();
 }
@@ -217,31 +221,37 @@ void MeshSweeps::append_seams(StageList& list) {
     list.stages.push_back(std::move(seams));
 }
 
-void MeshSweeps::append_edges(int iterations, StageList& list) {
+std::vector<const float*> MeshSweeps::append_edges(int iterations, StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 1));
   for (int n = 0; n < iterations; ++n) {
     for (int c = 0; c < int(edges_.size()); ++c) {
       EdgeColour& colour = edges_[std::size_t(c)];
       if (iterations > 1 && colour.lambda.size() == 0)
         colour.lambda = AlignedArray<float>(colour.batches.size() * kBatch);
-      list.stages.push_back(
-          std::make_unique<SweepEdges>(parts_, colour, records_, EdgeOptions{c, n == 0, 0}));
+      list.stages.push_back(std::make_unique<SweepEdges>(
+          parts_, colour, records_, EdgeOptions{c, n == 0, 0, n + 1 == iterations}));
     }
     append_seams(list);
   }
   list.stages.push_back(make_store_records(parts_, records_, false));
+  std::vector<const float*> midst;
+  for (const EdgePlace& at : place_)
+    if (const AlignedArray<float>& all = edges_[std::size_t(at.colour)].midst; all.size() > 0)
+      midst.push_back(all.data() + at.batch * kBatch + at.lane);
+  return midst;
 }
 
 void MeshSweeps::make_strains(const std::vector<RestTriangle>& triangles, bool keeps_stress) {
   strains_ = std::make_unique<StrainSweeps>(parts_, order_, triangles, records_, keeps_stress,
                                             tearing_ != nullptr);
+  if (tears_by_strain()) strains_->tell_lengths();
   follow_torn();
 }
 
 void MeshSweeps::append_strains(int iterations, bool fresh, StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 1));
   for (int n = 0; n < iterations; ++n) {
-    strains_->append(iterations, fresh && n == 0, list);
+    strains_->append(iterations, fresh && n == 0, n + 1 == iterations, list);
     append_seams(list);
   }
   list.stages.push_back(make_store_records(parts_, records_, false));
@@ -260,7 +270,7 @@ void MeshSweeps::append_limit(double strain, StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 1));
   for (int c = 0; c < int(edges_.size()); ++c)
     list.stages.push_back(std::make_unique<SweepEdges>(parts_, edges_[std::size_t(c)], records_,
-                                                       EdgeOptions{c, true, 1 + strain}));
+                                                       EdgeOptions{c, true, 1 + strain, false}));
   append_seams(list);
   list.stages.push_back(make_store_records(parts_, records_, true));
 }
@@ -268,7 +278,8 @@ void MeshSweeps::append_limit(double strain, StageList& list) {
 std::size_t MeshSweeps::bytes() const {
   std::size_t bytes = records_.size() * sizeof(float) + (strains_ ? strains_->bytes() : 0);
   for (const EdgeColour& c : edges_)
-    bytes += c.batches.size() * sizeof(EdgeBatch) + c.lambda.size() * sizeof(float);
+    bytes +=
+        c.batches.size() * sizeof(EdgeBatch) + (c.lambda.size() + c.midst.size()) * sizeof(float);
   for (const HingeColour& c : hinges_)
     bytes += c.batches.size() * (sizeof(MeshBatch) + kBatch * sizeof(int));
   return bytes;

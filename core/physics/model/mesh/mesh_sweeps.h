@@ -19,6 +19,7 @@ struct EdgeColour {
   bool disjoint = false;   // its edges share no vertex
   std::int64_t edges = 0;
   AlignedArray<float> lambda;  // multipliers; none: a single sweep
+  AlignedArray<float> midst;   // m², of each place (mesh_sweep.h); none: nothing tears by strain
 };
 
 struct HingeColour {
@@ -42,8 +43,8 @@ class MeshSweeps : private TornParts {
   void make_strains(const std::vector<RestTriangle>& triangles, bool keeps_stress);
 
   // Edges as compliant constraints, so many times one after the other; positions and velocities gain the
-  // corrections at the end.
-  void append_edges(int iterations, StageList& list);
+  // corrections at the end. Returns where the last tells squared lengths, of each edge; none: nothing tears by strain.
+  std::vector<const float*> append_edges(int iterations, StageList& list);
   void append_hinges(StageList& list);
   // The membrane of triangles, likewise; `fresh`: from no stress.
   void append_strains(int iterations, bool fresh, StageList& list);
@@ -65,6 +66,7 @@ class MeshSweeps : private TornParts {
     std::size_t batch = 0, lane = 0;
   };
 
+  bool tears_by_strain() const { return tearing_ && parts_.cloth.tear_strain > 0; }
   void append_seams(StageList& list);
   void put_nobody(EdgeBatch& batch, std::size_t lane, int row) const;
   void set_edge(int edge, bool holds) override;

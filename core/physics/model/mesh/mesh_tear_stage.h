@@ -5,6 +5,8 @@
 
 namespace weft::physics {
 
-std::unique_ptr<RowStage> make_mesh_tear(const ClothParts& parts, MeshTearing& tearing);
+// Edges are as long as sweeps tell, if any do, and else as they lie.
+std::unique_ptr<RowStage> make_mesh_tear(const ClothParts& parts, MeshTearing& tearing,
+                                         const MidstLengths& midst);
 
 }  // namespace weft::physics

@@ -34,6 +34,13 @@ class TornParts {
   virtual void set_triangle(int triangle) { (void)triangle; }
 };
 
+// Where the last sweep of a substep tells squared lengths in its midst [m²], about their own correction or solution
+// (kernels/mesh_sweeps.cpp, strand_sweep.cpp): of every edge; or of every triangle, whose sides are kBatch apart.
+// Neither: none does.
+struct MidstLengths {
+  std::vector<const float*> edges, triangles;
+};
+
 class MeshTearing final : public Tearing {
  public:
   // All of these outlive it. `triangles` and `surface` follow what tears. `lanes`: of each vertex, where it is in
@@ -73,6 +80,10 @@ class MeshTearing final : public Tearing {
     for (const Side& side : sides_[std::size_t(edge)])
       if (side.triangle >= 0) visit(side);
   }
+  // The edge that side k of a triangle is.
+  int edge_of(int triangle, std::size_t k) const {
+    return edge_of_[3 * std::size_t(triangle) + k % 3];
+  }
   bool holds(std::size_t edge) const { return holds_[edge] != 0; }
   // Ends an edge, if it holds.
   void end(int edge);
@@ -94,9 +105,6 @@ class MeshTearing final : public Tearing {
  private:
   void find_rows();
   int edge_between(int a, int b) const;
-  int edge_of(int triangle, std::size_t k) const {
-    return edge_of_[3 * std::size_t(triangle) + k % 3];
-  }
   void set(int edge, bool holds);
   void stretch_as_now(const Side& side);
   bool follow();

@@ -12,14 +12,15 @@ class SweepStrains final : public RowStage {
  public:
   // `before`: null where nothing is damped.
   SweepStrains(const ClothParts& parts, StrainColour& colour, AlignedArray<float>& records,
-               const float* before, int number, bool fresh)
+               const float* before, int number, bool fresh, bool last)
       : RowStage("gauss_seidel", "membrane of triangles of colour " + std::to_string(number), 1,
                  colour.triangles, "triangles"),
         parts_(parts),
         colour_(colour),
         records_(records),
         before_(before),
-        fresh_(fresh) {}
+        fresh_(fresh),
+        last_(last) {}
   Velocities velocities() const override { return Velocities::left_alone; }
   bool rows_apart() const override { return colour_.disjoint; }
   void run(int begin, int end, const Substep& s) override {
@@ -41,6 +42,8 @@ class SweepStrains final : public RowStage {
     sweep.fresh = fresh_;
     if (colour_.stress.size() > 0)
       sweep.stress = colour_.stress.data() + std::ptrdiff_t(kStrains * kBatch) * first;
+    if (last_ && colour_.midst.size() > 0)
+      sweep.midst = colour_.midst.data() + std::ptrdiff_t(kStrains * kBatch) * first;
     parts_.kernels.mesh.sweep_strains(sweep);
   }
 
@@ -49,7 +52,7 @@ class SweepStrains final : public RowStage {
   StrainColour& colour_;
   AlignedArray<float>& records_;
   const float* before_;
-  bool fresh_;
+  bool fresh_, last_;
 };
 
 StrainBatch batch_of(const std::vector<int>& chosen, int row, const Particles& p,
@@ -119,19 +122,33 @@ void StrainSweeps::append_places_before(StageList& list) {
   if (damped()) list.stages.push_back(make_load_records(parts_, before_, 1));
 }
 
-void StrainSweeps::append(int iterations, bool fresh, StageList& list) {
+void StrainSweeps::tell_lengths() {
+  for (StrainColour& c : colours_)
+    c.midst = AlignedArray<float>(c.batches.size() * kStrains * kBatch);
+}
+
+std::vector<const float*> StrainSweeps::midst() const {
+  std::vector<const float*> midst;
+  for (const Place& at : places_)
+    if (const AlignedArray<float>& all = colours_[at.colour].midst; all.size() > 0)
+      midst.push_back(all.data() + at.first);
+  return midst;
+}
+
+void StrainSweeps::append(int iterations, bool fresh, bool last, StageList& list) {
   for (int c = 0; c < int(colours_.size()); ++c) {
     StrainColour& colour = colours_[std::size_t(c)];
     if (iterations > 1) make_room(colour);
     list.stages.push_back(std::make_unique<SweepStrains>(
-        parts_, colour, records_, damped() ? before_.data() : nullptr, c, fresh));
+        parts_, colour, records_, damped() ? before_.data() : nullptr, c, fresh, last));
   }
 }
 
 std::size_t StrainSweeps::bytes() const {
   std::size_t bytes = before_.size() * sizeof(float) + places_.size() * sizeof(Place);
   for (const StrainColour& c : colours_)
-    bytes += c.batches.size() * sizeof(StrainBatch) + c.stress.size() * sizeof(float);
+    bytes +=
+        c.batches.size() * sizeof(StrainBatch) + (c.stress.size() + c.midst.size()) * sizeof(float);
   return bytes;
 }
 

@@ -14,6 +14,7 @@ struct StrainColour {
   bool disjoint = false;   // its triangles share no vertex
   std::int64_t triangles = 0;
   AlignedArray<float> stress;  // multipliers; none: a single sweep
+  AlignedArray<float> midst;   // m², of each side (mesh_sweep.h); none: nobody asks
 };
 
 class StrainSweeps {
@@ -26,12 +27,15 @@ class StrainSweeps {
 
   // Before anything is moved: keeps what damping compares with, if there is any.
   void append_places_before(StageList& list);
-  // One sweep of so many; `fresh`: the first of a substep, and of stress.
-  void append(int iterations, bool fresh, StageList& list);
+  // One sweep of so many; `fresh`: the first of a substep, and of stress; `last`: of a substep, tells lengths.
+  void append(int iterations, bool fresh, bool last, StageList& list);
 
   // A triangle has lost its membrane, or has it again: as its area says.
   void follow(int triangle);
   void clear_stress();
+  // Last sweeps tell squared lengths of sides; where, of each triangle, kBatch apart; none: they do not. Needs tears.
+  void tell_lengths();
+  std::vector<const float*> midst() const;
   // Of a triangle; its components are kBatch apart [N/m].
   float* stress(int triangle) {
     const Place& at = places_[std::size_t(triangle)];

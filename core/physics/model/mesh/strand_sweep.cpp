@@ -31,6 +31,7 @@ struct StrandBatch {
   AlignedArray<float> compliance;    // 1/kg; of squares m²/kg
   AlignedArray<float> lambda;        // none: a single sweep
   AlignedArray<std::int32_t> alive;  // -1 where there is a constraint
+  AlignedArray<float> midst;  // m²; squared lengths as solved; none: nothing tears by strain
 };
 
 }  // namespace
@@ -63,6 +64,12 @@ class StrandSweeps::Solver : private TornParts {
       for (const double rest : edges.rest) squares_.push_back(rest * rest);
   }
 
+  std::vector<const float*> midst() const {
+    std::vector<const float*> midst;
+    for (const auto& [batch, at] : place_)
+      if (batches_[batch].midst.size() > 0) midst.push_back(batches_[batch].midst.data() + at);
+    return midst;
+  }
   const std::string& words() const { return words_; }
   std::int64_t count() const { return count_; }
   const ClothParts& parts() const { return parts_; }
@@ -70,7 +77,7 @@ class StrandSweeps::Solver : private TornParts {
     std::size_t bytes = place_.size() * sizeof(Place) + (membrane_ ? membrane_->bytes() : 0);
     for (const StrandBatch& b : batches_)
       bytes += (b.lanes.size() * 2 + b.edges.size()) * sizeof(int) +
-               sizeof(float) * (3 * b.rest.size() + b.lambda.size());
+               sizeof(float) * (3 * b.rest.size() + b.lambda.size() + b.midst.size());
     for (const Memory& m : memory_)
       bytes +=
           m.x.bytes() + m.corrections.bytes() + (m.w.size() + m.scratch.size()) * sizeof(float);
@@ -87,11 +94,14 @@ class StrandSweeps::Solver : private TornParts {
       }
   }
 
-  void sweep(double dt, bool fresh, Threads& threads) {
+  void sweep(double dt, bool fresh, bool last, Threads& threads) {
     while (int(memory_.size()) < threads.count()) memory_.emplace_back(longest_);
     if (membrane_ && fresh) membrane_->begin();
     for (std::size_t c = 0; c + 1 < first_.size(); ++c)
-      share_out(c, threads, [&](StrandBatch& b, Memory& m) { solve(b, m, dt, fresh); });
+      share_out(c, threads, [&](StrandBatch& b, Memory& m) {
+        solve(b, m, dt, fresh);
+        if (last && b.midst.size() > 0) measure(b, m);
+      });
   }
 
  private:
@@ -126,6 +136,7 @@ class StrandSweeps::Solver : private TornParts {
     b.alive = AlignedArray<std::int32_t>(places);
     if (remembers_) b.lambda = AlignedArray<float>(places);
     if (membrane_) b.edges.assign(places, -1);
+    if (!place_.empty() && parts_.cloth.tear_strain > 0) b.midst = AlignedArray<float>(places);
     for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
       const Strand& s = strands[std::size_t(chosen[lane])];
       for (std::size_t m = 0; m < s.vertices.size(); ++m)
@@ -212,6 +223,20 @@ class StrandSweeps::Solver : private TornParts {
     }
   }
 
+  // As long as its own strand's solution leaves an edge: as its force, which is in balance along the strand,
+  // stretches it. Others move it again.
+  void measure(StrandBatch& b, Memory& m) const {
+    const Row3 x = m.x.row(0), u = m.corrections.row(0);
+    const auto along = [](const float* at, const float* by, std::size_t near) {
+      const std::size_t far = near + kBatchLines;
+      return at[far] - at[near] + (by[far] - by[near]);
+    };
+    for (std::size_t n = 0; n + kBatchLines < b.midst.size(); ++n) {
+      const float ex = along(x.x, u.x, n), ey = along(x.y, u.y, n), ez = along(x.z, u.z, n);
+      b.midst[n] = ex * ex + ey * ey + ez * ez;
+    }
+  }
+
   void put_back(const StrandBatch& b, Memory& m, float gain) {
     const Row3 x = parts_.particles.x.row(0), v = parts_.particles.v.row(0);
     const Row3 u = m.corrections.row(0);
@@ -258,7 +283,8 @@ class StrandSweeps::Sweep final : public WholeStage {
     if (fresh_) solver_->prepare(dt);
   }
   void run(const Substep& s, Threads& threads) override {
-    for (int n = 0; n < iterations_; ++n) solver_->sweep(s.dt, fresh_ && n == 0, threads);
+    for (int n = 0; n < iterations_; ++n)
+      solver_->sweep(s.dt, fresh_ && n == 0, n + 1 == iterations_, threads);
   }
 
  private:
@@ -266,6 +292,10 @@ class StrandSweeps::Sweep final : public WholeStage {
   int iterations_;
   bool fresh_;
 };
+
+std::vector<const float*> StrandSweeps::midst() const {
+  return solver_->midst();
+}
 
 std::unique_ptr<Stage> StrandSweeps::stage(int iterations, bool fresh) {
   return std::make_unique<Sweep>(solver_, iterations, fresh);

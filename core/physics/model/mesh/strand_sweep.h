@@ -20,6 +20,8 @@ class StrandSweeps {
 
   // So many sweeps one after the other; `fresh`: with the first of a substep.
   std::unique_ptr<Stage> stage(int iterations, bool fresh);
+  // Where the last sweep of a stage tells squared lengths, of each edge; none: nothing tears by strain.
+  std::vector<const float*> midst() const;
 
  private:
   class Solver;
