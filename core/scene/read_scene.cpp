@@ -9,6 +9,7 @@
 #include "scene/assets.h"
 #include "scene/course.h"
 #include "scene/document.h"
+#include "scene/fabric.h"
 #include "scene/overrides.h"
 #include "scene/shipped.h"
 #include "scene/validate.h"
@@ -23,6 +24,7 @@ using namespace text;
 Scene read_weft(Json& document, const std::vector<Override>& overrides, Check& result) {
   for (const Override& change : overrides)
     apply_override(scene_schema_json(), change, document, result);
+  unfold_fabrics(document, result);
   check(scene_schema_json(), document, result);
   drop_unsound(result, document);
   const Scene scene = scene_of(document);
