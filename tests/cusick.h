@@ -25,7 +25,7 @@ inline constexpr double kDisc = 0.15, kSupport = 0.09;  // m, radii
 // level, since a disc that is has no reason to fold at one place rather than another.
 struct Disc {
   int rings = 20;
-  double warp = 0;         // degrees, of the warp from x
+  double turn = 0;         // degrees, of the mesh against waves and warp
   double waves = 0.00667;  // of the radius; height of each of 8 waves about the rim
   double phase = 2.4;      // rad, which tells one specimen from another
 };
@@ -44,7 +44,7 @@ inline double ring_radius(int ring, int rings) {
 inline std::shared_ptr<TriangleMesh> disc(const Disc& d) {
   auto mesh = std::make_shared<TriangleMesh>();
   const auto point = [&](int ring, int k) {
-    const double angle = ring ? 2 * std::numbers::pi * k / (6 * ring) : 0;
+    const double angle = std::numbers::pi * (d.turn / 180 + (ring ? k / (3.0 * ring) : 0));
     const double radius = ring_radius(ring, d.rings);
     double height = 0;
     for (int n = 2; n < 10; ++n) height += std::cos(n * angle + d.phase * n * n);
@@ -67,13 +67,11 @@ inline std::shared_ptr<TriangleMesh> disc(const Disc& d) {
   std::vector<int> held(std::size_t(number(held_rings(d.rings) + 1, 0)));
   std::iota(held.begin(), held.end(), 0);
   mesh->groups = {{"held", held}};
-  const double turn = d.warp * std::numbers::pi / 180;
-  for (const auto& corners : mesh->triangles) {
+  for (const auto& corners : mesh->triangles) {  // the warp goes along x
     std::array<TriangleMesh::Uv, 3> uv;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& v = mesh->vertices[std::size_t(corners[k])];
-      uv[k] = {std::cos(turn) * v[0] + std::sin(turn) * v[1],
-               std::cos(turn) * v[1] - std::sin(turn) * v[0]};
+      uv[k] = {v[0], v[1]};
     }
     mesh->uv.push_back(uv);
   }

@@ -75,6 +75,7 @@ const std::map<std::string, Key> kKeys = {
     {"/cloths/0/mesh/translate", {"[0, 1, 0]"}},
     {"/cloths/0/mesh/rest", {R"("flat")", kCurved}},
     {"/cloths/0/mesh/uv_scale", {"1.1", kPattern}},
+    {"/cloths/0/fabric", {R"("silk")"}},
     {"/cloths/0/density", {"0.1"}},
     {"/cloths/0/particle_mass", {"0.01"}},
     {"/cloths/0/masses", {"[0.01, 0.01]"}},

@@ -86,7 +86,7 @@ TEST_F(Window, AMeshFileBecomesABodyAndAClothThatFallsOnIt) {
   EXPECT_EQ(scene["colliders"][1]["mesh"]["file"], "block.obj");
   EXPECT_EQ(scene["colliders"][1]["mesh"]["scale"], 0.01);
   EXPECT_EQ(scene["cloths"][1]["mesh"]["file"], "cover.obj");
-  EXPECT_NEAR(scene["cloths"][1]["density"], 0.06, 1e-12);
+  EXPECT_NEAR(scene["cloths"][1]["density"], 0.08, 1e-12);
   EXPECT_EQ(weft("run sheet.json --frames 3"), 0) << folder.read("weft.out");
 }
 
