@@ -21,10 +21,10 @@ Bending bending(double warp, double weft, double twist, double damping) {
 std::span<const Fabric> fabrics() {
   static const std::array<Fabric, 5> all{{
       {"silk", 0.08, {400, 300, 20, 12, 1e-5}, bending(1.2e-6, 0.8e-6, 1e-6, 1e-3), 0.25},
-      {"cotton", 0.14, {1500, 1000, 100, 55, 1e-5}, bending(1.5e-5, 8e-6, 1.1e-5, 1e-3), 0.4},
+      {"cotton", 0.14, {1500, 1000, 100, 35, 1e-5}, bending(1.5e-5, 8e-6, 1.1e-5, 1e-3), 0.4},
       {"wool", 0.25, {1200, 800, 100, 40, 1e-5}, bending(1.8e-5, 1.2e-5, 1.5e-5, 1e-3), 0.45},
       {"denim", 0.40, {2500, 1500, 150, 110, 1e-5}, bending(1e-4, 5e-5, 7e-5, 1e-3), 0.5},
-      {"leather", 0.55, {2500, 2500, 750, 850, 1e-5}, bending(2.6e-5, 2.6e-5, 2.6e-5, 1e-3), 0.55},
+      {"leather", 0.55, {2500, 2500, 750, 850, 1e-5}, bending(3.5e-5, 3.5e-5, 3.5e-5, 1e-3), 0.55},
   }};
   return all;
 }
