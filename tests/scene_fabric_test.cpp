@@ -60,7 +60,7 @@ TEST(Fabrics, StandForTheirValues) {
 }
 
 // What a cloth had before leaves no trace but what is no matter of a fabric.
-TEST(Fabrics, TakeThePlaceOfWhatACloth) {
+TEST(Fabrics, TakeThePlaceOfWhatAClothHad) {
   for (const Method method :
        {Method::positional, Method::spring, Method::spring_friction, Method::compliant})
     for (const Fabric& fabric : fabrics()) {
@@ -93,6 +93,7 @@ TEST(Fabrics, GiveWayToEveryKeyOfTheCloth) {
   EXPECT_EQ(cloth.self_collision.thickness, 0.02);
   EXPECT_EQ(cloth.self_collision.friction, cotton.friction);
   EXPECT_EQ(cloth_of(R"("fabric": "cotton", "bending": 0)").bending, Bending(0));
+  EXPECT_EQ(cloth_of(R"("fabric": "cotton", "mesh": {})"), cloth_of(named(cotton)));
 
   // Springs of one's own are in place of the membrane.
   const Cloth springs = cloth_of(R"("fabric": "cotton", "stiffness": {"structural": 50})");

@@ -77,7 +77,9 @@ bool fill(Json& object, const Json& values) {
 Json values_of(const Fabric& fabric, Method method, const Json& cloth) {
   Scene scene;
   Cloth& made = scene.cloths.emplace_back();
-  if (member(cloth, "mesh")) made.mesh.file = "any";
+  const Json* const mesh = member(cloth, "mesh");
+  const Json* const file = mesh ? member(*mesh, "file") : nullptr;
+  if (file && file->is_string()) made.mesh.file = file->get<std::string>();
   make_of(fabric, method, made);
   const Json all = std::move(document_of(scene)["cloths"][0]);
   const bool springs = member(cloth, "stiffness") || member(cloth, "spring_damping");
