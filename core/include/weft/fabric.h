@@ -15,10 +15,10 @@ namespace weft {
 struct Fabric {
   std::string_view name;
   double weight;  // kg/m²
-  Membrane
-      membrane;  // N/m: along warp and weft, coupling, and per radian of the angle between them; damping in s
-  Bending
-      bending;  // N·m, for a width of one metre: along warp and weft, and of twist; damping in s, of meshes
+  // N/m: along warp and weft, coupling, and per radian of the angle between them; damping in s.
+  Membrane membrane;
+  // N·m, for a width of one metre: along warp and weft, and of twist; damping in s, of meshes.
+  Bending bending;
   double friction;  // Coulomb, of the fabric on itself
 };
 
