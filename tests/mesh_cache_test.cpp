@@ -53,7 +53,7 @@ TEST(MeshCache, BothKindsAreRead) {
 }
 
 TEST(MeshCache, WhatIsWrongIsNamed) {
-  EXPECT_EQ(fault_of("", "a.abc"), "a.abc: the file is of no known kind (.pc2, .mdd)");
+  EXPECT_EQ(fault_of("", "a.abc"), "a.abc: the file is of no known kind (.pc2, .mdd, .glb, .gltf)");
   EXPECT_EQ(fault_of("POINTCACHE"),
             "a.pc2: the file does not begin as a .pc2 file does (POINTCACHE2 and 20 bytes more)");
   EXPECT_EQ(fault_of(pc2(2, 1, 0, 1, 7)), "a.pc2: the version is 7 (1)");

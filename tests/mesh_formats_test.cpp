@@ -5,7 +5,7 @@
 #include <random>
 
 #include "folder.h"
-#include "made_up_files.h"
+#include "made_up_gltf.h"
 #include "weft/read_scene.h"
 #include "weft/simulation.h"
 
@@ -96,6 +96,42 @@ TEST(MeshFormats, AnyBytesAreReadOrRefused) {
   }
   EXPECT_GT(read, 3000);
   EXPECT_GT(refused, 8000);
+}
+
+// Of an arm whose forearm bends, and which a target makes thicker.
+TEST(MeshFormats, AnyBytesMoveABodyOrAreRefused) {
+  std::mt19937 random(2);
+  Arm arm(tests::box({1, 0.2, 0.2}), 2);
+  std::vector<double> thicker;
+  for (const Vec3& p : arm.mesh->vertices) thicker.insert(thicker.end(), {0, p[1], p[2]});
+  arm.file.primitive()["targets"].push_back({{"POSITION", arm.file.floats(thicker, "VEC3")}});
+  arm.file.channel(3, "rotation", {0, 1}, joined({turn({0, 0, 1}, 0), turn({0, 0, 1}, 20)}));
+  arm.file.channel(0, "weights", {0, 1}, {0, 0, 1, 0, 0, 0}, "CUBICSPLINE");
+  arm.file.channel(1, "translation", {0, 0.5, 1}, {0, 0, 0, 1, 0, 0, 0, 1, 0}, "STEP");
+  const std::vector<std::string> originals = {arm.file.write(), arm.file.write_glb()};
+  int read = 0, refused = 0;
+  for (int n = 0; n < 4000; ++n) {
+    const std::string bytes = broken(originals[random() % 2], random);
+    const PointCacheFile file = read_gltf_motion(bytes, "m.glb", "/nowhere", kAnyPoints);
+    const MeshFile mesh = read_gltf(bytes, "m.glb", "/nowhere");
+    for (const Fault& fault : file.faults) {
+      ASSERT_EQ(fault.place.rfind("m.glb", 0), 0u) << bytes;
+      ASSERT_FALSE(fault.what.empty() || fault.allowed.empty()) << bytes;
+    }
+    ASSERT_EQ(file.faults.empty(), file.cache != nullptr);
+    (file.cache ? read : refused) += 1;
+    if (!file.cache) continue;
+    const PointCache& cache = *file.cache;
+    ASSERT_TRUE(mesh.faults.empty());
+    ASSERT_EQ(std::size_t(cache.points), mesh.mesh.vertices.size());
+    ASSERT_EQ(cache.places.size(), std::size_t(cache.points) * cache.times.size());
+    for (std::size_t k = 1; k < cache.times.size(); ++k)
+      ASSERT_GT(cache.times[k], cache.times[k - 1]);
+    for (const PointCache::Place& place : cache.places)
+      for (const float value : place) ASSERT_TRUE(std::abs(value) <= 1e9F);
+  }
+  EXPECT_GT(read, 500);
+  EXPECT_GT(refused, 1500);
 }
 
 }  // namespace

@@ -97,9 +97,8 @@ TEST(MeshGltf, WhatIsWrongIsNamed) {
             std::string::npos);  // 0, 0 and 1: nothing is left of it
   EXPECT_EQ(fault("/accessors/0/type", "\"VEC2\""),
             "a.gltf:/accessors/0/type: \"VEC2\" is out of place (SCALAR)\n");
-  EXPECT_EQ(
-      fault("/accessors/0/sparse", "{}"),
-      "a.gltf:/accessors/0/sparse: the accessor is sparse (accessors that list all values)\n");
+  EXPECT_EQ(fault("/accessors/0/sparse", "{}"),
+            "a.gltf:/accessors/0/sparse: count is missing (every key that glTF 2.0 asks for)\n");
   EXPECT_EQ(
       fault("/bufferViews/1/byteOffset", "1099511627776"),
       "a.gltf:/bufferViews/1: the view reaches to byte 1099511627812 of its buffer (44 at most, "

@@ -49,9 +49,10 @@ MeshFile read_obj(std::string_view text, const std::string& name);
 // Stanford .ply, in text or binary. Vertices in one place are one where they carry texture coordinates or
 // normals; edges of the file are loose ones.
 MeshFile read_ply(std::string_view bytes, const std::string& name);
-// glTF 2.0, as .gltf or .glb: all nodes of its scene as one mesh [m], each a group of its name; vertices of one
-// node in one place are one. Buffers lie in the file, or beside it in `folder`. Refused besides: sparse
-// accessors, compression. Left out, with a note: skins, morph targets, points.
+// glTF 2.0, as .gltf or .glb: all nodes of its scene as one mesh [m], each a group of its name, as the file shows
+// them where nothing is animated: by the nodes' transforms, skins, and morph targets with their weights. Vertices of
+// one node in one place are one, if they move alike. Buffers lie in the file, or beside it in `folder`. Refused
+// besides: compression. Left out, with a note: points.
 MeshFile read_gltf(std::string_view bytes, const std::string& name, const std::string& folder);
 
 // Text that read_obj() reads to the same mesh, groups left out: the same bits in the same order.

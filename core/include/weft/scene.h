@@ -177,7 +177,7 @@ struct Collider {
   // Path of its place: a center, a plane's point, the end a of an axis, a mesh's translate.
   std::vector<Key> keys;
   bool cuts = false;  // cuts the constraints that pass through it instead of pushing
-  // Of a mesh: where its vertices are over time, placed as it is: .pc2 or .mdd, beside the scene file or absolute.
+  // Of a mesh: its vertices over time, placed as it is: .pc2, .mdd, .glb or .gltf beside the scene file, or absolute.
   std::string animation{};
   friend bool operator==(const Collider&, const Collider&) = default;
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "scene/json_text.h"
 #include "scene/mesh/faces.h"
 #include "weft/point_cache.h"
 
@@ -34,6 +35,19 @@ double shortest_square(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
   return shortest;
 }
 
+// Files of as many vertices in another order are no fault by their counts.
+void note_other_order(const MeshBody& body, const std::string& place,
+                      std::vector<std::string>& notes) {
+  constexpr double kLonger = 3;  // edges of a body that bends and grows are hardly so at its start
+  const double edge = mean_edge(body);
+  const double moved = mean_edge_at(*body.shape, placed_vertices(body, *body.motion, 0));
+  if (moved > kLonger * edge || kLonger * moved < edge)
+    notes.push_back(place + ": as the animation begins, edges of the mesh are " +
+                    number_words(moved / edge) +
+                    " times as long as in its file, in the mean; its vertices may be in another "
+                    "order");
+}
+
 }  // namespace
 
 std::optional<Fault> fault_of_motion(const MeshBody& body, const std::string& place) {
@@ -57,12 +71,15 @@ std::optional<Fault> fault_of_motion(const MeshBody& body, const std::string& pl
 }
 
 bool read_motion(const std::string& name, const std::string& folder, MeshBody& body,
-                 const std::string& place, std::vector<Fault>& faults) {
+                 const std::string& place, std::vector<Fault>& faults,
+                 std::vector<std::string>& notes) {
   PointCacheFile file = read_point_cache((std::filesystem::path(folder) / name).string(),
                                          int(body.shape->vertices.size()));
   for (Fault& fault : file.faults)
     faults.push_back({place, fault.place + ": " + fault.what, fault.allowed});
+  notes.insert(notes.end(), file.notes.begin(), file.notes.end());
   body.motion = file.cache;
+  if (body.motion) note_other_order(body, place, notes);
   return file.faults.empty();
 }
 

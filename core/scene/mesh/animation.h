@@ -11,7 +11,8 @@ std::optional<Fault> fault_of_motion(const MeshBody& body, const std::string& pl
 
 // Reads the animation of a body whose mesh is read; false where it is faulty. `place`: in the scene.
 bool read_motion(const std::string& name, const std::string& folder, MeshBody& body,
-                 const std::string& place, std::vector<Fault>& faults);
+                 const std::string& place, std::vector<Fault>& faults,
+                 std::vector<std::string>& notes);
 
 // What is wrong with the animation of a collider.
 void check_animation(const Collider& collider, const std::string& place, Check& result);

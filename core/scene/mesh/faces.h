@@ -39,6 +39,9 @@ std::optional<Fault> fault_of(const MeshSource& mesh, const std::string& place);
 // Where the scene has points that a file has.
 void put(const MeshSource& mesh, std::vector<Vec3>& points);
 
+// The mean length of the edges of a mesh whose vertices lie so; inner edges count twice.
+double mean_edge_at(const TriangleMesh& mesh, const std::vector<Vec3>& x);
+
 // What keeps a mesh from being cloth with its shape at rest.
 std::optional<Fault> fault_of_rest(const ClothMesh& mesh, const std::string& place);
 

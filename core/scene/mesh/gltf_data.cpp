@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kMaxOffset = std::size_t{1} << 40;
 constexpr std::size_t kMaxBuffers = 10000;
+constexpr std::size_t kMostNumbers = kMaxMeshBytes / 4;  // as many as fit the largest file
 
 struct Component {
   std::size_t code, bytes;
@@ -83,10 +84,7 @@ GltfData::GltfData(const GltfValue& document, std::optional<std::string_view> bi
 }
 
 GltfValue GltfData::accessor(std::size_t n) const {
-  const GltfValue found = document_.at("accessors").item(n);
-  if (const auto sparse = found.find("sparse"))
-    sparse->refuse("the accessor is sparse", "accessors that list all values");
-  return found;
+  return document_.at("accessors").item(n);
 }
 
 std::size_t GltfData::count(std::size_t n, std::size_t most) const {
@@ -98,21 +96,48 @@ std::vector<double> GltfData::numbers(std::size_t n, const char* type) {
   if (from.at("type").words() != type)
     from.at("type").refuse(brief(Json(from.at("type").words())) + " is out of place", type);
   const std::string_view name = type;
-  const std::size_t width = name == "VEC3" ? 3 : name == "VEC2" ? 2 : 1;
+  const std::size_t width = name == "SCALAR" ? 1
+                            : name == "VEC2" ? 2
+                            : name == "VEC3" ? 3
+                            : name == "VEC4" ? 4
+                                             : 16;
   const Component component = component_of(from);
+  if (width == 16 && !component.real)
+    from.at("componentType").refuse("the matrices are of whole numbers", "5126");
   const auto normalised = from.find("normalized");
-  const std::size_t count = from.at("count").whole(3 * kMaxTriangles);
-  if (!from.find("bufferView")) return std::vector<double>(width * count);
-  const Span span = span_of(from, count, width * component.bytes);
-  std::vector<double> values;
-  values.reserve(width * count);
-  for (std::size_t e = 0; e < count; ++e)
+  const bool shares = normalised && normalised->is_true();
+  const std::size_t count = from.at("count").whole(kMostNumbers / width);
+  numbers_ += width * count;
+  if (numbers_ > kMostNumbers)
+    from.refuse("the accessors list more numbers than fit",
+                std::to_string(kMostNumbers) + " of all, each time that one is used");
+  std::vector<double> values(width * count);
+  const auto read = [&](const Span& span, std::size_t e, std::size_t to) {
     for (std::size_t k = 0; k < width; ++k) {
       const char* at = span.bytes.data() + e * span.stride + k * component.bytes;
-      values.push_back(value_of(at, component, normalised && normalised->is_true()));
-      if (!std::isfinite(values.back()))
-        from.refuse("element " + std::to_string(e) + " is not finite", "finite numbers");
+      values[width * to + k] = value_of(at, component, shares);
+      if (!std::isfinite(values[width * to + k]))
+        from.refuse("element " + std::to_string(to) + " is not finite", "finite numbers");
     }
+  };
+  if (from.find("bufferView")) {
+    const Span span = span_of(from, count, width * component.bytes);
+    for (std::size_t e = 0; e < count; ++e) read(span, e, e);
+  }
+  const auto sparse = from.find("sparse");
+  if (!sparse) return values;
+  const std::size_t few = sparse->at("count").whole(count);
+  const GltfValue indices = sparse->at("indices");
+  const Component whole = component_of(indices);
+  const Span places = span_of(indices, few, whole.bytes);
+  const Span given = span_of(sparse->at("values"), few, width * component.bytes);
+  for (std::size_t e = 0; e < few; ++e) {
+    const double to = value_of(places.bytes.data() + e * places.stride, whole, false);
+    if (whole.real || !(to >= 0 && to < double(count)))
+      indices.refuse("index " + std::to_string(e) + " is " + number_words(to),
+                     "0 to " + std::to_string(count) + " less 1, the elements");
+    read(given, e, std::size_t(to));
+  }
   return values;
 }
 

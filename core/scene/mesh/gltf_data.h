@@ -15,8 +15,9 @@ class GltfData {
 
   // How many elements the accessor has; refused above `most`.
   std::size_t count(std::size_t accessor, std::size_t most) const;
-  // The numbers of an accessor, element after element, each of `type` ("SCALAR", "VEC2", "VEC3"); normalised
-  // integers as what they stand for. Refused: another type, what is not finite, what lies outside of its buffer.
+  // The numbers of an accessor, element after element, each of `type` ("SCALAR", "VEC2", "VEC3", "VEC4", or "MAT4",
+  // column after column); normalised integers as what they stand for, sparse ones in full. Refused: another type,
+  // what is not finite, what lies outside of its buffer, more than 2^28 numbers of all that is read.
   std::vector<double> numbers(std::size_t accessor, const char* type);
 
  private:
@@ -34,6 +35,7 @@ class GltfData {
   std::string folder_;
   std::vector<std::optional<std::string>> loaded_;  // buffers
   std::size_t loaded_bytes_ = 0;
+  std::size_t numbers_ = 0;  // read
 };
 
 }  // namespace weft::text

@@ -94,15 +94,18 @@ std::vector<Vec3> placed_vertices(const MeshSource& mesh) {
   return placed;
 }
 
-double mean_edge(const MeshSource& mesh) {
-  const std::vector<Vec3> x = placed_vertices(mesh);
+double text::mean_edge_at(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
   double sum = 0;
-  for (const auto& t : mesh.shape->triangles)
+  for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3 &a = x[std::size_t(t[k])], &b = x[std::size_t(t[(k + 1) % 3])];
       sum += std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
     }
-  return sum / (3 * double(mesh.shape->triangles.size()));
+  return sum / (3 * double(mesh.triangles.size()));
+}
+
+double mean_edge(const MeshSource& mesh) {
+  return text::mean_edge_at(*mesh.shape, placed_vertices(mesh));
 }
 
 void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& faults,
@@ -123,7 +126,7 @@ void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& fa
     if (!body || !body->shape) continue;
     const std::string place = "/colliders/" + std::to_string(n) + "/animation";
     if (!collider.animation.empty() && !body->motion &&
-        !text::read_motion(collider.animation, folder, *body, place, faults))
+        !text::read_motion(collider.animation, folder, *body, place, faults, notes))
       continue;
     if (!body->surface && !text::fault_of(*body, "") && !text::fault_of_motion(*body, ""))
       body->surface = surface_of(*body, scene.time.frame);

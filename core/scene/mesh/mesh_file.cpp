@@ -37,6 +37,10 @@ text::FileBytes text::bytes_of_file(const std::string& path, std::size_t most) {
   return file;
 }
 
+bool text::is_gltf_file(std::string_view path) {
+  return ends_in(path, ".glb") || ends_in(path, ".gltf");
+}
+
 bool is_mesh_file(std::string_view path) {
   return std::any_of(kEnds.begin(), kEnds.end(),
                      [&](std::string_view end) { return ends_in(path, end); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace weft::text {
 
@@ -11,5 +12,8 @@ struct FileBytes {
   const char *fault = nullptr, *allowed = nullptr;
 };
 FileBytes bytes_of_file(const std::string& path, std::size_t most);
+
+// Whether a file's name ends in .glb or .gltf, in letters of any size.
+bool is_gltf_file(std::string_view path);
 
 }  // namespace weft::text

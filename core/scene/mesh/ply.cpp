@@ -4,6 +4,7 @@
 
 #include "scene/mesh/ply_header.h"
 #include "scene/mesh/polygons.h"
+#include "scene/mesh/welding.h"
 #include "scene/mesh/words.h"
 
 namespace weft {
@@ -183,7 +184,7 @@ class Reader {
     });
     const std::size_t given = mesh().vertices.size();
     if (sound() && (uv[0] >= 0 || element.find("nx") >= 0)) {
-      numbers_ = weld(mesh().vertices, 0);
+      numbers_ = weld(mesh().vertices);
       note_welded(raw_, given - mesh().vertices.size());
     } else {
       for (std::size_t n = 0; n < given; ++n) numbers_.push_back(int(n));

@@ -6,7 +6,11 @@
 
 #include <bit>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+
+#include "scene/mesh/faces.h"
+#include "scene/mesh/mesh_file.h"
 
 namespace weft {
 namespace {
@@ -46,7 +50,7 @@ class Reader {
     const bool done = name_.ends_with(".pc2") ? pc2()
                       : name_.ends_with(".mdd")
                           ? mdd()
-                          : refuse("the file is of no known kind", ".pc2, .mdd");
+                          : refuse("the file is of no known kind", ".pc2, .mdd, .glb, .gltf");
     if (done) file_.cache = std::make_shared<const PointCache>(std::move(cache_));
     return std::move(file_);
   }
@@ -153,17 +157,24 @@ PointCacheFile parse_point_cache(std::string_view bytes, const std::string& name
 
 PointCacheFile read_point_cache(const std::string& path, int points) {
   const auto refuse = [&](const char* what, const char* allowed) {
-    return PointCacheFile{{}, {{path, what, allowed}}};
+    return PointCacheFile{{}, {{path, what, allowed}}, {}};
   };
+  if (text::is_gltf_file(path)) {
+    const text::FileBytes file = text::bytes_of_file(path, text::kMaxMeshBytes);
+    if (file.fault) return refuse(file.fault, file.allowed);
+    return read_gltf_motion(file.bytes, path, std::filesystem::path(path).parent_path().string(),
+                            points);
+  }
   std::ifstream in(path, std::ios::binary);
-  if (!in) return refuse("there is no such point cache", "a readable .pc2 or .mdd file");
+  if (!in)
+    return refuse("there is no such point cache", "a readable .pc2, .mdd, .glb or .gltf file");
   std::string bytes(1 << 16, '\0'), all;
   while (in.read(bytes.data(), std::streamsize(bytes.size())), in.gcount() > 0) {
     all.append(bytes, 0, std::size_t(in.gcount()));
     if (all.size() > kMostBytes) return refuse("the file is larger", "at most 1 GiB");
   }
   if (in.bad() || !in.eof())
-    return refuse("the file cannot be read", "a readable .pc2 or .mdd file");
+    return refuse("the file cannot be read", "a readable .pc2, .mdd, .glb or .gltf file");
   return parse_point_cache(all, path, points);
 }
 

@@ -1,7 +1,6 @@
 #include "scene/mesh/polygons.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace weft::text {
 namespace {
@@ -61,31 +60,6 @@ void Polygons::finish() {
   if (raw_.file.mesh.triangles.empty() && raw_.file.faults.empty())
     raw_.fault(0, "the mesh has no faces", "at least one");
   if (raw_.file.faults.empty()) repair(raw_);
-}
-
-std::vector<int> weld(std::vector<Vec3>& vertices, std::size_t first) {
-  const std::size_t count = vertices.size() - first;
-  std::vector<int> order(count), number(count);
-  std::iota(order.begin(), order.end(), 0);
-  const auto at = [&](int n) -> const Vec3& { return vertices[first + std::size_t(n)]; };
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return at(a) < at(b) || (!(at(b) < at(a)) && a < b); });
-  std::vector<int> original(count);
-  for (std::size_t n = 0; n < count; ++n) {
-    const bool copy = n > 0 && at(order[n]) == at(order[n - 1]);
-    original[std::size_t(order[n])] = copy ? original[std::size_t(order[n - 1])] : order[n];
-  }
-  std::size_t left = first;
-  for (std::size_t n = 0; n < count; ++n) {
-    if (original[n] == int(n)) {
-      vertices[left] = vertices[first + n];
-      number[n] = int(left++);
-    } else {
-      number[n] = number[std::size_t(original[n])];
-    }
-  }
-  vertices.resize(left);
-  return number;
 }
 
 void note_welded(const RawMesh& raw, std::size_t copies) {

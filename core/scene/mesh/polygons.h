@@ -25,10 +25,6 @@ class Polygons {
   int repeated_ = 0, first_repeated_ = 0;
 };
 
-// Makes one of the vertices, from `first` on, that lie in exactly one place, and keeps the order of those that
-// are left. Returns the new number of each of them.
-std::vector<int> weld(std::vector<Vec3>& vertices, std::size_t first);
-
 // Tells of so many vertices that were copies.
 void note_welded(const RawMesh& raw, std::size_t copies);
 
