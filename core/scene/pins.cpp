@@ -209,9 +209,6 @@ class Pins {
     if (pin.follow >= colliders)
       fault(here + "/follow", "there is no collider " + std::to_string(pin.follow),
             colliders == 0 ? "the scene has none" : "0 to " + std::to_string(colliders - 1));
-    else if (pin.follow >= 0 && !scene_.colliders[std::size_t(pin.follow)].animation.empty())
-      fault(here + "/follow", "collider " + std::to_string(pin.follow) + " has an animation",
-            "a collider that moves as it is, or keys of the pin's own");
   }
 
   const Scene& scene_;

@@ -52,9 +52,9 @@ struct Rotation {
 // Two opposite corners of a box along the axes, its faces included [m].
 using BoxCorners = std::array<Vec3, 2>;
 
-// A held particle of the grid, or, with j 0, particle i of a mesh. Its place is where it starts or where its
-// keys say, turned by its rotation, and then moved by as much as the collider that it follows has moved
-// since the start. Or several particles that are held alike: then keys say how far they are from their starts.
+// A held particle of the grid, or, with j 0, particle i of a mesh. Its place is where it starts or where its keys
+// say, turned by its rotation, then moved by as much as the collider that it follows, or the nearest point of an
+// animated one, has moved since the start. Several particles held alike: keys say how far they are from their starts.
 struct Pin {
   int i = 0;  // column, 0 … nx-1; of a mesh the vertex
   int j = 0;  // row, 0 … ny-1

@@ -9,7 +9,6 @@
 #include "physics/model/lattice/stability.h"
 #include "physics/model/path.h"
 #include "physics/model/segment_distance.h"
-#include "weft/shape.h"
 
 namespace weft::physics {
 namespace {
@@ -111,8 +110,7 @@ double LatticeModel::limited_strain() const {
 Vec3 LatticeModel::pin_position(const Pin& pin, double time) const {
   const Vec3 alone = pin_alone_at(parts_.cloth, pin, time);
   if (pin.follow < 0) return alone;
-  const auto n = std::size_t(pin.follow);
-  return plus(alone, minus(displacement(parts_.scene.colliders[n], time), first_moves_[n]));
+  return plus(alone, followed_.way(pin, time));
 }
 
 double LatticeModel::greatest_coordinate(const Rows& x) const {

@@ -7,7 +7,7 @@
 #include "physics/model/lattice/cuts.h"
 #include "physics/model/lattice/plain_rows.h"
 #include "physics/model/number.h"
-#include "weft/shape.h"
+#include "physics/model/path.h"
 
 namespace weft::physics {
 namespace {
@@ -29,9 +29,9 @@ LatticeModel::LatticeModel(const Scene& scene, int index, Method method, std::ui
                             keeps_previous(scene.solver, method))),
       parts_{{scene, scene.cloths[std::size_t(index)], method_, lattice_, kernels, *this},
              lattice_,
-             stencils_,
-             first_moves_} {
-  for (const Collider& c : scene.colliders) first_moves_.push_back(displacement(c, 0));
+             stencils_},
+      followed_(scene, parts_.cloth,
+                [&](const Pin& pin) { return pin_alone_at(parts_.cloth, pin, 0); }) {
   const bool cut = std::any_of(scene.colliders.begin(), scene.colliders.end(),
                                [](const Collider& c) { return c.cuts; });
   if (cut || parts_.cloth.tear_strain > 0 || !parts_.cloth.cuts.empty()) allow_tearing();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/model/cloth_model.h"
+#include "physics/model/followed.h"
 #include "physics/model/lattice/membrane.h"
 #include "physics/model/lattice/stages.h"
 #include "physics/model/lattice/tearing.h"
@@ -67,8 +68,8 @@ class LatticeModel final : public ClothModel {
   Method method_;
   std::vector<Stencil> stencils_;
   Lattice lattice_;
-  std::vector<Vec3> first_moves_;  // of colliders
   LatticeParts parts_;
+  Followed followed_;
   std::unique_ptr<Multipliers> multipliers_, limit_forces_;
   std::unique_ptr<Rows> corrections_;
   std::unique_ptr<History> history_;

@@ -20,8 +20,6 @@ class LatticeTearing;
 struct LatticeParts : ClothParts {
   Lattice& lattice;
   const std::vector<Stencil>& stencils;
-  // How far every collider was from where its shape stands as the run began [m].
-  const std::vector<Vec3>& first_moves;
   LatticeTearing* tearing = nullptr;  // null: the cloth cannot tear
   // By row, written by the springs: whether a constraint was too long; null: they do not tell.
   std::uint8_t* overlong = nullptr;

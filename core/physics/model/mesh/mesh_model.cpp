@@ -11,7 +11,6 @@
 #include "physics/model/path.h"
 #include "physics/model/push.h"
 #include "physics/model/segment_distance.h"
-#include "weft/shape.h"
 
 namespace weft::physics {
 namespace {
@@ -35,9 +34,10 @@ MeshModel::MeshModel(const Scene& scene, int index, Method method, std::uint64_t
       particles_(order_.counts, false, order_.vertices),
       seams_(surface_.sewn, particles_),
       parts_{scene, scene.cloths[std::size_t(index)], method_, particles_, kernels, *this},
+      followed_(scene, parts_.cloth,
+                [&](const Pin& pin) { return pin_alone_at(pin, start_[std::size_t(pin.i)], 0); }),
       edges_(edges_of(mesh_, rest_.x)) {
   if (rest_.uv_scale > 0) take_lengths(triangles_, edges_);
-  for (const Collider& c : scene.colliders) first_moves_.push_back(displacement(c, 0));
   const auto lane = [&](int p) { return std::uint32_t(particles_.lane(p)); };
   for (int p = 0; p < particles_.count(); ++p) drawn_.lanes.push_back(lane(p));
   for (const auto& [a, b, c] : mesh_.triangles)
@@ -215,8 +215,7 @@ void MeshModel::append_limits(StageList& list) {
 Vec3 MeshModel::pin_position(const Pin& pin, double time) const {
   const Vec3 alone = pin_alone_at(pin, start_[std::size_t(pin.i)], time);
   if (pin.follow < 0) return alone;
-  const auto n = std::size_t(pin.follow);
-  return plus(alone, minus(displacement(parts_.scene.colliders[n], time), first_moves_[n]));
+  return plus(alone, followed_.way(pin, time));
 }
 
 double MeshModel::stiffening(double stretch) const {

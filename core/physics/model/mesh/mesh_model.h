@@ -2,6 +2,7 @@
 // the mesh; in memory they lie in rows of breadth-first levels (mesh_order.h).
 #pragma once
 
+#include "physics/model/followed.h"
 #include "physics/model/mesh/gas_load.h"
 #include "physics/model/mesh/mesh_sweeps.h"
 #include "physics/model/mesh/seams.h"
@@ -80,10 +81,10 @@ class MeshModel final : public ClothModel {
   Particles particles_;
   Seams seams_;
   ClothParts parts_;
-  std::vector<double> masses_;     // kg, of every particle
-  std::vector<Vec3> first_moves_;  // of colliders
-  MeshEdges edges_;                // each once
-  std::unique_ptr<GasLoad> gas_;   // null: the cloth has no pressure
+  std::vector<double> masses_;  // kg, of every particle
+  Followed followed_;
+  MeshEdges edges_;               // each once
+  std::unique_ptr<GasLoad> gas_;  // null: the cloth has no pressure
   std::unique_ptr<MeshSweeps> sweeps_;
   std::unique_ptr<History> history_;
   std::unique_ptr<Rows> corrections_;         // of tethers

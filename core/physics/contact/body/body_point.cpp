@@ -1,0 +1,47 @@
+#include "weft/body_point.h"
+
+#include "physics/contact/body/body_surface.h"
+#include "physics/contact/colliders/shapes.h"
+
+namespace weft {
+
+using namespace physics;
+
+namespace {
+
+Vec3 place_at(const Collider& collider, double time) {
+  return plus(place_of(collider.shape), displacement(collider, time));
+}
+
+// Along the first edge, across it, and along the normal; any where the triangle has no area.
+std::array<Vec3, 3> axes_of(const Triangle& t) {
+  const Vec3 edge = minus(t[1], t[0]);
+  const Vec3 along = times(edge, 1 / length(edge));
+  const Vec3 normal = cross(along, minus(t[2], t[0]));
+  const double height = length(normal);
+  const Vec3 up = height > 0 ? times(normal, 1 / height) : across(along)[0];
+  return {along, cross(up, along), up};
+}
+
+}  // namespace
+
+BodyPoint body_point(const Collider& collider, double time, const Vec3& place) {
+  const BodyMoment moment = surface_of(collider)->at(time);
+  const Vec3 p = minus(place, place_at(collider, time));
+  const BodyMoment::Point nearest = moment.nearest(p);
+  BodyPoint point{nearest.triangle, nearest.weights, {}};
+  const Vec3 off = minus(p, moment.on(point.triangle, point.weights));
+  const std::array<Vec3, 3> axes = axes_of(moment.corners(point.triangle));
+  for (std::size_t k = 0; k < 3; ++k) point.off[k] = dot(off, axes[k]);
+  return point;
+}
+
+Vec3 position_of(const Collider& collider, double time, const BodyPoint& point) {
+  const BodyMoment moment = surface_of(collider)->at(time);
+  const std::array<Vec3, 3> axes = axes_of(moment.corners(point.triangle));
+  Vec3 p = plus(place_at(collider, time), moment.on(point.triangle, point.weights));
+  for (std::size_t k = 0; k < 3; ++k) p = plus(p, times(axes[k], point.off[k]));
+  return p;
+}
+
+}  // namespace weft
