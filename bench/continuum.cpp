@@ -71,7 +71,6 @@ Problem problem_of(const Sheet& sheet, int n) {
   weft::Cloth& cloth = scene.cloths.emplace_back();
   cloth.grid = {n, n, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 0};
   cloth.density = 0.3;
-  cloth.stiffness = {};
   cloth.drag = 1;
   sheet.fabric(cloth);
   for (int j = 0; j < n; ++j) cloth.pins.push_back({0, j, {}});
