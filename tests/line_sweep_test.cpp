@@ -47,12 +47,10 @@ Sheet crumpled(int nx, int ny, Stencil stencil, double gradient = 0) {
 void sweep(Sheet& s, Simd simd, const LineOptions& options, int threads = 1) {
   const KernelTable& kernels = kernel_table(simd);
   const auto model = make_model(s.scene, 0, s.scene.solver.method, 1, kernels);
-  const std::vector<Vec3> first_moves;
   const LatticeParts parts{
       {s.scene, s.scene.cloths[0], s.scene.solver.method, s.lattice, kernels, *model},
       s.lattice,
-      s.stencils,
-      first_moves};
+      s.stencils};
   Threads pool(threads);
   Rows corrections(s.lattice.rows, s.lattice.stride);
   make_line(parts, corrections, options)->run_alone(s.lattice.rows, {kDt, kDt, 0}, pool);

@@ -138,6 +138,87 @@ TEST(MeshFollow, DistancesFromTheSurfaceAreKept) {
   EXPECT_NEAR(now[q + 1], 0.3 + 0.1 * t + 0.25 * t, 1e-5);
 }
 
+// A pin far off a body that turns goes faster than any vertex of it: that is what it drives the sheet by.
+TEST(MeshFollow, FarOffABodyThatTurnsNoEnergyComesFromNowhere) {
+  const auto turns = [](const Vec3& p, double time) {
+    const double a = 6 * time, c = std::cos(a), s = std::sin(a);
+    return Vec3{c * p[0] - s * p[2], p[1], s * p[0] + c * p[2]};
+  };
+  for (const bool lines : {false, true})
+    for (const bool follows : {false, true}) {
+      Scene scene;
+      scene.cloths.push_back(flat_sheet(8, 0.5, {2.3, 0, 0}));
+      scene.solver.method = Method::compliant;
+      scene.solver.sweep = lines ? Sweep::line : Sweep::gauss_seidel;
+      scene.colliders.push_back(animated(tests::ball(17, 11, 0.05), turns));
+      Elsewhere{}.put(scene.colliders[0]);
+      for (int i = 0; i < 8; ++i) {
+        Pin pin{i, 0, {}, {}, follows ? 0 : -1};
+        if (!follows) pin.rotate = {{0, -1, 0}, {}, {{0, 0}, {1, 6 * 180 / 3.14159265358979}}};
+        scene.cloths[0].pins.push_back(pin);
+      }
+      Simulation run(scene, {.threads = 1});
+      for (int n = 0; n < 40; ++n) {
+        run.advance_frame();
+        ASSERT_EQ(run.status().text, "ok") << n << ' ' << lines << follows;
+      }
+      for (const std::string& note : run.plan().notes)
+        EXPECT_EQ(note.find("energy"), std::string::npos) << note << lines << follows;
+    }
+}
+
+// Between two samples a body may be turned inside out.
+TEST(MeshFollow, ABodyWithoutExtentHasAPlaceForItsPins) {
+  const auto flips = [](const Vec3& p, double time) {
+    const double share = std::clamp(1 - 4 * time, -1.0, 1.0);
+    return Vec3{share * p[0], share * p[1], share * p[2]};
+  };
+  auto cache = std::make_shared<PointCache>();
+  const auto ball = tests::ball(17, 11, 0.25);
+  cache->points = int(ball->vertices.size());
+  for (const double time : {0.0, 0.5}) {
+    cache->times.push_back(float(time));
+    for (const Vec3& p : ball->vertices) {
+      const Vec3 q = flips(p, time);
+      cache->places.push_back({float(q[0]), float(q[1]), float(q[2])});
+    }
+  }
+  Collider c = animated(ball, flips);
+  std::get<MeshBody>(c.shape).motion = cache;
+  Scene scene = hung(false, {});
+  scene.time.substeps = 10;
+  scene.colliders.push_back(c);
+  Elsewhere{}.put(scene.colliders[0]);
+  Simulation run(scene, {.threads = 1});
+  for (int n = 0; n < 40; ++n) run.advance_frame();
+  EXPECT_TRUE(run.status().ok) << run.status().text;
+}
+
+// Vertices of a mesh lie in rows, of which its pins know nothing.
+TEST(MeshFollow, APinThatBeginsToMoveWakesTheSheet) {
+  const auto late = [](const Vec3& p, double time) {
+    return Vec3{p[0] + std::max(0.0, time - 0.5), p[1], p[2]};
+  };
+  for (const bool keys : {false, true})
+    for (const int corner : {0, 119}) {
+      Scene scene;
+      scene.gravity = {};
+      Cloth& cloth = scene.cloths.emplace_back();
+      cloth.mesh.shape = made_up({.nx = 120, .ny = 5, .width = 6, .height = 0.2});
+      cloth.drag = 1;
+      scene.solver.sleep = 1e-3;
+      scene.colliders.push_back(animated(tests::ball(17, 11, 0.05), late));
+      Elsewhere{{0, -1, 0}}.put(scene.colliders[0]);
+      const Vec3 at = placed_vertices(cloth.mesh)[std::size_t(corner)];
+      Pin pin{corner, 0, {}, {}, keys ? -1 : 0};
+      if (keys) pin.keys = {{0, at}, {0.5, at}, {1, {at[0] + 0.5, at[1], at[2]}}};
+      cloth.pins = {pin};
+      Simulation run(scene, {.threads = 2});
+      while (run.time() < 1) run.advance_frame();
+      EXPECT_NEAR(run.positions()[3 * std::size_t(corner)], at[0] + 0.5, 0.02) << keys << corner;
+    }
+}
+
 TEST(MeshFollow, SameBitsForAnyThreads) {
   Scene scene = hung(true, {});
   scene.colliders.push_back(animated(tests::ball(17, 11, 0.2), rigid));

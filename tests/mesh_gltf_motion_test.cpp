@@ -162,6 +162,20 @@ TEST(MeshGltfMotion, NodesCarryWhatIsBelowThem) {
   EXPECT_GT(most, 1e-7);
 }
 
+// However soon it comes after the one before.
+TEST(MeshGltfMotion, TheLastKeyIsWhereTheMotionEnds) {
+  for (const double last : {1.00005, 1.5}) {
+    GltfMaker file;
+    const auto ball = tests::ball(9, 7, 1);
+    file.mesh(*ball);
+    file.node({{"mesh", 0}});
+    file.channel(0, "translation", {0, 1, last}, {0, 0, 0, 0, 0, 0, 3, 0, 0});
+    const PointCacheFile read = motion_of(file);
+    ASSERT_TRUE(read.cache) << told(read);
+    EXPECT_NEAR(place_of(*read.cache, 0, 2)[0], ball->vertices[0][0] + 3, 1e-5) << last;
+  }
+}
+
 TEST(MeshGltfMotion, CubicSplinesAndSteps) {
   const auto mesh = tests::box({0.5, 0.5, 0.5});
   GltfMaker file;

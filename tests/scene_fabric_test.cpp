@@ -127,8 +127,8 @@ TEST(Fabrics, AreFaultedWhereTheySayNothing) {
   EXPECT_NE(told(read(R"("fabric": ["silk"])").faults).find("/cloths/0/fabric"), std::string::npos);
   // All that it stands for is given: as of a course scene, whose values are all given.
   const std::string nothing =
-      "/cloths/0/fabric: the fabric gives nothing: density, membrane, bending and friction are all "
-      "given (one of them left out, or no fabric)\n";
+      "/cloths/0/fabric: the fabric gives nothing: density, membrane or springs, bending and "
+      "friction are given (one of them left out, or no fabric)\n";
   EXPECT_EQ(told(read(R"("fabric": "silk", "density": 1, "stiffness": {}, "bending": 0,
       "self_collision": {"friction": 0})")
                      .faults),

@@ -82,11 +82,13 @@ Json values_of(const Fabric& fabric, Method method, const Json& cloth) {
   if (file && file->is_string()) made.mesh.file = file->get<std::string>();
   make_of(fabric, method, made);
   const Json all = std::move(document_of(scene)["cloths"][0]);
-  const bool springs = member(cloth, "stiffness") || member(cloth, "spring_damping");
+  const bool springs =
+      member(cloth, "stiffness") || member(cloth, "spring_damping") || member(cloth, "level");
   Json values = Json::object();
   values["density"] = all["density"];
   if (method == Method::positional)
-    values["stiffness"] = all["stiffness"];
+    values["stiffness"] =
+        made.mesh.given() ? Json{{"structural", made.stiffness.structural}} : all["stiffness"];
   else if (!springs)
     values["membrane"] = all["membrane"];
   values["bending"] = all["bending"];
@@ -111,7 +113,7 @@ void unfold_fabrics(Json& document, Check& result) {
     if (!fill(cloth, values_of(*fabric, positional ? Method::positional : Method::spring, cloth)))
       result.fault(
           "/cloths/" + std::to_string(c) + "/fabric",
-          "the fabric gives nothing: density, membrane, bending and friction are all given",
+          "the fabric gives nothing: density, membrane or springs, bending and friction are given",
           "one of them left out, or no fabric");
   }
 }

@@ -89,14 +89,25 @@ double fastest_drive(const Scene& scene, double from, double to) {
 
 }  // namespace
 
+double fastest_follower(const ClothStep& step, double from, double to) {
+  const ClothModel& model = step.model();
+  double most = 0;
+  for (const Pin& p : step.cloth().pins)
+    if (p.follow >= 0 && to > from)
+      most = std::max(
+          most, distance(model.pin_position(p, from), model.pin_position(p, to)) / (to - from));
+  return most;
+}
+
 bool gained(const Scene& scene, const ClothStep& step, const Rows& x, const Rows& v, double dt,
             double start, double end) {
   constexpr double kMore = 2;
   const Particles& l = step.particles();
   const EnergySum before = motion(scene, step, x, v), now = motion(scene, step, l.x, l.v);
   double put_in = std::max(0.0, before.potential - now.potential);
-  if (const double speed = kMore * fastest_drive(scene, start, end); speed > 0)
-    put_in += 0.5 * free_mass(l) * speed * speed;
+  const double speed =
+      kMore * std::max(fastest_drive(scene, start, end), fastest_follower(step, start, end));
+  if (speed > 0) put_in += 0.5 * free_mass(l) * speed * speed;
   const double inner = now.kinetic + step.model().held_energy(l.x, dt);
   // EnergySum alone accounts for most frames.
   if (inner <= kMore * before.kinetic + put_in) return false;

@@ -18,6 +18,10 @@
 
 namespace weft::physics {
 
+// The greatest mean speed of a cloth's pins that follow bodies, between two times [m/s]: such a pin may be far off a
+// body that turns.
+double fastest_follower(const ClothStep& step, double from, double to);
+
 // Whether the motion and elastic energy of a cloth, as the method feels it, is more than twice what it
 // was at `start` with positions x and velocities v, and besides more than what gravity, paths and wind
 // can have put in until `end`.

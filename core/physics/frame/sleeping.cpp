@@ -58,7 +58,7 @@ Sleeping::Sleeping(const Scene& scene, const Cloths& cloths, const KernelTable& 
     std::copy_n(l.inverse_mass.data(), l.inverse_mass.size(), r.masses.data());
     r.reach = std::max(step->reach(), 2);
     for (const Pin& pin : step->cloth().pins)
-      if (pin.moves()) r.moving.push_back(&pin);
+      if (pin.moves()) r.moving.push_back({&pin, l.place(particle_number(step->cloth(), pin))});
     const int height = sleeps_in_blocks(scene, *step) ? kBlockRows : l.rows;
     for (int j = 0; j < l.rows; j += height)
       r.blocks.push_back({{j, std::min(j + height, l.rows)}, 0, false, false, {}});
@@ -83,9 +83,9 @@ bool Sleeping::is_quiet(const Resting& cloth, const Block& block, const Rows& be
     if (!quiet) return false;
   }
   // A pin on a path that was let go is held anew by its path as long as it sleeps.
-  return std::none_of(cloth.moving.begin(), cloth.moving.end(), [&](const Pin* pin) {
-    return pin->j >= block.rows.begin && pin->j < block.rows.end &&
-           cloth.masses[std::size_t(pin->j) * l.stride + pin->i] > 0;
+  return std::none_of(cloth.moving.begin(), cloth.moving.end(), [&](const Moving& pin) {
+    return block.rows.has(pin.at.j) &&
+           cloth.masses[std::size_t(pin.at.j) * l.stride + pin.at.i] > 0;
   });
 }
 
@@ -153,10 +153,10 @@ bool Sleeping::met_by_collider(const Block& block, double time) const {
 
 // Whether a pin of the block is about to move along its path.
 bool Sleeping::pulled(const Resting& cloth, const Block& block, double time) const {
-  return std::any_of(cloth.moving.begin(), cloth.moving.end(), [&](const Pin* pin) {
-    return pin->j >= block.rows.begin && pin->j < block.rows.end &&
-           cloth.step->model().pin_position(*pin, time) !=
-               cloth.step->model().pin_position(*pin, time + scene_.time.frame);
+  const ClothModel& model = cloth.step->model();
+  return std::any_of(cloth.moving.begin(), cloth.moving.end(), [&](const Moving& pin) {
+    return block.rows.has(pin.at.j) && model.pin_position(*pin.pin, time) !=
+                                           model.pin_position(*pin.pin, time + scene_.time.frame);
   });
 }
 

@@ -55,10 +55,14 @@ class Sleeping {
     bool quiet = false, asleep = false;
     Spread box{};  // of its particles now and a frame later; only where something may come near
   };
+  struct Moving {  // a pin on a path
+    const Pin* pin;
+    Particles::Place at;
+  };
   struct Resting {
     ClothStep* step = nullptr;
     AlignedArray<float> masses;
-    std::vector<const Pin*> moving;  // pins on paths
+    std::vector<Moving> moving;
     std::vector<Block> blocks;
     std::vector<RowSpan> awake;
     int reach = 0;  // rows, of the stages

@@ -116,11 +116,14 @@ class Tethers final : public RowStage {
 
   // From the paths, not from the particles, whose other rows are in other substeps.
   void follow_pins(Slot& slot, int j, double time) {
+    const Pin* last = nullptr;  // neighbours mostly have the same
+    Vec3 x{};
     for (int i = 0; i < parts_.particles.count(j); ++i) {
       const int number = pin_of(slot, j, i);
       const Pin* pin = number < 0 ? nullptr : moving_[std::size_t(number)];
       if (!pin) continue;
-      const Vec3 x = parts_.model.pin_position(*pin, time);
+      if (pin != last) x = parts_.model.pin_position(*pin, time);
+      last = pin;
       for (std::size_t k = 0; k < 3; ++k)
         slot.pin.at(int(k), slot.row[std::size_t(j)], i) = float(x[k]);
     }

@@ -24,12 +24,12 @@ class Schedule {
   Schedule(const Stages& stages, int rows, std::size_t row_bytes,
            std::optional<std::size_t> second = {});
 
-  // Rows outside `awake` are passed over (empty: none). The `record` keeps all rows as they are before
+  // Rows outside `awake` are passed over (empty: none). The `observer` keeps all rows as they are before
   // and looks at them after. Parts are those of a single substep.
   void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {},
            RowObserver* observer = nullptr, Part part = Part::whole);
 
-  // Adds to ticks[q] the time that stage q took.
+  // Adds to nanoseconds[q] the time that stage q took.
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds);
   bool profiled() const { return !profile_.empty(); }
 

@@ -57,6 +57,7 @@ enum class Velocities { used, left_alone, from_sweeps };
 // Rows begin … end-1.
 struct RowSpan {
   int begin = 0, end = 0;
+  bool has(int row) const { return row >= begin && row < end; }
 };
 
 // What is told of rows as a frame comes to them first, and as it leaves them last.
@@ -108,8 +109,9 @@ class Stage {
 using Stages = std::vector<std::unique_ptr<Stage>>;
 
 // Works on one row after another: work on row j may read and write rows j … j+reach of the lattice,
-// and comes in the order j = 0, 1, 2 … within a substep, but where rows are apart. A stage of more reach may carry data from row to row in buffers of its own, one set per
-// slot. It overrides run for one row, or for a range of rows.
+// and comes in the order j = 0, 1, 2 … within a substep, unless rows are apart. A stage of more reach may
+// carry data from row to row in buffers of its own, one set per slot. It overrides run for one row, or for
+// a range of rows.
 class RowStage : public Stage {
  public:
   RowStage(std::string stage_name, std::string stage_detail, int rows_reached, std::int64_t touched,

@@ -9,7 +9,7 @@
 // nothing else. Tiles of several chunks are under way at once, without a barrier, and a tile's rows
 // stay in the cache for all its substeps (time skewing: Wonnacott 2000; Strzodka et al. 2011). The
 // first and the last chunks of a frame are shorter, but of a tall sheet: the later threads can begin
-// sooner, and the earlier ones have work for longer. A substep by itself runs stage after stage.
+// sooner, and the earlier ones have work for longer. On several threads, a substep by itself runs stage after stage.
 #pragma once
 
 #include <atomic>
@@ -31,12 +31,12 @@ class Wavefront {
   // What stages work out of the length of substeps [s]; run() does so, too, where that has not been done.
   void prepare(double dt);
 
-  // Only the rows of `awake` are worked on, spans in order and apart; empty: all rows. The `record`
+  // Only the rows of `awake` are worked on, spans in order and apart; empty: all rows. The `observer`
   // keeps all rows as they are before, and looks at them after.
   void run(const Substeps& substeps, Threads& threads, std::span<const RowSpan> awake = {},
            RowObserver* observer = nullptr);
 
-  // Adds to ticks[q] the time that stage q took; off when null.
+  // Adds to nanoseconds[q] the time that stage q took; off when null.
   void profile(std::span<std::atomic<std::int64_t>> nanoseconds) { profile_ = nanoseconds; }
 
  private:

@@ -18,6 +18,9 @@ namespace {
 
 using Uv = TriangleMesh::Uv;
 
+// Joints and targets of all nodes: some 100 MB.
+constexpr std::size_t kMostMovingParts = std::size_t{1} << 20;
+
 class Reader {
  public:
   Reader(const GltfValue& document, GltfData& data, const std::string& name, MeshFile& file)
@@ -55,6 +58,10 @@ class Reader {
     std::vector<Part> parts;
     for (std::size_t k = 0; k < primitives.size(); ++k)
       if (auto part = part_of(primitives.item(k), figure)) parts.push_back(std::move(*part));
+    moving_parts_ += figure.joints() + figure.targets();
+    if (moving_parts_ > kMostMovingParts)
+      node.at("mesh").refuse("the nodes' meshes have more joints and targets",
+                             std::to_string(kMostMovingParts) + " of all nodes together");
     const std::size_t given = figure.size(), first = mesh().vertices.size();
     const std::vector<int> numbers = figure.weld();
     copies_ += given - figure.size();
@@ -211,7 +218,7 @@ class Reader {
   std::vector<GltfFigure> figures_;
   std::map<std::string, std::set<int>> groups_;
   std::map<std::size_t, std::string> parts_;  // places of primitives by their first triangle
-  std::size_t triangles_ = 0, copies_ = 0;
+  std::size_t triangles_ = 0, copies_ = 0, moving_parts_ = 0;
   int left_out_ = 0;
 };
 

@@ -253,6 +253,14 @@ void GltfFigure::read_targets(bool all, std::span<const double> weights) {
   }
 }
 
+std::size_t GltfFigure::work() const {
+  constexpr std::size_t kTransform = 8;
+  std::size_t moving = 0;
+  for (const std::vector<Displacement>& target : targets_) moving += !target.empty();
+  return base_.size() * (1 + moving) + influences_.size() + kTransform * joints_.size() +
+         targets_.size();
+}
+
 std::vector<Vec3> GltfFigure::vertices(const GltfPose& pose) const {
   std::vector<Vec3> x = base_;
   const std::vector<double>& weights = pose.weights[node_];

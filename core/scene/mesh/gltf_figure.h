@@ -45,6 +45,9 @@ class GltfFigure {
 
   std::size_t node() const { return node_; }
   std::size_t targets() const { return target_count_; }
+  std::size_t joints() const { return joints_.size(); }
+  // About what vertices() costs, in multiplications of three numbers.
+  std::size_t work() const;
   // Where the vertices are; refused: beyond 1e9.
   std::vector<Vec3> vertices(const GltfPose& pose) const;
 

@@ -1,5 +1,5 @@
 // Values of a glTF document, each with its place, so that what is wrong is told where it is. Faults are thrown as
-// Refused and caught by read_gltf().
+// Refused and caught by read_gltf_file().
 #pragma once
 
 #include <optional>

@@ -51,6 +51,9 @@ SampledMotion choose_samples(std::vector<double> knots, double tolerance, std::s
     if (motion.times.empty() || time - motion.times.back() >= kLeastStep)
       motion.times.push_back(time);
   }
+  // The motion ends where the last knot says.
+  if (const float last = float(knots.back()); motion.times.back() != last)
+    motion.times.size() > 1 ? void(motion.times.back() = last) : motion.times.push_back(last);
   if (motion.times.size() > most) return motion;
   std::priority_queue<Interval> open;
   Places from = at(double(motion.times[0]));

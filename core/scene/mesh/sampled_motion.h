@@ -17,7 +17,7 @@ struct SampledMotion {
 // point that goes straight from sample to sample comes farther than `tolerance` from its way: at a quarter, the
 // middle or three quarters of the time between them. Of the intervals that do not hold, the worst is halved first,
 // until all hold, there are `most` samples, or they are 1e-4 s apart, below which rounding of places would be speed.
-// Knots that are closer are left out; where there are more than `most`, they are all that is told. `knots`: one at
+// Knots that are closer are left out, but the last; where there are more than `most`, they are all that is told. `knots`: one at
 // least, not negative; `at`: where all points are at a time.
 SampledMotion choose_samples(std::vector<double> knots, double tolerance, std::size_t most,
                              const std::function<std::vector<Vec3>(double time)>& at);

@@ -13,13 +13,16 @@ Vec3 place_at(const Collider& collider, double time) {
   return plus(place_of(collider.shape), displacement(collider, time));
 }
 
-// Along the first edge, across it, and along the normal; any where the triangle has no area.
+Vec3 unit_or(const Vec3& v, const Vec3& other) {
+  const double size = length(v);
+  return size > 0 ? times(v, 1 / size) : other;
+}
+
+// Along the first edge, across it, and along the normal; any where the edge has no length, or the triangle no area, as
+// between two samples it may.
 std::array<Vec3, 3> axes_of(const Triangle& t) {
-  const Vec3 edge = minus(t[1], t[0]);
-  const Vec3 along = times(edge, 1 / length(edge));
-  const Vec3 normal = cross(along, minus(t[2], t[0]));
-  const double height = length(normal);
-  const Vec3 up = height > 0 ? times(normal, 1 / height) : across(along)[0];
+  const Vec3 along = unit_or(minus(t[1], t[0]), unit_or(minus(t[2], t[0]), {1, 0, 0}));
+  const Vec3 up = unit_or(cross(along, minus(t[2], t[0])), across(along)[0]);
   return {along, cross(up, along), up};
 }
 
