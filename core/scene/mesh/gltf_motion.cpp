@@ -148,8 +148,8 @@ class Animation {
 
   std::size_t most_samples(std::size_t points) const {
     const std::size_t by_memory = kMaxMeshBytes / (sizeof(PointCache::Place) * points);
-    constexpr std::size_t kPoses = 10, kTransform = 8;
-    std::size_t work = kTransform * nodes_.shown().size();
+    constexpr std::size_t kPoses = 10, kNode = 64;  // its values are copied and turned into a place
+    std::size_t work = kNode * nodes_.shown().size();
     for (const GltfFigure& figure : figures_) work += figure.work();
     const std::size_t by_work = kMostWork / (kPoses * work);
     return std::max<std::size_t>(1, std::min({kMostSamples, by_memory, by_work}));
