@@ -142,7 +142,7 @@ std::vector<Vec3> starts_of(const Cloth& cloth) {
 }
 
 // How far pins draw the ends of an edge apart within some seconds, in lengths at the start: looked at at keys and
-// at times in between. What they follow moves both.
+// at times in between. What they follow is taken to move both alike, as it does unless it bends or turns.
 double stretch_between_pins(const Cloth& cloth, double seconds) {
   constexpr int kLooks = 64;
   std::map<int, Pin> pins;
