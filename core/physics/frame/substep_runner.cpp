@@ -30,7 +30,8 @@ void SubstepRunner::run(const Cloths& cloths, const Substeps& substeps, const Sl
   if (!apart) {
     std::size_t small = 0;
     for (const std::size_t c : apart_)
-      if (cloths[c]->schedule().worth_sharing(substeps.count, threads_.standing_by(), part))
+      if (cloths[c]->schedule().worth_sharing(cloths[c]->particles().count(), substeps.count,
+                                              threads_.standing_by(), part))
         run(c, threads_);
       else
         apart_[small++] = c;

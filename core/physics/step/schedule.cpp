@@ -13,10 +13,12 @@ namespace {
 // Rough cost of a constraint or particle, for sizing tasks only [ns].
 constexpr double kItemNs = 0.5;
 
-// From which work on, for one thread, several are faster [ns]: a run of rows alone, whose threads have to be woken or
-// stand by; a substep with whole stages, where threads meet several times. A frame of springs of 0.4 ms takes a fifth
-// longer on two threads, one of 0.9 ms as long, one of 1.7 ms three quarters.
-constexpr double kSharedRun = 6e5, kSharedStandingBy = 1.2e5, kSharedSubstep = 1.2e5;
+// From which work on several threads are faster than one. Particles times substeps, where one wavefront runs all
+// substeps: threads wait for each other at every tile, which on a busy machine may take long, so a sheet is to have
+// many of them, whatever they cost.
+constexpr double kSharedRun = 150000, kSharedStandingBy = 30000;
+// For one thread [ns]: a substep by itself, whose stages are shared out one by one; and cloths side by side.
+constexpr double kSharedSubstep = 1.2e5, kApart = 6e5, kApartStandingBy = 1.2e5;
 
 using Clock = std::chrono::steady_clock;
 
@@ -64,13 +66,12 @@ Schedule::Schedule(const Stages& stages, int rows, std::size_t row_bytes,
     for (const std::unique_ptr<Stage>& s : stages) cost.alone += double(s->items) * kItemNs;
 }
 
-// Threads meet at the end of the frame, or in every substep.
-bool Schedule::worth_sharing(int substeps, bool standing_by, Part part) const {
-  if (!rows_only()) return cost(part) >= kSharedSubstep;
-  return worth_running_apart(cost(part), substeps, standing_by);
+bool Schedule::worth_sharing(int particles, int substeps, bool standing_by, Part part) const {
+  if (!rows_only() || substeps == 1) return cost(part) >= kSharedSubstep;
+  return double(particles) * substeps >= (standing_by ? kSharedStandingBy : kSharedRun);
 }
 bool Schedule::worth_running_apart(double cost, int substeps, bool standing_by) {
-  return cost * substeps >= (standing_by ? kSharedStandingBy : kSharedRun);
+  return cost * substeps >= (standing_by ? kApartStandingBy : kApart);
 }
 
 // What several threads take tells by how much the work has grown since one did it, and bounds it.

@@ -36,9 +36,9 @@ class Schedule {
   // About what a substep costs one thread [ns]: as it was the last time, at first by what stages touch.
   double cost(Part part) const { return costs_[std::size_t(part)].alone; }
 
-  // Whether so many substeps are work enough for several threads, that stand by or have to be woken: of this cloth,
-  // or of several side by side that cost so much together, a thread each.
-  bool worth_sharing(int substeps, bool standing_by, Part part) const;
+  // Whether so many substeps of so many particles are work enough for several threads, that stand by or have to be
+  // woken: of this cloth, or of several side by side that cost so much together, a thread each.
+  bool worth_sharing(int particles, int substeps, bool standing_by, Part part) const;
   static bool worth_running_apart(double cost, int substeps, bool standing_by);
 
   // Whether one wavefront runs everything.
