@@ -2,10 +2,17 @@
 #include "physics/frame/frame_notes.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "physics/frame/projection_substep.h"
 #include "physics/model/number.h"
 
 namespace weft::physics {
+namespace {
+
+constexpr int kFramesBetweenLooks = 8;
+
+}  // namespace
 
 void add_once(std::vector<std::string>& notes, const std::string& note) {
   if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
@@ -15,7 +22,11 @@ void FrameNotes::look(const EndedFrame& frame, std::vector<std::string>& notes) 
   check_strain_limits(frame);
   note_clamps(frame, notes);
   note_stretch(frame, notes);
+  driven_ |= frame.driven;
+  // These looks take about as long as a sweep.
+  if (frame.number % kFramesBetweenLooks != 0) return;
   note_left_strain(frame, notes);
+  note_shaking(frame, notes);
 }
 
 void FrameNotes::check_strain_limits(const EndedFrame& frame) {
@@ -58,14 +69,10 @@ void FrameNotes::note_stretch(const EndedFrame& frame, std::vector<std::string>&
 }
 
 // Sweeps that leave strain keep energy that nothing put in; so do sheets that are put apart faster than they give
-// way. A look takes about as long as a sweep.
+// way.
 void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::string>& notes) {
-  constexpr int kFramesBetweenLooks = 8;
   constexpr double kInstant = 1e-9;  // s; in substeps so short all stiffness is felt
-  driven_ |= frame.driven;
-  if (left_strain_ || driven_ || frame.method != Method::compliant ||
-      frame.number % kFramesBetweenLooks != 0)
-    return;
+  if (left_strain_ || driven_ || frame.method != Method::compliant) return;
   double held = 0;
   for (std::size_t c = 0; c < frame.cloths.size(); ++c)
     if (!is_asleep(frame.sleeping, c)) {
@@ -77,6 +84,22 @@ void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::stri
   notes.push_back("frame " + std::to_string(frame.number) + ": the sweeps" +
                   (frame.contact ? ", or sheets put apart," : "") + " leave strain of " +
                   number(held) + " J that nothing put in; more substeps or iterations leave less");
+}
+
+// Lines that are drawn out in substeps too long for that.
+void FrameNotes::note_shaking(const EndedFrame& frame, std::vector<std::string>& notes) {
+  for (std::size_t c = 0; c < frame.cloths.size() && !shaking_; ++c) {
+    const ClothStep& step = *frame.cloths[c];
+    const Shaking from = shaking(step.parts().scene, step.cloth(), frame.method, frame.dt);
+    if (std::isinf(from.strain) || is_asleep(frame.sleeping, c)) continue;
+    const double strain = step.model().strain_in_line(step.particles().x, from.spread);
+    if (strain <= from.strain) continue;
+    shaking_ = true;
+    notes.push_back("frame " + std::to_string(frame.number) + ": cloth " + std::to_string(c) +
+                    " is drawn out by " + number(strain) + " along its lines; in substeps of " +
+                    number(frame.dt) + " s line sweeps leave strain, or shake it, from " +
+                    number(from.strain) + " on; more substeps or iterations hold it");
+  }
 }
 
 void FrameNotes::tell(const Cloths& cloths, std::int64_t frames, std::vector<std::string>& notes) {

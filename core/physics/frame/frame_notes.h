@@ -18,6 +18,7 @@ void add_once(std::vector<std::string>& notes, const std::string& note);
 struct EndedFrame {
   std::int64_t number;  // from 1 on
   Method method;
+  double dt;  // s, of a substep
   const Cloths& cloths;
   const Sleeping* sleeping;     // or null
   const SheetContact* contact;  // or null
@@ -49,10 +50,11 @@ class FrameNotes {
   void note_clamps(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_stretch(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_left_strain(const EndedFrame& frame, std::vector<std::string>& notes);
+  void note_shaking(const EndedFrame& frame, std::vector<std::string>& notes);
 
   std::vector<Overlong> overlong_;       // of every cloth
   std::vector<std::uint8_t> stretched_;  // of every cloth: told of
-  bool clamps_ = false, left_strain_ = false;
+  bool clamps_ = false, left_strain_ = false, shaking_ = false;
   bool driven_ = false;  // in any frame since the energy was counted anew
   std::vector<std::string> told_;
 };

@@ -23,6 +23,17 @@ double projection_substep(const Scene& scene);
 // (kernels/gauss_seidel.cpp, mesh_sweeps.cpp).
 double tearing_substep(const Scene& scene, const Cloth& cloth, Method method);
 
+// How far a cloth may be drawn out along its lines before line sweeps in substeps of dt shake it. A line is solved as
+// a whole along the directions that its constraints begin the sweep with, so that their pull T across the line acts as
+// an explicit spring: T dt²/(m h), with m of a particle and h between two, is to stay below about 2 for each sweep,
+// 0.7 on a mesh.
+struct Shaking {
+  double strain =
+      0;  // from there on; infinite: other sweeps, which turn one constraint after the other, or methods
+  double spread = 0;  // of one constraint in its line, over so many (model/strain_in_line.h)
+};
+Shaking shaking(const Scene& scene, const Cloth& cloth, Method method, double dt);
+
 // Jacobi adds up corrections that each constraint works out for two ends of like mass; where a light
 // particle has heavy neighbours they add up to more than the whole. And a single sweep with compliance
 // is an explicit spring as stiff as the sweep allows, which large motions feed: two sweeps damp. Puts

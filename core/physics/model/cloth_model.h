@@ -107,6 +107,9 @@ class ClothModel {
   // squared length of the constraints that carry the cloth, of their rest.
   virtual double held_energy(const Rows& x, double dt) const = 0;
   virtual float greatest_stretch(const Rows& x) const = 0;
+  // The greatest strain along lines that sweeps may solve as a whole, that of each constraint spread over so many
+  // (strain_in_line.h); 0: there are no lines.
+  virtual double strain_in_line(const Rows& x, double spread) const = 0;
   // J; the energy of attachments that are stretched, and what springs gain in a substep by positions
   // that are rounded anew.
   virtual double attachment_energy(const Rows& x, double dt) const = 0;

@@ -9,6 +9,7 @@
 #include "physics/model/lattice/stability.h"
 #include "physics/model/path.h"
 #include "physics/model/segment_distance.h"
+#include "physics/model/strain_in_line.h"
 
 namespace weft::physics {
 namespace {
@@ -194,6 +195,26 @@ float LatticeModel::greatest_stretch(const Rows& x) const {
     }
   }
   return most;
+}
+
+double LatticeModel::strain_in_line(const Rows& x, double spread) const {
+  StrainInLine lines(spread);
+  for (const Stencil& f : stencils_) {
+    if (f.kind != Kind::structural || f.di + f.dj != 1) continue;
+    const auto strain = [&](int j, int a) -> std::optional<double> {
+      if (!f.alive(j, a)) return {};
+      Vec3 e;
+      for (int k = 0; k < 3; ++k)
+        e[std::size_t(k)] = double(x.at(k, j + f.dj, a + f.far())) - x.at(k, j, a + f.near());
+      return length(e) / f.rest - 1;
+    };
+    const int columns = f.per_row(lattice_.columns), rows = lattice_.rows - f.dj;
+    if (f.di == 1)
+      for (int j = 0; j < rows; ++j) lines.look(columns, [&](int n) { return strain(j, n); });
+    else
+      for (int i = 0; i < columns; ++i) lines.look(rows, [&](int n) { return strain(n, i); });
+  }
+  return lines.greatest();
 }
 
 Spectrum LatticeModel::spectrum(std::span<const float> inverse_masses) const {

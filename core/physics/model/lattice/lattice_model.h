@@ -33,6 +33,7 @@ class LatticeModel final : public ClothModel {
   Vec3 pin_position(const Pin& pin, double time) const override;
   double held_energy(const Rows& x, double dt) const override;
   float greatest_stretch(const Rows& x) const override;
+  double strain_in_line(const Rows& x, double spread) const override;
   double attachment_energy(const Rows& x, double dt) const override;
   double rounding_gain() const override;
   Spectrum spectrum(std::span<const float> inverse_masses) const override;

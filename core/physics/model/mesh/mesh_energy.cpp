@@ -4,6 +4,7 @@
 
 #include "physics/model/largest_eigenvalue.h"
 #include "physics/model/mesh/mesh_model.h"
+#include "physics/model/strain_in_line.h"
 #include "weft/vec3.h"
 
 namespace weft::physics {
@@ -122,6 +123,21 @@ double MeshModel::projected_energy(const Rows& at, double dt) const {
 }
 
 // Every fourth edge is looked at.
+double MeshModel::strain_in_line(const Rows& x, double spread) const {
+  StrainInLine lines(spread);
+  const auto at = [&](int p) {
+    const auto [j, i] = particles_.place(p);
+    return Vec3{x.at(0, j, i), x.at(1, j, i), x.at(2, j, i)};
+  };
+  for (const Strand& strand : strands_)
+    lines.look(int(strand.edges.size()), [&](int n) -> std::optional<double> {
+      const auto edge = std::size_t(strand.edges[std::size_t(n)]);
+      if (!holds(edge)) return {};
+      return distance(at(edges_.ends[edge][0]), at(edges_.ends[edge][1])) / edges_.rest[edge] - 1;
+    });
+  return lines.greatest();
+}
+
 float MeshModel::greatest_stretch(const Rows& x) const {
   double most = 0;
   for (std::size_t n = 0; n < edges_.ends.size(); n += 4) {

@@ -150,9 +150,14 @@ void MeshModel::append_projections(StageList& list) {
 }
 
 void MeshModel::append_strands(StageList& list) {
-  StrandSweeps strands(parts_, edges_, material_.stiffness, start_, tearing_.get());
-  list.stages.push_back(strands.stage(parts_.scene.solver.iterations, true));
-  midst_.edges = strands.midst();
+  StrandSweeps sweeps(parts_, edges_, material_.stiffness, strands(), tearing_.get());
+  list.stages.push_back(sweeps.stage(parts_.scene.solver.iterations, true));
+  midst_.edges = sweeps.midst();
+}
+
+const std::vector<Strand>& MeshModel::strands() {
+  if (strands_.empty()) strands_ = strands_of(edges_, start_);
+  return strands_;
 }
 
 std::vector<std::vector<Tether>> MeshModel::attachments() const {
@@ -190,11 +195,11 @@ void MeshModel::append_membrane(StageList& list) {
     midst_.triangles = strains.midst();
     return;
   }
-  StrandSweeps strands(parts_, edges_,
-                       std::make_unique<StrandMembrane>(parts_, triangles_, edges_, strains),
-                       start_);
+  StrandSweeps sweeps(parts_, edges_,
+                      std::make_unique<StrandMembrane>(parts_, triangles_, edges_, strains),
+                      strands());
   for (int n = 0; n < solver.iterations; ++n) {
-    list.stages.push_back(strands.stage(1, n == 0));
+    list.stages.push_back(sweeps.stage(1, n == 0));
     sweeps_->append_strains(1, false, list);
   }
 }
@@ -272,7 +277,10 @@ std::vector<Joined> MeshModel::constraints_near(const Vec3& a, const Vec3& way,
 }
 
 std::size_t MeshModel::bytes() const {
-  return particles_.bytes() + triangles_.size() * sizeof(RestTriangle) +
+  std::size_t strands = 0;
+  for (const Strand& s : strands_)
+    strands += sizeof(Strand) + (s.vertices.size() + s.edges.size()) * sizeof(int);
+  return strands + particles_.bytes() + triangles_.size() * sizeof(RestTriangle) +
          edges_.ends.size() * (sizeof(Joined) + sizeof(double)) +
          start_.size() * (sizeof(Vec3) + sizeof(double)) + (sweeps_ ? sweeps_->bytes() : 0) +
          (history_ ? history_->bytes() : 0) + (corrections_ ? corrections_->bytes() : 0) +

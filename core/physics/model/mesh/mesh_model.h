@@ -6,6 +6,7 @@
 #include "physics/model/mesh/gas_load.h"
 #include "physics/model/mesh/mesh_sweeps.h"
 #include "physics/model/mesh/seams.h"
+#include "physics/model/mesh/strands.h"
 #include "physics/model/mesh/triangle_stage.h"
 #include "physics/model/projected_motion.h"
 #include "physics/model/tethers.h"
@@ -30,6 +31,7 @@ class MeshModel final : public ClothModel {
   void accelerations(const Vec3& gravity, std::vector<Vec3>& a) const override;
   ElasticEnergy elastic_energy() const override;
   Strain strain() const override;
+  double strain_in_line(const Rows& x, double spread) const override;
   double limited_strain() const override { return strain().max; }
   Vec3 pin_position(const Pin& pin, double time) const override;
   double held_energy(const Rows& x, double dt) const override;
@@ -64,6 +66,7 @@ class MeshModel final : public ClothModel {
   MeshSweeps& sweeps();  // of bending, where there is any
   MeshSweeps& edge_sweeps();
   StrainSweeps& strain_sweeps();
+  const std::vector<Strand>& strands();
   std::vector<std::vector<Tether>> attachments() const;
   double projected_energy(const Rows& x, double dt) const;
   double start_strain() const;  // the greatest of all edges
@@ -86,6 +89,7 @@ class MeshModel final : public ClothModel {
   MeshEdges edges_;               // each once
   std::unique_ptr<GasLoad> gas_;  // null: the cloth has no pressure
   std::unique_ptr<MeshSweeps> sweeps_;
+  std::vector<Strand> strands_;  // none until sweeps solve them
   std::unique_ptr<History> history_;
   std::unique_ptr<Rows> corrections_;         // of tethers
   std::vector<std::vector<Tether>> tethers_;  // none: the scene has them off

@@ -39,12 +39,13 @@ struct StrandBatch {
 class StrandSweeps::Solver : private TornParts {
  public:
   Solver(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-         std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x, MeshTearing* tearing)
+         std::unique_ptr<StrandMembrane> membrane, const std::vector<Strand>& strands,
+         MeshTearing* tearing)
       : parts_(parts),
         membrane_(std::move(membrane)),
         remembers_(membrane_ || parts.scene.solver.iterations > 1) {
-    const std::vector<Strand> strands = strands_of(edges, x);
-    const std::vector<std::vector<int>> colours = coloured_strands(strands, int(x.size()));
+    const std::vector<std::vector<int>> colours =
+        coloured_strands(strands, parts.particles.count());
     words_ = std::to_string(strands.size()) + " strands in " + std::to_string(colours.size()) +
              " colours, each solved as a whole";
     count_ = std::int64_t(edges.ends.size());
@@ -263,12 +264,13 @@ class StrandSweeps::Solver : private TornParts {
 };
 
 StrandSweeps::StrandSweeps(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-                           const std::vector<Vec3>& x, MeshTearing* tearing)
-    : solver_(std::make_shared<Solver>(parts, edges, stiffness, nullptr, x, tearing)) {}
+                           const std::vector<Strand>& strands, MeshTearing* tearing)
+    : solver_(std::make_shared<Solver>(parts, edges, stiffness, nullptr, strands, tearing)) {}
 
 StrandSweeps::StrandSweeps(const ClothParts& parts, const MeshEdges& edges,
-                           std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x)
-    : solver_(std::make_shared<Solver>(parts, edges, 0, std::move(membrane), x, nullptr)) {}
+                           std::unique_ptr<StrandMembrane> membrane,
+                           const std::vector<Strand>& strands)
+    : solver_(std::make_shared<Solver>(parts, edges, 0, std::move(membrane), strands, nullptr)) {}
 
 // The first of a substep's tells the memory of all.
 class StrandSweeps::Sweep final : public WholeStage {

@@ -10,13 +10,12 @@ namespace weft::physics {
 // What is made once for the strands of one mesh; stages share it.
 class StrandSweeps {
  public:
-  // Of springs. `stiffness`: of an edge from each of its triangles [N/m]; `x`: of the vertices at rest [m];
-  // `tearing`: null where it cannot.
+  // Of springs. `stiffness`: of an edge from each of its triangles [N/m]; `tearing`: null where it cannot.
   StrandSweeps(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-               const std::vector<Vec3>& x, MeshTearing* tearing);
+               const std::vector<Strand>& strands, MeshTearing* tearing);
   // Of a membrane that cannot tear.
   StrandSweeps(const ClothParts& parts, const MeshEdges& edges,
-               std::unique_ptr<StrandMembrane> membrane, const std::vector<Vec3>& x);
+               std::unique_ptr<StrandMembrane> membrane, const std::vector<Strand>& strands);
 
   // So many sweeps one after the other; `fresh`: with the first of a substep.
   std::unique_ptr<Stage> stage(int iterations, bool fresh);
