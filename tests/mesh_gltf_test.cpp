@@ -119,7 +119,7 @@ TEST(MeshGltf, WhatIsWrongIsNamed) {
       "a.gltf:/meshes/0/primitives/0/attributes/POSITION: vertex 2 lies at 1e300 (-1e9 to 1e9, "
       "with the transforms of its nodes)\n");
   EXPECT_EQ(fault("/meshes/0/primitives/0/indices", "7"),
-            "a.gltf:/accessors: there is no item 7 (0 to 2 less 1)\n");
+            "a.gltf:/accessors: there is no item 7 (0 to 1)\n");
   EXPECT_EQ(
       fault("/extensionsRequired", "[\"KHR_draco_mesh_compression\"]"),
       "a.gltf:/extensionsRequired/0: the extension \"KHR_draco_mesh_compression\" is needed to "

@@ -123,6 +123,7 @@ class Bundle final : public ClothModel {
   }
   double held_energy(const Rows&, double) const override { return 0; }
   float greatest_stretch(const Rows&) const override { return 1; }
+  double strain_in_line(const Rows&, double) const override { return 0; }
   double attachment_energy(const Rows&, double) const override { return 0; }
   double rounding_gain() const override { return 0; }
   Spectrum spectrum(std::span<const float>) const override { return {}; }

@@ -135,7 +135,7 @@ std::vector<double> GltfData::numbers(std::size_t n, const char* type) {
     const double to = value_of(places.bytes.data() + e * places.stride, whole, false);
     if (whole.real || !(to >= 0 && to < double(count)))
       indices.refuse("index " + std::to_string(e) + " is " + number_words(to),
-                     "0 to " + std::to_string(count) + " less 1, the elements");
+                     "below " + std::to_string(count) + ", as there are elements");
     read(given, e, std::size_t(to));
   }
   return values;

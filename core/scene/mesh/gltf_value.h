@@ -40,7 +40,8 @@ class GltfValue {
   }
   GltfValue item(std::size_t n) const {
     if (n >= size())
-      refuse("there is no item " + std::to_string(n), "0 to " + std::to_string(size()) + " less 1");
+      refuse("there is no item " + std::to_string(n),
+             size() > 0 ? "0 to " + std::to_string(size() - 1) : "the list is empty");
     return {(*json_)[n], join(place_, std::to_string(n))};
   }
 
