@@ -10,14 +10,15 @@
 #include "commands.h"
 #include "failure.h"
 #include "files.h"
+#include "needs.h"
 #include "progress.h"
 #include "recordings.h"
 #include "scene_argument.h"
-#include "tolerance.h"
 #include "weft/interrupt.h"
 #include "weft/output.h"
 #include "weft/printable.h"
 #include "weft/takeover.h"
+#include "weft/tolerance.h"
 
 namespace weft::cli {
 
@@ -28,6 +29,7 @@ struct RunArguments {
   std::optional<double> seconds;
   std::optional<std::int64_t> frames;
   std::optional<double> tolerance;
+  std::string resolution;  // "auto", or nothing
   int threads = 0;
   std::string simd = "best";
   std::optional<std::uint64_t> seed;
@@ -89,19 +91,27 @@ std::int64_t frame_count(const RunArguments& arguments, const Time& time,
 }
 
 // Puts what keeps the asked error into the scene, and says so.
-void choose(LoadedScene& loaded, double tolerance, double seconds, const Options& options) {
-  if (loaded.scene.solver.method == Method::positional)
-    throw Failure{kBadCommandLine,
-                  {{"--tolerance", "method positional converges to no motion of springs",
-                    "a scene of method spring, spring_friction or compliant"}}};
-  const Choice choice = choose_solver(loaded.scene, tolerance, seconds, options);
-  std::cout << to_text(choice, tolerance);
-  if (choice.best < 0)
-    throw Failure{kBadCommandLine,
-                  {{"--tolerance", "no method keeps this error", "see above what each comes to"}}};
-  const Trial& best = choice.trials[std::size_t(choice.best)];
-  loaded.scene.solver = best.solver;
-  loaded.scene.time.substeps = best.substeps;
+void choose(LoadedScene& loaded, const Tolerance& tolerance, const Options& options) {
+  require_memory(loaded.scene, "--tolerance");
+  try {
+    Choice choice = weft::choose(loaded.scene, tolerance, options);
+    std::cout << to_text(choice, tolerance);
+    if (choice.best < 0 && choice.notes.empty())
+      throw Failure{
+          kBadCommandLine,
+          {{"--tolerance", "no method keeps this error", "see above what each comes to"}}};
+    if (choice.best >= 0) {
+      const Trial& best = choice.trials[std::size_t(choice.best)];
+      loaded.notes.push_back("--tolerance: " + best.method + ", " + to_text(best));
+    }
+    loaded.scene = std::move(choice.scene);
+    for (const std::string& note : choice.notes) loaded.notes.push_back("--tolerance: " + note);
+  } catch (const std::invalid_argument& refused) {
+    throw Failure{
+        kBadCommandLine,
+        {{"--tolerance", refused.what(),
+          "grids of method spring, spring_friction or compliant; meshes without --resolution"}}};
+  }
 }
 
 // The scene of the arguments, which a recording carries itself.
@@ -197,7 +207,10 @@ int run(const RunArguments& arguments) {
     throw Failure{kBadCommandLine,
                   {{"--tolerance", "a recording carries its own solver", "not with --replay"}}};
   if (arguments.tolerance)
-    choose(loaded, *arguments.tolerance, double(frames) * loaded.scene.time.frame, options);
+    choose(loaded,
+           {*arguments.tolerance, double(frames) * loaded.scene.time.frame,
+            !arguments.resolution.empty()},
+           options);
   catch_interrupts();  // before there is a temporary file that a signal could leave behind
   Takeover takeover;
   Simulation simulation = simulate(loaded, options);
@@ -249,12 +262,20 @@ void add_run(CLI::App& program, int& exit_code) {
                        " (default: the widest); never changes the result")
       ->type_name("SET")
       ->check(one_of(simd_names()));
+  CLI::Option* const tolerance =
+      command
+          ->add_option(
+              "--tolerance", arguments->tolerance,
+              "Pick method, substeps and sweeps for this error of the positions, by trial runs")
+          ->type_name("M")
+          ->check(number_in(1e-6, 1.0, "m, 1e-6 to 1"));
   command
-      ->add_option(
-          "--tolerance", arguments->tolerance,
-          "Pick method, substeps and sweeps for this error of the positions, by trial runs")
-      ->type_name("M")
-      ->check(number_in(1e-6, 1.0, "m, 1e-6 to 1"));
+      ->add_option("--resolution", arguments->resolution,
+                   "With --tolerance: auto picks the grids as well, for that error against the "
+                   "sheet behind them")
+      ->type_name("auto")
+      ->check(one_of({"auto"}))
+      ->needs(tolerance);
   command->add_option("--seed", arguments->seed, "Seeds every random choice (default: 1)")
       ->type_name("N")
       ->check(
