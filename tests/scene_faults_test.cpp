@@ -369,8 +369,11 @@ TEST(Validate, NamesWhatAMembraneDoesNotFit) {
       "/cloths/0/membrane: both membrane and stiffness or spring_damping are given (one of the "
       "two)\n"
       "/cloths/0/membrane: a membrane is given (not with method positional)\n"
-      "/cloths/0/membrane: a membrane is given beside a level (level 0)\n"
-      "/cloths/0/bending/damping: damping is 0.5 (0 s, on a grid)");
+      "/cloths/0/membrane: a membrane is given beside a level (level 0)");
+  scene.cloths[0].membrane = {};
+  scene.cloths[0].level = 0;
+  EXPECT_EQ(told(weft::validate(scene)),
+            "/cloths/0/bending/damping: damping is 0.5 (0 s, on a grid of springs)");
   scene.cloths[0] = {};
   scene.cloths[0].membrane = {4, 9, 0, 0, 0};
   scene.solver.method = weft::Method::spring;

@@ -46,11 +46,11 @@ void make_of(const Fabric& fabric, Method method, Cloth& cloth) {
   cloth.membrane = fabric.membrane;
   cloth.bending = fabric.bending;
   cloth.self_collision.friction = fabric.friction;
-  if (!cloth.mesh.given()) cloth.bending.damping = 0;  // grids have none
   if (method == Method::positional) {
     // Of a square grid of springs kn along the threads and kd across, C11 = kn + kd and C66 = kd.
     const Membrane& m = fabric.membrane;
     cloth.membrane = {};
+    if (!cloth.mesh.given()) cloth.bending.damping = 0;  // springs on a grid have none
     cloth.stiffness = {(m.warp + m.weft) / 2 - m.shear, m.shear, 0};
   }
 }
@@ -81,9 +81,10 @@ Json values_of(const Fabric& fabric, Method method, const Json& cloth) {
   const Json* const file = mesh ? member(*mesh, "file") : nullptr;
   if (file && file->is_string()) made.mesh.file = file->get<std::string>();
   make_of(fabric, method, made);
-  const Json all = std::move(document_of(scene)["cloths"][0]);
   const bool springs =
       member(cloth, "stiffness") || member(cloth, "spring_damping") || member(cloth, "level");
+  if (springs && !made.mesh.given()) made.bending.damping = 0;
+  const Json all = std::move(document_of(scene)["cloths"][0]);
   Json values = Json::object();
   values["density"] = all["density"];
   if (method == Method::positional)

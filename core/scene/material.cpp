@@ -29,9 +29,9 @@ class Material {
     if (sound("/bending") && !bending.given() && bending.damping > 0)
       fault(place_ + "/bending/damping", "damping is given, and warp, weft and twist are 0",
             "0 without rigidity");
-    else if (sound("/bending") && !cloth_.mesh.given() && bending.damping > 0)
+    else if (sound("/bending") && !cloth_.mesh.given() && !membrane.given() && bending.damping > 0)
       fault(place_ + "/bending/damping", "damping is " + number_words(bending.damping),
-            "0 s, on a grid");
+            "0 s, on a grid of springs");
   }
 
  private:

@@ -30,7 +30,7 @@ struct PlainRows {
   // Of row 0 of each stencil: -1 in the lanes of constraints, 0 in those of torn ones. Null: cannot
   // tear.
   const std::int32_t* alive[kPlainStencils];
-  // What earlier rows do to later ones, 6 floats for every lane of a row, zero before row 0. How they lie
+  // What earlier rows do to later ones, up to 7 floats for every lane of a row, zero before row 0. How they lie
   // is the kernel's own affair.
   float* carry;
 };

@@ -9,6 +9,9 @@
 // by those across of the cells at it; an edge of the sheet has one cell, and so counts half. The shear
 // pulls one diagonal of a cell and pushes the other. All of it is polynomial: no root, no division.
 // Damping puts e + damping de/dt in the place of e.
+//
+// Bending (bending.cpp) goes along: its terms are linear in the same edges, and what a row does to the two after it is
+// carried to them.
 #include "physics/kernels/membrane.h"
 
 #include "physics/kernels/membrane_cells.h"
@@ -64,15 +67,65 @@ struct There {
   }
 };
 
-template <bool kDamped, bool kTorn, bool kSides, bool kAlike>
+// Floats carried for every lane of a row: pulls on the next row, strains along, and bending's pulls on the row after.
+template <bool kBent>
+constexpr int kCarried = kBent ? 7 : 4;
+
+// The second differences and the twist of a block: from (i, j) along the row, across to the rows below, of the cell.
+struct Curvatures {
+  Wide3 along, across, twist;
+  WEFT_INLINE Curvatures(const Cells& c, const float* row, const float* below, const float* below2,
+                         std::ptrdiff_t plane) {
+    along = (load_planes(row + 2, plane) - load_planes(row + 1, plane)) - c.a;
+    across = (load_planes(below2, plane) - load_planes(below, plane)) - c.b;
+    twist = c.a_below - c.a;
+  }
+  WEFT_INLINE void add_rates(const Curvatures& rates, float damping) {
+    along = along + rates.along * wide(damping);
+    across = across + rates.across * wide(damping);
+    twist = twist + rates.twist * wide(damping);
+  }
+};
+
+// What bending does to a block of a row, and to those below it in the next two rows.
+class BendPulls {
+ public:
+  Wide3 own, next, after;
+  template <bool kTorn>
+  WEFT_INLINE void take(const MembraneRows& r, const BendStiffness& k, Curvatures d,
+                        std::ptrdiff_t lane, int i) {
+    const int left = r.columns - i;
+    Wide along = select(lanes_below(left - 2), wide(k.along), Wide{});
+    Wide twist = select(lanes_below(left - 1), wide(k.twist), Wide{});
+    Wide across = load(r.width + i) * k.across;
+    if constexpr (kTorn) {
+      along = along * load(r.along + lane);
+      twist = twist * load(r.twist + lane);
+      across = across * load(r.across + lane);
+    }
+    const Wide3 a = d.along * along, t = d.twist * twist;
+    after = Wide3{} - d.across * across;
+    const Wide3 turn = twist_.next(t) - t;
+    own = one_.next(a) * wide(2) - a - two_.next(a) + turn + after;
+    next = Wide3{} - turn - after * wide(2);
+  }
+
+ private:
+  Delay3<1> one_, twist_;
+  Delay3<2> two_;
+};
+
+template <bool kDamped, bool kTorn, bool kBent, bool kSides, bool kAlike>
 WEFT_INLINE void one_row(const MembraneRows& r, int j) {
   const std::ptrdiff_t plane = r.x.y - r.x.x, start = std::ptrdiff_t(j) * r.stride;
   const std::ptrdiff_t next = j + 1 < r.rows ? start + r.stride : start;
+  const std::ptrdiff_t after = j + 2 < r.rows ? next + r.stride : next;
   const MembraneConstants c = r.constants[j];
   Delay<1> coupled;
   Delay3<1> to_right, to_below;
+  BendPulls bend{};
   float* carry = r.carry;
-  for (int i = 0; i < r.columns; i += kLanes, carry += 4 * kLanes) {
+  for (int i = 0; i < r.columns; i += kLanes, carry += kCarried<kBent> * kLanes) {
     const Cells x(r.x.x + start + i, r.x.x + next + i, plane);
     Strains e(x, r.half_u, r.half_v);
     if constexpr (kDamped)
@@ -90,22 +143,40 @@ WEFT_INLINE void one_row(const MembraneRows& r, int j) {
     const Wide shear = select(there.sheared, e.shear * c.shear, Wide{});
 
     const Wide3 a = x.a * pull_a, b = x.b * pull_b, p = x.p * shear, q = x.q * shear;
-    const Wide3 own = load_planes(carry, kLanes) + (a + b + p) + to_right.next(q - a);
-    store_planes(carry, kLanes, Wide3{} - (b + q + to_below.next(p)));
+    Wide3 own = load_planes(carry, kLanes) + (a + b + p) + to_right.next(q - a);
+    Wide3 below = Wide3{} - (b + q + to_below.next(p));
+    if constexpr (kBent) {
+      Curvatures d(x, r.x.x + start + i, r.x.x + next + i, r.x.x + after + i, plane);
+      if constexpr (kDamped) {
+        const Cells v(r.v.x + start + i, r.v.x + next + i, plane);
+        d.add_rates({v, r.v.x + start + i, r.v.x + next + i, r.v.x + after + i, plane},
+                    r.bend_damping);
+      }
+      bend.template take<kTorn>(r, r.bend[j], d, start + i, i);
+      own = own + bend.own;
+      below = below + bend.next + load_planes(carry + 4 * kLanes, kLanes);
+      store_planes(carry + 4 * kLanes, kLanes, bend.after);
+    }
+    store_planes(carry, kLanes, below);
     store(carry + 3 * kLanes, along);
     leapfrog<kSides, kAlike>(r, r.x.x + start + i, r.columns - i, own);
   }
 }
 
-template <bool kDamped, bool kTorn, bool kSides, bool kAlike>
+template <bool kDamped, bool kTorn, bool kBent, bool kSides, bool kAlike>
 void rows_of(const MembraneRows& given) {
   const MembraneRows r = given;
-  for (int j = r.begin; j < r.end; ++j) one_row<kDamped, kTorn, kSides, kAlike>(r, j);
+  for (int j = r.begin; j < r.end; ++j) one_row<kDamped, kTorn, kBent, kSides, kAlike>(r, j);
+}
+template <bool kDamped, bool kTorn, bool kBent>
+void rows_of(const MembraneRows& r) {
+  if (!(r.alike > 0)) return rows_of<kDamped, kTorn, kBent, false, false>(r);
+  r.sides ? rows_of<kDamped, kTorn, kBent, true, true>(r)
+          : rows_of<kDamped, kTorn, kBent, false, true>(r);
 }
 template <bool kDamped, bool kTorn>
 void rows_of(const MembraneRows& r) {
-  if (!(r.alike > 0)) return rows_of<kDamped, kTorn, false, false>(r);
-  r.sides ? rows_of<kDamped, kTorn, true, true>(r) : rows_of<kDamped, kTorn, false, true>(r);
+  r.bend ? rows_of<kDamped, kTorn, true>(r) : rows_of<kDamped, kTorn, false>(r);
 }
 template <bool kDamped>
 void rows_of(const MembraneRows& r) {
@@ -115,7 +186,7 @@ void rows_of(const MembraneRows& r) {
 }  // namespace
 
 void membrane_rows(const MembraneRows& r) {
-  r.damping > 0 ? rows_of<true>(r) : rows_of<false>(r);
+  r.damping > 0 || r.bend_damping > 0 ? rows_of<true>(r) : rows_of<false>(r);
 }
 
 }  // namespace weft::WEFT_KERNELS

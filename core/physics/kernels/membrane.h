@@ -1,6 +1,7 @@
 // What the kernels of the membrane work on (kernels/membrane.cpp, membrane_squares.cpp).
 #pragma once
 
+#include "physics/kernels/bending.h"
 #include "physics/kernels/lattice.h"
 
 namespace weft::physics {
@@ -17,6 +18,11 @@ struct MembraneRows : LeapfrogRows {
   const float* share;                  // of `weft`, of each column: half at both sides
   float half_u, half_v;                // 1/(2 h²) of the spacings along and across rows [1/m²]
   float damping;                       // s
+  // Of each row, as bend_row's; zero where no row follows that a term needs. Null: the sheet does not bend [N/m].
+  const BendStiffness* bend;
+  float bend_damping;  // s
+  // Terms of bending that are left, 1 or 0, of row 0; null: all.
+  const float *along, *across, *twist;
 };
 
 // What line sweeps are to make of squared lengths (kernels/membrane_squares.cpp), of rows begin … end-1.

@@ -79,6 +79,11 @@ void LatticeModel::accelerations(const Vec3& gravity, std::vector<Vec3>& a) cons
     const std::vector<Vec3> v = lattice_.gather(lattice_.v);
     const bool damped = is_membrane() && cells.damping() > 0;
     cells.add_forces(lattice_.gather(lattice_.x), damped ? &v : nullptr, 1, cells.damping(), force);
+    const double rate = is_membrane() ? parts_.cloth.bending.damping : 0;
+    if (rate > 0)
+      add_bending_forces(
+          parts_.cloth, [&](int p, int c) { return rate * v[std::size_t(p)][std::size_t(c)]; },
+          force, bend_links());
   };
   physics::accelerations(gravity, parts_.cloth, lattice_, bend_links(), add_stretch, a);
 }

@@ -17,6 +17,12 @@ bool keeps_previous(const Solver& solver, Method method) {
   return !is_explicit(method) && solver.order == 2;
 }
 
+const char* damped(bool membrane, bool bending) {
+  return membrane && bending ? "the membrane and of bending"
+         : membrane          ? "the membrane"
+                             : "bending";
+}
+
 }  // namespace
 
 LatticeModel::LatticeModel(const Scene& scene, int index, Method method, std::uint64_t seed,
@@ -77,7 +83,9 @@ void LatticeModel::append_forces(StageList& list) {
     overlong_.resize(std::size_t(lattice_.rows));
   parts_.overlong = overlong_.empty() ? nullptr : overlong_.data();
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
-  list.choose("bending", make_bending_force(parts_), "bending is 0");
+  const bool bends = parts_.cloth.bending.given();
+  list.choose("bending", is_membrane() ? nullptr : make_bending_force(parts_),
+              is_membrane() && bends ? "the membrane's stage bends, too" : "bending is 0");
   list.stages.push_back(is_membrane() ? make_membrane(parts_)
                                       : make_springs(parts_, method_ == Method::spring_friction));
   list.choose("wind", make_wind(parts_, seed_), "drag and lift are 0");
@@ -165,13 +173,17 @@ std::vector<std::string> LatticeModel::notes() const {
       parts_.cloth.strain_limit_order == StrainLimitOrder::strict)
     notes.push_back("with order 2 the strain limit is one pass a substep, as with colours");
   const Membrane& m = parts_.cloth.membrane;
+  const double bend_damping = parts_.cloth.bending.damping;
   if (!m.given() || is_membrane()) return notes;
   if (solves_membrane()) {
-    if (m.damping > 0) notes.push_back("line sweeps leave out the membrane's damping");
+    if (m.damping > 0 || bend_damping > 0)
+      notes.push_back(std::string("line sweeps leave out the damping of ") +
+                      damped(m.damping > 0, bend_damping > 0));
     return notes;
   }
   std::string note =
-      "springs of the membrane's warp, weft and shear run in its place, without its damping";
+      "springs of the membrane's warp, weft and shear run in its place, without its damping" +
+      std::string(bend_damping > 0 ? " and that of bending" : "");
   if (m.coupling != m.shear)
     note +=
         "; they couple warp and weft by " + number(m.shear) + " N/m, not by " + number(m.coupling);

@@ -64,7 +64,7 @@ class PlainRowsStage : public RowStage {
   LatticeParts parts_;
 
  private:
-  std::size_t carried() const { return 6 * std::size_t(parts_.lattice.stride); }
+  std::size_t carried() const { return 7 * std::size_t(parts_.lattice.stride); }
   float* carry(const Substep& s) { return carry_.data() + s.slot * carried(); }
 
   AlignedArray<float> carry_;

@@ -171,21 +171,25 @@ Spectrum membrane_spectrum(const Cloth& cloth, const MembraneCells& cells, const
   for (int p = 0; p < l.count(); ++p) root.push_back(std::sqrt(double(l.inverse_mass[l.lane(p)])));
   // M^-1/2 K M^-1/2: pulls by displacements are those by velocities of a membrane without stress.
   std::vector<Vec3> moved(rest.size()), pull(rest.size());
-  const auto apply = [&](bool bends, const std::vector<double>& u, std::vector<double>& y) {
+  const Bending& bending = cloth.bending;
+  const auto apply = [&](double stretch, double bend, const std::vector<double>& u,
+                         std::vector<double>& y) {
     for (std::size_t n = 0; n < u.size(); ++n) moved[n / 3][n % 3] = root[n / 3] * u[n];
     std::fill(pull.begin(), pull.end(), Vec3{});
-    cells.add_forces(rest, &moved, 0, 1, pull);
-    if (bends)
+    cells.add_forces(rest, &moved, 0, stretch, pull);
+    if (bend > 0)
       add_bending_forces(
-          cloth, [&](int p, int c) { return moved[std::size_t(p)][std::size_t(c)]; }, pull);
+          cloth, [&](int p, int c) { return bend * moved[std::size_t(p)][std::size_t(c)]; }, pull);
     for (std::size_t n = 0; n < u.size(); ++n) y[n] = -root[n / 3] * pull[n / 3][n % 3];
   };
-  const auto largest = [&](bool bends) {
-    return largest_eigenvalue(3 * rest.size(), [&](const auto& u, auto& y) { apply(bends, u, y); });
+  const auto largest = [&](double stretch, double bend) {
+    return largest_eigenvalue(3 * rest.size(),
+                              [&](const auto& u, auto& y) { apply(stretch, bend, u, y); });
   };
   Spectrum spectrum;
-  spectrum.omega_squared = largest(cloth.bending.given());
-  if (cells.damping() > 0) spectrum.damping = cells.damping() * largest(false);
+  spectrum.omega_squared = largest(1, bending.given() ? 1 : 0);
+  if (cells.damping() > 0 || bending.damping > 0)
+    spectrum.damping = largest(cells.damping(), bending.damping);
   return spectrum;
 }
 
