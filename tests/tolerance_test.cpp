@@ -118,7 +118,7 @@ TEST(Tolerance, SubstepsKeepTheErrorOverTheWholeRun) {
     fine.time.substeps = 4 * Simulation(scene).substeps();
     const auto truth = frames_of(fine, c.seconds);
     for (const double asked : {0.03, 0.003, 0.0006}) {
-      const Tolerance tolerance{asked, c.seconds};
+      const Tolerance tolerance{asked, c.seconds, false, {}};
       const Choice choice = choose(scene, tolerance, {});
       ASSERT_TRUE(choice.promised) << c.name << ' ' << asked << '\n' << to_text(choice, tolerance);
       EXPECT_NEAR(choice.tried, c.seconds, 0.02);
@@ -134,7 +134,7 @@ TEST(Tolerance, GridsKeepTheDistanceFromTheSheet) {
     if (!c.side) continue;  // a sheet has no limit that is held at points
     const Scene scene = scene_of(c);
     for (const double asked : {0.03, 0.008}) {
-      const Tolerance tolerance{asked, c.seconds, true};
+      const Tolerance tolerance{asked, c.seconds, true, {}};
       const Choice choice = choose(scene, tolerance, {});
       ASSERT_TRUE(choice.promised) << c.name << ' ' << asked << '\n' << to_text(choice, tolerance);
       const Grid& grid = choice.scene.cloths[0].grid;
@@ -153,8 +153,8 @@ TEST(Tolerance, GridsKeepTheDistanceFromTheSheet) {
 TEST(Tolerance, TheChoiceIsTheSameForAnyThreads) {
   const Scene scene = scene_of(kCases[0]);
   for (const bool grids : {false, true}) {
-    const Choice one = choose(scene, {0.005, 0.3, grids}, {.threads = 1});
-    const Choice three = choose(scene, {0.005, 0.3, grids}, {.threads = 3});
+    const Choice one = choose(scene, {0.005, 0.3, grids, {}}, {.threads = 1});
+    const Choice three = choose(scene, {0.005, 0.3, grids, {}}, {.threads = 3});
     EXPECT_EQ(one.scene, three.scene);
     EXPECT_EQ(one.trial_work, three.trial_work);
   }
@@ -169,7 +169,7 @@ TEST(Tolerance, WhatIsChaoticIsNotPromised) {
   cloth.drag = 1;
   cloth.pins = {{0, 0, {}}, {16, 0, {}}};
   scene.wind = {{-2, 0, 2}, 0.6, 0.2, 0, {}};
-  const Choice choice = choose(scene, {0.0005, 1.5}, {});
+  const Choice choice = choose(scene, {0.0005, 1.5, false, {}}, {});
   EXPECT_FALSE(choice.promised);
   ASSERT_FALSE(choice.notes.empty());
   EXPECT_NE(choice.notes[0].find("not promised"), std::string::npos) << choice.notes[0];
@@ -178,12 +178,12 @@ TEST(Tolerance, WhatIsChaoticIsNotPromised) {
 TEST(Tolerance, WhatHasNoOtherResolutionIsRefused) {
   Scene scene = scene_of(kCases[0]);
   scene.cloths[0].level = 2;
-  EXPECT_THROW(choose(scene, {0.01, 0.2, true}, {}), std::invalid_argument);
+  EXPECT_THROW(choose(scene, {0.01, 0.2, true, {}}, {}), std::invalid_argument);
   scene.cloths[0].level = 0;
   scene.solver.method = Method::positional;
-  EXPECT_THROW(choose(scene, {0.01, 0.2}, {}), std::invalid_argument);
+  EXPECT_THROW(choose(scene, {0.01, 0.2, false, {}}, {}), std::invalid_argument);
   scene.time.frame = -1;
-  EXPECT_THROW(choose(scene, {0.01, 0.2}, {}), SceneError);
+  EXPECT_THROW(choose(scene, {0.01, 0.2, false, {}}, {}), SceneError);
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // `weft run SCENE`: simulates, and writes what was asked for.
+#include <unistd.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -192,6 +194,11 @@ Report advance(Simulation& simulation, std::int64_t frames, Recordings& recordin
   return report;
 }
 
+// To a person at a terminal.
+void print_trial(const std::string& run) {
+  if (::isatty(STDOUT_FILENO) == 1) std::cout << "trying " << run << std::endl;
+}
+
 int run(const RunArguments& arguments) {
   Recordings recordings(arguments.files.record, arguments.files.replay);
   const std::optional<Recording>& replayed = recordings.replayed();
@@ -209,7 +216,7 @@ int run(const RunArguments& arguments) {
   if (arguments.tolerance)
     choose(loaded,
            {*arguments.tolerance, double(frames) * loaded.scene.time.frame,
-            !arguments.resolution.empty()},
+            !arguments.resolution.empty(), print_trial},
            options);
   catch_interrupts();  // before there is a temporary file that a signal could leave behind
   Takeover takeover;

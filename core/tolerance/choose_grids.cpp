@@ -169,8 +169,8 @@ class GridSearch {
     Ladder ladder(2);
     const std::vector<Intervals> first = grids_.at(scale);
     for (int rung = 0; rung < kRungs; ++rung) {
-      ladder.add(motion_of(grids_.scene(finer(first, 1 << rung)), way, substeps << rung,
-                           asked_.frames, asked_.options));
+      ladder.add(
+          motion_of(grids_.scene(finer(first, 1 << rung)), way, substeps << rung, asked_.runs));
       choice_.trial_work += ladder.finest().work;
     }
     return ladder;
@@ -183,10 +183,10 @@ class GridSearch {
         1 / 3.0;  // cheapest where work is the square of one fineness times the other
     if (way.is_explicit()) return {};
     const Scene scene = grids_.scene(finer(grids_.at(scale), 2));
-    const Asked in_time{scene, kShare * asked_.error, asked_.frames, asked_.options};
+    const Asked in_time{scene, kShare * asked_.error, asked_.runs};
     const Way& first = ways_.front();
     Search s;
-    if (first_substeps(scene, first, asked_.options) <= kMostOfTruth) {
+    if (first_substeps(scene, first, asked_.runs.options) <= kMostOfTruth) {
       Truth truth;
       const Search of_truth = find_explicit(in_time, first, truth);
       choice_.trial_work += of_truth.work;
@@ -202,11 +202,11 @@ class GridSearch {
   Search finished(Search search, const Way& way, double times) const {
     Trial& t = search.trial;
     const Scene scene = grids_.scene(t.intervals);
-    t.substeps = way.is_explicit() ? first_substeps(scene, way, asked_.options)
+    t.substeps = way.is_explicit() ? first_substeps(scene, way, asked_.runs.options)
                                    : int(std::ceil(t.substeps * times));
     double particles = 0;
     for (const Cloth& cloth : scene.cloths) particles += particle_count(cloth);
-    t.work = way.work * particles * t.substeps * asked_.frames;
+    t.work = way.work * particles * t.substeps * asked_.runs.frames;
     return search;
   }
 
@@ -228,7 +228,7 @@ void take(Choice& choice, const Grids& grids, const Trial& trial) {
 Choice choose_grids(const Asked& asked) {
   Choice choice;
   choice.scene = asked.scene;
-  choice.tried = asked.frames * asked.scene.time.frame;
+  choice.tried = asked.runs.frames * asked.scene.time.frame;
   GridSearch searches(asked, choice);
   std::vector<Outlook> outlooks;
   for (const Way& way : ways_of(asked.scene)) {

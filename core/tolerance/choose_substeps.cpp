@@ -11,13 +11,13 @@ namespace weft::tolerance {
 Choice choose_substeps(const Asked& asked) {
   Choice choice;
   choice.scene = asked.scene;
-  choice.tried = asked.frames * asked.scene.time.frame;
+  choice.tried = asked.runs.frames * asked.scene.time.frame;
   const std::vector<Way> ways = ways_of(asked.scene);
   const Way& first = ways.front();
   std::vector<Search> all;
   Truth truth;
   bool chaotic = false;
-  if (first_substeps(asked.scene, first, asked.options) <= kMostOfTruth) {
+  if (first_substeps(asked.scene, first, asked.runs.options) <= kMostOfTruth) {
     all.push_back(find_explicit(asked, first, truth));
     chaotic = !all.back().falls;
   }

@@ -50,9 +50,9 @@ Search find_explicit(const Asked& asked, const Way& way, Truth& truth) {
   Search search{trial_of(way)};
   // Substeps below the stability limit show an order of 1 at least, whatever the sheet touches.
   Ladder ladder(way.order, 1);
-  int first = first_substeps(asked.scene, way, asked.options);
+  int first = first_substeps(asked.scene, way, asked.runs.options);
   for (int n = first; ladder.rungs() < kRungs && n <= 2 * kMostSubsteps; n *= 2) {
-    Motion motion = motion_of(asked.scene, way, n, asked.frames, asked.options);
+    Motion motion = motion_of(asked.scene, way, n, asked.runs);
     search.work += motion.work;
     if (motion.places.empty()) {  // sheets that are stretched need finer ones
       first = 2 * n;
@@ -70,7 +70,7 @@ Search find_against(const Asked& asked, const Way& way, const Truth& truth, doub
   Search search{trial_of(way)};
   Trial& t = search.trial;
   for (t.substeps = 1; t.substeps <= kMostSubsteps; t.substeps *= 2) {
-    const Motion motion = motion_of(asked.scene, way, t.substeps, asked.frames, asked.options);
+    const Motion motion = motion_of(asked.scene, way, t.substeps, asked.runs);
     search.work += t.work = motion.work;
     t.error = distance(motion, truth.motion) + truth.error;
     t.kept = t.error <= asked.error;
@@ -85,7 +85,7 @@ Search find_implicit(const Asked& asked, const Way& way, double most_work) {
   Search search{trial_of(way)};
   Ladder ladder(way.order);
   for (int n = 1; n <= kMostSubsteps; n *= 2) {
-    ladder.add(motion_of(asked.scene, way, n, asked.frames, asked.options));
+    ladder.add(motion_of(asked.scene, way, n, asked.runs));
     search.work += ladder.finest().work;
     put(search, ladder, n, 1, asked.error);
     search.trial.kept = search.trial.kept && ladder.rungs() >= kLeastRungs;

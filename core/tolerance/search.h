@@ -13,8 +13,7 @@ namespace weft::tolerance {
 struct Asked {
   const Scene& scene;
   double error;  // m
-  int frames;
-  Options options;
+  Runs runs;
 };
 
 // A trial of one way.

@@ -35,7 +35,7 @@ Choice choose(const Scene& scene, const Tolerance& tolerance, const Options& opt
   Options quiet = options;
   quiet.profile = quiet.follow_strain = false;
   const int frames = std::max(1, int(std::lround(tolerance.seconds / scene.time.frame)));
-  const tolerance::Asked asked{scene, tolerance.error, frames, quiet};
+  const tolerance::Asked asked{scene, tolerance.error, {frames, quiet, tolerance.on_run}};
   if (!tolerance.grids) return tolerance::choose_substeps(asked);
   for (const Cloth& cloth : scene.cloths) {
     require(!cloth.mesh.given(), "a cloth is a mesh, which has no other resolution");

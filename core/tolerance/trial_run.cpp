@@ -38,14 +38,13 @@ double root_mean_square(const std::vector<double>& a, const std::vector<double>&
 
 }  // namespace
 
-Motion motion_of(const Scene& scene, const Way& way, int substeps, int frames,
-                 const Options& options) {
+Motion motion_of(const Scene& scene, const Way& way, int substeps, const Runs& runs) {
   Motion motion;
   Scene tried = scene;
   tried.solver = way.solver;
   tried.time.substeps = substeps;
   if (!validate(tried).empty()) return motion;
-  Simulation simulation(tried, options);
+  Simulation simulation(tried, runs.options);
   double particles = 0;
   for (const Cloth& cloth : scene.cloths) {
     const int count = particle_count(cloth);
@@ -54,13 +53,16 @@ Motion motion_of(const Scene& scene, const Way& way, int substeps, int frames,
     particles += count;
   }
   motion.substeps = simulation.substeps();
-  motion.work = way.work * particles * motion.substeps * frames;
+  motion.work = way.work * particles * motion.substeps * runs.frames;
   if (simulation.plan().fallback) return motion;
-  const int instants = std::min(kInstants, frames);
-  for (int n = 1; n <= frames; ++n) {
+  if (runs.on_run)
+    runs.on_run(way.name + ", " + std::to_string(std::int64_t(particles)) + " particles, " +
+                std::to_string(motion.substeps) + " substeps a frame");
+  const int instants = std::min(kInstants, runs.frames);
+  for (int n = 1; n <= runs.frames; ++n) {
     simulation.advance_frame();
     const int kept = int(motion.places.size());
-    if (n >= std::llround(double(kept + 1) * frames / instants))
+    if (n >= std::llround(double(kept + 1) * runs.frames / instants))
       motion.places.push_back(simulation.positions());
   }
   if (!simulation.status().ok || simulation.plan().fallback) motion.places.clear();

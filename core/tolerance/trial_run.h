@@ -1,6 +1,8 @@
 // A run of a scene by one way, and where its particles came.
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "tolerance/ways.h"
@@ -17,9 +19,15 @@ struct Motion {
   std::vector<std::vector<double>> places;  // at each instant x,y,z of every particle
 };
 
+// How trials are run.
+struct Runs {
+  int frames;
+  Options options;
+  std::function<void(const std::string&)> on_run;  // Tolerance::on_run
+};
+
 // `substeps`: a frame, or kAutoSubsteps.
-Motion motion_of(const Scene& scene, const Way& way, int substeps, int frames,
-                 const Options& options);
+Motion motion_of(const Scene& scene, const Way& way, int substeps, const Runs& runs);
 
 // How far two runs of equal length are apart at the particles of the first [m]: the root mean square, at the instant
 // where it is greatest. The second's grids have all particles of the first's. Infinite where one was not run.
