@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <sstream>
 
 #include "folder.h"
 #include "made_up_cloth.h"
+#include "weft/simulation.h"
 
 namespace weft {
 namespace {
@@ -130,6 +132,53 @@ TEST(Obj, ShowsWhatIsLeftOfTornCloth) {
                                              "f 7 8 9", "f 10/7 11/8 13/10 12/9"}));
   ASSERT_EQ(vertices.size(), 6U + 3 + 4);
   EXPECT_EQ(vertices[7], "v 4 5 6");
+}
+
+// How many pieces hang together by vertices that faces share, without vertices of no face.
+std::size_t pieces(const std::string& obj) {
+  std::istringstream lines(obj);
+  std::vector<std::size_t> parent{0};
+  std::set<std::size_t> used;
+  const auto root = [&](std::size_t v) {
+    while (parent[v] != v) v = parent[v];
+    return v;
+  };
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string word, first;
+    words >> word;
+    if (word == "v") parent.push_back(parent.size());
+    if (word != "f") continue;
+    words >> first;
+    used.insert(std::stoul(first));
+    for (std::string corner; words >> corner; used.insert(std::stoul(corner)))
+      parent[root(std::stoul(corner))] = root(std::stoul(first));
+  }
+  std::set<std::size_t> roots;
+  for (const std::size_t v : used) roots.insert(root(v));
+  return roots.size();
+}
+
+// What a cut leaves is as many surfaces, at the instant of the cut, when its sides lie on each other, and later.
+
+TEST(Obj, ACutClothIsItsPieces) {
+  const Folder folder;
+  for (const bool open : {false, true}) {
+    Scene scene;
+    Cloth cloth;
+    cloth.grid = {14, 11, {}, {1, 0, 0}, {0, 0, 0.8}, 0};
+    cloth.pins.resize(1);
+    cloth.cuts = {{{-1, 3.3}, {20, 7.7}}, {{6.5, -1}, {6.5, 20}}};
+    scene.cloths = {cloth};
+    Simulation simulation(scene);
+    for (int k = 0; k < (open ? 20 : 0); ++k) simulation.advance_frame();
+    const View view = simulation.view();
+    ASSERT_GT(view.cloths[0].tear_points.size(), 50u);
+    const auto animation = open_animation(folder / "run.obj", view);
+    animation->append(view);
+    animation->finish();
+    EXPECT_EQ(pieces(folder.read("run_0000.obj")), 4u) << open;
+  }
 }
 
 TEST(Obj, IsASequenceOfCompleteFiles) {

@@ -27,11 +27,12 @@ class Screen {
  public:
   static constexpr int kWidth = 1280, kHeight = 800;
 
-  explicit Screen(const Folder& folder) : folder_(folder) {
+  explicit Screen(const Folder& folder, int width = kWidth, int height = kHeight)
+      : folder_(folder), size_(std::to_string(width) + "x" + std::to_string(height)) {
     int ends[2];
     EXPECT_EQ(::pipe(ends), 0);
-    server_ = spawn("exec Xvfb -displayfd " + std::to_string(ends[1]) +
-                    " -screen 0 1280x800x24 -nolisten tcp 2>/dev/null");
+    server_ = spawn("exec Xvfb -displayfd " + std::to_string(ends[1]) + " -screen 0 " + size_ +
+                    "x24 -nolisten tcp 2>/dev/null");
     ::close(ends[1]);
     char number[16] = {};
     EXPECT_GT(::read(ends[0], number, sizeof number - 1), 0);
@@ -49,11 +50,11 @@ class Screen {
   void open(const std::string& words, const std::string& before = "",
             const std::string& inside = ".") {
     std::remove((folder_ / "log").c_str());
-    viewer_ =
-        spawn("cd '" + (folder_ / inside) + "' && DISPLAY=" + display_ + " HOME='" +
-              folder_.path() + "' XDG_CONFIG_HOME= XDG_STATE_HOME='" + folder_.path() + "' " +
-              before + " exec '" WEFT_VIEWER_PROGRAM "' " + words + " --size 1280x800 --log '" +
-              (folder_ / "log") + "' >'" + (folder_ / "out") + "' 2>'" + (folder_ / "err") + "'");
+    viewer_ = spawn("cd '" + (folder_ / inside) + "' && DISPLAY=" + display_ + " HOME='" +
+                    folder_.path() + "' XDG_CONFIG_HOME= XDG_STATE_HOME='" + folder_.path() + "' " +
+                    before + " exec '" WEFT_VIEWER_PROGRAM "' " + words + " --size " + size_ +
+                    " --log '" + (folder_ / "log") + "' >'" + (folder_ / "out") + "' 2>'" +
+                    (folder_ / "err") + "'");
     wait("the window", [](const nlohmann::json& now) { return now.contains("frame"); });
   }
 
@@ -226,6 +227,7 @@ class Screen {
   }
 
   const Folder& folder_;
+  std::string size_;  // of the screen, WxH
   pid_t server_ = 0, viewer_ = 0;
   std::string display_;
 };

@@ -11,6 +11,9 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <map>
+#include <tuple>
+#include <vector>
 
 #include "output/animation.h"
 #include "output/faces.h"
@@ -35,10 +38,53 @@ void append_vertex(std::string& text, const std::array<float, 3>& at) {
   text += '\n';
 }
 
-void append_vertices(std::string& text, const View& view, const ClothView& cloth) {
+// What is seen along a tear hangs together with the cloth on its side, as one surface: points of the same particle
+// at the same place are one vertex, and one where the particle is, is the particle's. The other side's go with
+// other particles, wherever they are.
+class TearVertices {
+ public:
+  explicit TearVertices(const ClothView& cloth) : next_(particle_count(cloth)) {
+    if (cloth.tear_points.empty()) return;
+    particles_.resize(cloth.lanes.empty() ? 0 : cloth.x.size());
+    for (std::size_t n = 0; n < cloth.lanes.size(); ++n)
+      particles_[cloth.lanes[n]] = static_cast<std::int64_t>(n);
+    for (std::size_t n = 0; n < cloth.tear_points.size(); ++n) {
+      const std::uint32_t lane = cloth.tear_particles[n];
+      const auto& [x, y, z] = cloth.tear_points[n];
+      if (x == cloth.x[lane] && y == cloth.y[lane] && z == cloth.z[lane]) {
+        numbers_.push_back(number_of(cloth, lane));
+        continue;
+      }
+      const auto [known, fresh] = vertices_.try_emplace({lane, x, y, z}, next_);
+      if (fresh) own_.push_back(cloth.tear_points[n]), ++next_;
+      numbers_.push_back(known->second);
+    }
+  }
+
+  // Those that are no particles, which they follow.
+  const std::vector<std::array<float, 3>>& own() const { return own_; }
+  // Of the point with this number.
+  std::int64_t operator[](std::size_t point) const { return numbers_[point]; }
+
+ private:
+  std::int64_t number_of(const ClothView& cloth, std::uint32_t lane) const {
+    if (!particles_.empty()) return particles_[lane];
+    const auto stride = static_cast<std::uint32_t>(cloth.stride);
+    return static_cast<std::int64_t>(lane / stride) * cloth.columns + lane % stride;
+  }
+
+  std::int64_t next_;
+  std::vector<std::int64_t> particles_;  // of a mesh, by lane
+  std::map<std::tuple<std::uint32_t, float, float, float>, std::int64_t> vertices_;
+  std::vector<std::int64_t> numbers_;
+  std::vector<std::array<float, 3>> own_;
+};
+
+void append_vertices(std::string& text, const View& view, const ClothView& cloth,
+                     const TearVertices& tears) {
   for_each_particle(cloth,
                     [&](float x, float y, float z) { append_vertex(text, placed(view, x, y, z)); });
-  for (const auto& [x, y, z] : cloth.tear_points) append_vertex(text, placed(view, x, y, z));
+  for (const auto& [x, y, z] : tears.own()) append_vertex(text, placed(view, x, y, z));
 }
 
 void append_uv(std::string& text, const Faces& faces) {
@@ -70,12 +116,13 @@ void append_faces(std::string& text, const Faces& faces, const First& first) {
 }
 
 // What is seen along a tear: triangles of points that follow the particles.
-void append_tears(std::string& text, const ClothView& cloth, std::int64_t first) {
+void append_tears(std::string& text, const ClothView& cloth, const TearVertices& tears,
+                  std::int64_t first) {
   for (const auto& t : cloth.tear_triangles) {
     text += 'f';
     for (const std::uint32_t point : t) {
       text += ' ';
-      append_number(text, first + point);
+      append_number(text, first + tears[point]);
     }
     text += '\n';
   }
@@ -103,12 +150,13 @@ class ObjSequence final : public Animation {
       const ClothView& cloth = view.cloths[c];
       const Faces& faces = faces_now(c, cloth);
       text_ = "o cloth_" + std::to_string(c) + "\n";
-      append_vertices(text_, view, cloth);
+      const TearVertices tears(cloth);
+      append_vertices(text_, view, cloth, tears);
       append_uv(text_, faces);
       append_faces(text_, faces, first);
-      append_tears(text_, cloth, first.vertex + particle_count(cloth));
+      append_tears(text_, cloth, tears, first.vertex);
       file.write(text_);
-      first.vertex += particle_count(cloth) + static_cast<std::int64_t>(cloth.tear_points.size());
+      first.vertex += particle_count(cloth) + static_cast<std::int64_t>(tears.own().size());
       first.uv += static_cast<std::int64_t>(faces.uv.size());
     }
     file.complete(false);
@@ -130,7 +178,8 @@ class ObjSequence final : public Animation {
   }
 
   std::string written() const override {
-    std::string text = files_.front().path() + " … " + files_.back().path();
+    std::string text = files_.front().path();
+    if (samples_ > 1) text += " … " + files_.back().path();
     const std::string next = obj_name(path_, samples_);
     std::error_code error;
     if (std::filesystem::exists(next, error))

@@ -133,15 +133,17 @@ void draw_export_form(Workspace& workspace, FileForms& forms) {
                               : "%s has points alone: which triangles a cut took, .obj tells",
                        format.c_str());
   const bool known = std::filesystem::path(forms.path).extension() == format;
-  if (button("Start export", known && !(apart && morphs),
-             known ? "" : "The file's name ends as the format is called")) {
-    const std::int64_t now = workspace.frame_data().frame;
-    if (forms.frames.endless)
-      workspace.start_export(forms.path, now, {});
-    else
-      workspace.start_export(forms.path, forms.frames.first, forms.frames.last);
-    ImGui::CloseCurrentPopup();
-  }
+  const bool able = known && !(apart && morphs);
+  const char* why = known ? "" : "The file's name ends as the format is called";
+  const std::int64_t now = workspace.frame_data().frame;
+  const bool all = button("Start export", able, why);
+  ImGui::SameLine();
+  const bool still = button("This frame alone", able, *why != 0 ? why : "The cloth as it is seen");
+  if (still) workspace.start_export(forms.path, now, now);
+  if (all && forms.frames.endless) workspace.start_export(forms.path, now, {});
+  if (all && !forms.frames.endless)
+    workspace.start_export(forms.path, forms.frames.first, forms.frames.last);
+  if (all || still) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "panel/panel.h"
 #include "panel/theme.h"
@@ -22,12 +23,20 @@ namespace fs = std::filesystem;
 constexpr const char* kTitle = "Add a mesh";
 constexpr std::size_t kMostFiles = 12, kMostLines = 6;
 
-std::vector<std::string> meshes_in(const fs::path& folder) {
+// Those of the first folder come first.
+std::vector<std::string> meshes_in(const std::vector<fs::path>& folders) {
   std::vector<std::string> found;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error))
-    if (is_mesh_file(entry.path().string())) found.push_back(entry.path().string());
-  std::sort(found.begin(), found.end());
+  std::set<fs::path> seen;
+  for (const fs::path& folder : folders) {
+    const auto before = static_cast<std::ptrdiff_t>(found.size());
+    std::error_code error;
+    const fs::path here = folder.empty() ? "." : folder;
+    if (!seen.insert(fs::weakly_canonical(here, error)).second) continue;
+    for (const auto& entry : fs::directory_iterator(here, error))
+      if (is_mesh_file(entry.path().string()))
+        found.push_back(entry.path().lexically_normal().string());
+    std::sort(found.begin() + before, found.end());
+  }
   if (found.size() > kMostFiles) found.resize(kMostFiles);
   return found;
 }
@@ -50,8 +59,8 @@ double unit_of(double side, double size) {
 void MeshForm::take(const std::string& path, const Workspace& workspace) {
   path_ = taken_ = path;
   file_ = {};
-  beside_ = meshes_in(path.empty() ? fs::path(workspace.document().path()).parent_path()
-                                   : fs::path(path).parent_path());
+  const fs::path scene = fs::path(workspace.document().path()).parent_path();
+  beside_ = path.empty() ? meshes_in({"", scene}) : meshes_in({fs::path(path).parent_path()});
   if (path.empty()) return;
   file_ = read_mesh(path);
   if (!file_.faults.empty() || file_.mesh.vertices.empty()) return;
@@ -80,6 +89,7 @@ MeshSource MeshForm::placed(const Workspace& workspace) const {
 
 void MeshForm::draw_path(const Workspace& workspace) {
   ImGui::SetNextItemWidth(30 * ImGui::GetFontSize());
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   const bool entered =
       ImGui::InputTextWithHint("##file", "a file (.obj, .ply, .glb, .gltf), then Enter", &path_,
                                ImGuiInputTextFlags_EnterReturnsTrue);

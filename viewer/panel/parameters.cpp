@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "edit/forms.h"
 #include "panel/panel.h"
 #include "panel/theme.h"
 #include "scene/schema.h"
@@ -14,9 +15,6 @@
 namespace weft::viewer {
 
 namespace {
-
-constexpr std::size_t kMostPins = 100;
-constexpr const char* kPlaces = "Time [s], and x, y, z then";
 
 std::string words_of(std::string key) {
   std::replace(key.begin(), key.end(), '_', ' ');
@@ -61,7 +59,9 @@ void Parameters::change(const std::string& pointer, const Json& value) {
   moved_ = ImGui::IsAnyItemActive() ? pointer : "";
 }
 
-bool Parameters::named(const std::string& key) const {
+// A word is looked for in a name, a place ("/cloths/0/grid", as messages have it) from its start.
+bool Parameters::named(const std::string& pointer, const std::string& key) const {
+  if (filter_.starts_with('/')) return pointer.starts_with(filter_);
   const std::string text = words_of(key);
   return std::search(text.begin(), text.end(), filter_.begin(), filter_.end(), [](char a, char b) {
            return std::tolower(static_cast<unsigned char>(a)) ==
@@ -70,12 +70,15 @@ bool Parameters::named(const std::string& key) const {
 }
 
 // Whether a value, or one within, has what is looked for in its name; all within a group that has it do.
-bool Parameters::passes(const std::string& key, const Json& schema) const {
-  if (whole_ || filter_.empty() || named(key)) return true;
+bool Parameters::passes(const std::string& pointer, const std::string& key,
+                        const Json& schema) const {
+  if (whole_ || filter_.empty() || named(pointer, key) || filter_.starts_with(pointer + "/"))
+    return true;
   const Json* properties = text::member(schema, "properties");
   if (!properties) return false;
-  return std::any_of(properties->items().begin(), properties->items().end(),
-                     [&](const auto& item) { return passes(item.key(), item.value()); });
+  return std::any_of(properties->items().begin(), properties->items().end(), [&](const auto& item) {
+    return passes(text::join(pointer, item.key()), item.key(), item.value());
+  });
 }
 
 void Parameters::number(const std::string& pointer, const std::string& label, const Json& schema,
@@ -128,127 +131,6 @@ void Parameters::choice(const std::string& pointer, const std::string& label, co
   ImGui::EndCombo();
 }
 
-void Parameters::collider_path(const std::string& pointer, const Json& value) {
-  const auto& bodies = workspace_->frame_data().bodies;
-  const std::size_t number = std::stoul(pointer.substr(std::string("/colliders/").size()));
-  if (number >= bodies.size()) return;  // not simulated yet
-  Json keys = value;
-  const FrameData& now = workspace_->frame_data();
-  const Vec3 place = place_of(moved(bodies[number].shape, now.origin));
-  if (draw_path("path", pointer, keys, now.time, {place.begin(), place.end()}, kPlaces))
-    change(pointer, keys);
-}
-
-// A vector over time; without keys it is what it was at the last one.
-void Parameters::vector_path(const std::string& pointer, const Json& value) {
-  Json keys = value;
-  if (!draw_path("over time", pointer, keys, workspace_->frame_data().time, {0, 0, 0}, kPlaces))
-    return;
-  const std::string vector = pointer.substr(0, pointer.rfind('/'));
-  if (keys.empty())
-    change(vector, Json{value[0][1], value[0][2], value[0][3]});
-  else
-    change(pointer, keys);
-}
-
-// Its path, its turn and what it follows; true when one has changed.
-bool Parameters::pin_values(const std::string& place, Json& pin, const Vec3& at) {
-  const double now = workspace_->frame_data().time;
-  const auto keys_of = [](const Json& of) {
-    const Json* known = text::member(of, "keys");
-    return known ? *known : Json::array();
-  };
-  bool changed = false;
-  if (Json keys = keys_of(pin);
-      draw_path("path", place + "/keys", keys, now, {at.begin(), at.end()}, kPlaces)) {
-    pin["keys"] = keys;
-    changed = true;
-  }
-  const Json turn = pin.value("rotate", Json{{"axis", {0, 1, 0}}, {"about", at}});
-  if (Json keys = keys_of(turn); draw_path("turn", place + "/rotate", keys, now, {0},
-                                           "Time [s], and the angle then [degrees]")) {
-    pin["rotate"] = turn;
-    pin["rotate"]["keys"] = keys;
-    changed = true;
-  }
-  if (pin.contains("rotate"))
-    for (const char* which : {"axis", "about"}) {
-      auto vector = turn.value(which, Vec3{});
-      const std::string label = std::string(which) + "##" + place;
-      if (ImGui::DragScalarN(label.c_str(), ImGuiDataType_Double, vector.data(), 3, 0.01f)) {
-        pin["rotate"][which] = vector;
-        changed = true;
-      }
-      mark(place + "/rotate/" + which);
-    }
-  int follow = pin.value("follow", -1);
-  const int last = static_cast<int>(workspace_->document().scene().colliders.size()) - 1;
-  if (last >= 0 &&
-      ImGui::SliderInt(("follows##" + place).c_str(), &follow, -1, last,
-                       follow < 0 ? "nothing" : "body %d", ImGuiSliderFlags_AlwaysClamp)) {
-    pin["follow"] = follow;
-    changed = true;
-  }
-  mark(place + "/follow");
-  return changed;
-}
-
-// A pin that has its place on the cloth alone is that.
-void Parameters::pins(const std::string& pointer, const Json& value) {
-  const std::size_t number = std::stoul(pointer.substr(std::string("/cloths/").size()));
-  const FrameData& now = workspace_->frame_data();
-  const std::string label = "pins: " + std::to_string(value.size()) + "###" + pointer;
-  const bool open = ImGui::TreeNodeEx(label.c_str(), ImGuiTreeNodeFlags_NoTreePushOnOpen);
-  mark(pointer);
-  if (!open || number >= now.cloths.size()) return;
-  const ClothCopy& cloth = now.cloths[number];
-  ImGui::Indent(6);
-  for (std::size_t p = 0; p < std::min<std::size_t>(value.size(), kMostPins); ++p) {
-    Json pin = value[p].is_object() ? value[p] : Json{{"at", value[p]}};
-    const Json at = pin["at"];
-    const int particle =
-        at.is_number() ? at.get<int>() : at[1].get<int>() * cloth.columns + at[0].get<int>();
-    if (particle >= cloth.columns * cloth.rows) continue;
-    const std::string place = text::join(pointer, std::to_string(p));
-    const std::string name =
-        "pin " + (at.is_number() ? at.dump() : at[0].dump() + ", " + at[1].dump());
-    const bool shown =
-        ImGui::TreeNodeEx((name + "###" + place).c_str(), ImGuiTreeNodeFlags_NoTreePushOnOpen);
-    mark(place);
-    if (!shown || !pin_values(place, pin, workspace_->in_scene(cloth.position(particle)))) continue;
-    // What moves nothing is left out.
-    if (pin.contains("keys") && pin["keys"].empty()) pin.erase("keys");
-    if (pin.contains("rotate") && pin["rotate"]["keys"].empty()) pin.erase("rotate");
-    if (pin.value("follow", 0) < 0) pin.erase("follow");
-    change(place, pin.size() == 1 ? at : pin);
-  }
-  if (value.size() > kMostPins) ImGui::TextColored(kQuiet, "… %zu more", value.size() - kMostPins);
-  ImGui::Unindent(6);
-}
-
-// Which lines the cloth is cut along; each can be sewn up again.
-void Parameters::cuts(const std::string& pointer, const Json& value) {
-  const std::string label = "cuts: " + std::to_string(value.size()) + "###" + pointer;
-  const bool open = ImGui::TreeNodeEx(label.c_str(), ImGuiTreeNodeFlags_NoTreePushOnOpen);
-  mark(pointer);
-  if (!open) return;
-  std::size_t gone = value.size();
-  for (std::size_t k = 0; k < std::min<std::size_t>(value.size(), kMostPins); ++k) {
-    const Json &from = value[k].front(), &to = value[k].back();
-    ImGui::Text("%.1f, %.1f  to  %.1f, %.1f: %zu points", from[0].get<double>(),
-                from[1].get<double>(), to[0].get<double>(), to[1].get<double>(), value[k].size());
-    ImGui::SameLine();
-    ImGui::PushID(static_cast<int>(k));
-    if (ImGui::SmallButton("×")) gone = k;
-    mark(pointer + " remove " + std::to_string(k));
-    ImGui::PopID();
-  }
-  if (gone == value.size()) return;
-  Json left = value;
-  left.erase(gone);
-  change(pointer, left);
-}
-
 // Of a cloth or a body as a whole.
 void Parameters::part_buttons(const std::string& pointer) {
   const bool cloth = pointer.starts_with("/cloths/");
@@ -267,46 +149,86 @@ void Parameters::part_buttons(const std::string& pointer) {
   ImGui::PopID();
 }
 
-void Parameters::member(const std::string& pointer, const std::string& key, const Json& schema,
-                        const Json& value) {
-  const std::string label = label_of(key, schema) + "##" + pointer;
-  const Json* options = text::member(schema, "oneOf");
-  const Json& chosen = *text::alternative(schema, value);
-  if (value.is_object()) return group(pointer, words_of(key), chosen, value, false);
-  if (key == "pins" && !value.empty()) return pins(pointer, value);
-  if (key == "cuts" && value.is_array() && !value.empty()) return cuts(pointer, value);
-  if (key == "keys" && pointer.starts_with("/colliders")) return collider_path(pointer, value);
-  if (key == "keys") return vector_path(pointer, value);
-  if (options && key == "substeps") {  // a number, or auto
-    bool automatic = value.is_string();
-    if (ImGui::Checkbox("auto", &automatic)) change(pointer, automatic ? Json("auto") : Json(20));
-    ImGui::SameLine();
-    ImGui::BeginDisabled(automatic);
-    ImGui::SetNextItemWidth(ImGui::CalcItemWidth() - ImGui::GetFontSize() * 4.6f);
-    const int used = workspace_->telemetry().substeps;
-    number(pointer, label, (*options)[0], automatic ? Json(used) : value);
-    ImGui::EndDisabled();
-  } else if (options && value.is_number()) {
-    number(pointer, label, (*options)[0], value);
-  } else if (value.is_boolean()) {
+// A number, or auto.
+void Parameters::substeps(const std::string& pointer, const std::string& label, const Json& schema,
+                          const Json& value) {
+  bool automatic = value.is_string();
+  if (ImGui::Checkbox("auto", &automatic)) change(pointer, automatic ? Json("auto") : Json(20));
+  ImGui::SameLine();
+  ImGui::BeginDisabled(automatic);
+  ImGui::SetNextItemWidth(ImGui::CalcItemWidth() - ImGui::GetFontSize() * 4.6f);
+  const int used = workspace_->telemetry().substeps;
+  number(pointer, label, schema["oneOf"][0], automatic ? Json(used) : value);
+  ImGui::EndDisabled();
+}
+
+// A button for what else the value may be: a number apart for each direction, a vector over time.
+void Parameters::form(const std::string& pointer, const Json& forms, const Json& value,
+                      const Json& chosen) {
+  ImGui::PushID(pointer.c_str());
+  if (ImGui::SmallButton("…")) ImGui::OpenPopup("form");
+  mark(pointer + " form");
+  tooltip("As one value, apart, or over time");
+  if (ImGui::BeginPopup("form")) {
+    for (const Json& to : forms) {
+      const std::string name = name_of_form(to);
+      if (ImGui::Selectable(name.c_str(), &to == &chosen) && &to != &chosen)
+        change(pointer, in_form(value, forms[0], to));
+      mark(pointer + " " + name);
+    }
+    ImGui::EndPopup();
+  }
+  ImGui::PopID();
+}
+
+// One line of text, taken with Enter.
+void Parameters::word(const std::string& pointer, const std::string& label, const Json& value) {
+  std::string text = value.get<std::string>();
+  if (ImGui::InputText(label.c_str(), &text, ImGuiInputTextFlags_EnterReturnsTrue))
+    change(pointer, text);
+}
+
+// The control of a value that is no list of its own kind; false when it is one.
+bool Parameters::plain(const std::string& pointer, const std::string& label, const Json& schema,
+                       const Json& value) {
+  if (value.is_boolean()) {
     bool on = value.get<bool>();
     if (ImGui::Checkbox(label.c_str(), &on)) change(pointer, on);
   } else if (schema.contains("enum")) {
     choice(pointer, label, schema, value);
   } else if (value.is_string()) {
-    std::string text = value.get<std::string>();
-    if (ImGui::InputText(label.c_str(), &text)) change(pointer, text);
+    word(pointer, label, value);
   } else if (value.is_number()) {
     number(pointer, label, schema, value);
   } else if (value.is_array() && !value.empty() && value.size() <= 3 && value[0].is_number()) {
-    numbers(pointer, label, chosen, value);
-  } else if (value.is_array() && !value.empty()) {
-    ImGui::Text("%s: %zu", words_of(key).c_str(), value.size());
+    numbers(pointer, label, schema, value);
   } else {
+    return false;
+  }
+  return true;
+}
+
+void Parameters::member(const std::string& pointer, const std::string& key, const Json& schema,
+                        const Json& value) {
+  const std::string label = label_of(key, schema) + "##" + pointer;
+  const Json* options = text::member(schema, "oneOf");
+  const Json& chosen = *text::alternative(schema, value);
+  const bool forms = options && options->size() > 1 && key != "substeps" && key != "rest";
+  if (value.is_object()) {
+    if (forms) form(pointer, *options, value, chosen);
+    if (forms) ImGui::SameLine();
+    group(pointer, words_of(key), chosen, value, false);
     return;
   }
+  if (value.is_array() && list(pointer, key, value)) return;
+  if (key == "substeps")
+    substeps(pointer, label, schema, value);
+  else if (!plain(pointer, label, chosen, value))
+    as_text(pointer, words_of(key), value);
   mark(pointer);
   tooltip(help_of(pointer, schema).c_str());
+  if (forms) ImGui::SameLine();
+  if (forms) form(pointer, *options, value, chosen);
   if (key == "particle_mass") area_density(pointer);
 }
 
@@ -323,8 +245,9 @@ void Parameters::area_density(const std::string& pointer) {
 void Parameters::members(const std::string& pointer, const Json& schema, const Json& value) {
   for (auto it = value.begin(); it != value.end(); ++it) {
     const Json* known = text::descend(schema, &value, it.key());
-    if (!known || known->contains("const") || !passes(it.key(), *known)) continue;
-    member(text::join(pointer, it.key()), it.key(), *known, *it);
+    const std::string place = text::join(pointer, it.key());
+    if (known && !known->contains("const") && passes(place, it.key(), *known))
+      member(place, it.key(), *known, *it);
   }
 }
 
@@ -341,7 +264,7 @@ void Parameters::group(const std::string& pointer, const std::string& title, con
   if (const Json* about = text::member(schema, "description"))
     tooltip(about->get_ref<const std::string&>().c_str());
   if (!shown) return;
-  const bool whole = std::exchange(whole_, whole_ || (searching() && named(title)));
+  const bool whole = std::exchange(whole_, whole_ || (searching() && named(pointer, title)));
   ImGui::Indent(6);
   const bool part = pointer.starts_with("/cloths/") || pointer.starts_with("/colliders/");
   if (part && std::count(pointer.begin(), pointer.end(), '/') == 2) part_buttons(pointer);
@@ -365,17 +288,21 @@ void Parameters::draw(Workspace& workspace) {
   const Json& schema = text::scene_schema_json();
   const auto top = [&](const char* key, bool open) {
     const Json& known = schema["properties"][key];
-    if (passes(key, known)) group(std::string("/") + key, words_of(key), known, json[key], open);
+    if (passes(std::string("/") + key, key, known))
+      group(std::string("/") + key, words_of(key), known, json[key], open);
   };
   top("solver", true);
+  const auto single = [&](const char* key) {
+    const Json& known = schema["properties"][key];
+    const std::string place = std::string("/") + key;
+    if (passes(place, key, known)) member(place, key, known, json[key]);
+  };
   const Json& cloth = schema["properties"]["cloths"]["items"];
   const bool one = json["cloths"].size() == 1;
-  for (std::size_t n = 0;
-       n < std::min<std::size_t>(json["cloths"].size(), 20) && passes("cloth", cloth); ++n)
-    group("/cloths/" + std::to_string(n), one ? "cloth " : "cloth " + std::to_string(n), cloth,
-          json["cloths"][n], n == 0);
-  if (passes("gravity", schema["properties"]["gravity"]))
-    member("/gravity", "gravity", schema["properties"]["gravity"], json["gravity"]);
+  for (std::size_t n = 0; n < std::min<std::size_t>(json["cloths"].size(), 20); ++n)
+    if (const std::string place = "/cloths/" + std::to_string(n); passes(place, "cloth", cloth))
+      group(place, one ? "cloth " : "cloth " + std::to_string(n), cloth, json["cloths"][n], n == 0);
+  single("gravity");
   top("wind", false);
   top("time", false);
   top("camera", false);
@@ -385,9 +312,12 @@ void Parameters::draw(Workspace& workspace) {
     for (const char* shape : kShapeNames)
       if (json["colliders"][n].contains(shape))
         title = std::string(shape) + " " + std::to_string(n);
-    if (passes("collider", collider))
-      group("/colliders/" + std::to_string(n), title, collider, json["colliders"][n], false);
+    const std::string place = "/colliders/" + std::to_string(n);
+    if (passes(place, "collider", collider))
+      group(place, title, collider, json["colliders"][n], false);
   }
+  single("name");
+  single("about");
   ImGui::PopItemWidth();
   if (const auto part = std::exchange(copied_, {})) workspace.duplicate(*part);
   if (const auto part = std::exchange(removed_, {})) workspace.remove(*part);

@@ -30,16 +30,30 @@ class Parameters {
                const Json& value);
   void choice(const std::string& pointer, const std::string& label, const Json& schema,
               const Json& value);
+  void substeps(const std::string& pointer, const std::string& label, const Json& schema,
+                const Json& value);
+  void word(const std::string& pointer, const std::string& label, const Json& value);
+  bool plain(const std::string& pointer, const std::string& label, const Json& schema,
+             const Json& value);
+  void form(const std::string& pointer, const Json& forms, const Json& value, const Json& chosen);
   void area_density(const std::string& pointer);
+
+  // Lists (lists.cpp). Whether the list has controls of its own.
+  bool list(const std::string& pointer, const std::string& key, const Json& value);
+  void as_text(const std::string& pointer, const std::string& label, const Json& value);
   void pins(const std::string& pointer, const Json& value);
-  bool pin_values(const std::string& place, Json& pin, const Vec3& at);
+  void pin(const std::string& pointer, const Json& value, std::size_t number, std::size_t p);
+  bool pin_holds(const std::string& place, Json& pin);
+  bool pin_moves(const std::string& place, Json& pin, const Vec3& at);
   void cuts(const std::string& pointer, const Json& value);
   void part_buttons(const std::string& pointer);
   void collider_path(const std::string& pointer, const Json& value);
   void vector_path(const std::string& pointer, const Json& value);
+  void share_path(const std::string& pointer, const Json& value);
+  bool opened(const std::string& label, const std::string& pointer) const;
   void change(const std::string& pointer, const Json& value);
-  bool named(const std::string& key) const;
-  bool passes(const std::string& key, const Json& schema) const;
+  bool named(const std::string& pointer, const std::string& key) const;
+  bool passes(const std::string& pointer, const std::string& key, const Json& schema) const;
 
   Workspace* workspace_ = nullptr;  // while drawing
   std::string filter_;

@@ -223,6 +223,7 @@ void Player::export_to(const std::string& path, std::int64_t first,
   attempt([&] {
     if (simulation_->frame() > first) open(scene_);
     outputs_.export_to(path, *simulation_, first, last);
+    if (last && simulation_->frame() >= *last) finish_export();
   });
 }
 

@@ -150,7 +150,9 @@ void App::turn() {
     const bool typing = ImGui::GetIO().WantTextInput;
     if (action != Action::count && !typing &&
         (!press.again || action == Action::step || action == Action::back ||
-         action == Action::forward))
+         action == Action::forward) &&
+        (ImGui::GetTopMostPopupModal() == nullptr || action == Action::close ||
+         action == Action::quit))
       dispatch(action);
   }
   push_bodies(std::min(now - last_turn_, 0.1));
