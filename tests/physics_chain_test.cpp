@@ -121,7 +121,7 @@ class Bundle final : public ClothModel {
   Vec3 pin_position(const Pin& pin, double) const override {
     return particles_.position(pin.j, pin.i);
   }
-  double held_energy(const Rows&, double) const override { return 0; }
+  double held_energy(const Rows&, double, Threads&) const override { return 0; }
   float greatest_stretch(const Rows&) const override { return 1; }
   double strain_in_line(const Rows&, double) const override { return 0; }
   double attachment_energy(const Rows&, double) const override { return 0; }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/frame/energy_guard.h"
+#include "physics/step/threads.h"
 
 namespace weft::physics {
 namespace {
@@ -24,7 +25,7 @@ struct Guarded {
     cloth.stiffness = {stiffness, stiffness, 0};
     scene.cloths.push_back(cloth);
     cloths.push_back(std::make_unique<ClothStep>(scene, 0, method, 1, kernel_table(Simd::best)));
-    guard.open(scene, method, cloths, 0, kDt);
+    guard.open(scene, method, cloths, 0, kDt, threads);
   }
   Particles& particles() { return cloths[0]->particles(); }
   void set_speed(double speed) { set(particles().v, 0, float(speed)); }
@@ -42,6 +43,7 @@ struct Guarded {
   }
 
   Scene scene;
+  Threads threads{1};
   Cloths cloths;
   EnergyGuard guard;
 };

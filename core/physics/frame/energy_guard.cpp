@@ -100,7 +100,7 @@ double fastest_follower(const ClothStep& step, double from, double to) {
 }
 
 bool gained(const Scene& scene, const ClothStep& step, const Rows& x, const Rows& v, double dt,
-            double start, double end) {
+            double start, double end, Threads& threads) {
   constexpr double kMore = 2;
   const Particles& l = step.particles();
   const EnergySum before = motion(scene, step, x, v), now = motion(scene, step, l.x, l.v);
@@ -108,16 +108,16 @@ bool gained(const Scene& scene, const ClothStep& step, const Rows& x, const Rows
   const double speed =
       kMore * std::max(fastest_drive(scene, start, end), fastest_follower(step, start, end));
   if (speed > 0) put_in += 0.5 * free_mass(l) * speed * speed;
-  const double inner = now.kinetic + step.model().held_energy(l.x, dt);
+  const double inner = now.kinetic + step.model().held_energy(l.x, dt, threads);
   // EnergySum alone accounts for most frames.
   if (inner <= kMore * before.kinetic + put_in) return false;
-  return inner > kMore * (before.kinetic + step.model().held_energy(x, dt)) + put_in;
+  return inner > kMore * (before.kinetic + step.model().held_energy(x, dt, threads)) + put_in;
 }
 
-Balance balance(const Scene& scene, const ClothStep& step, double dt) {
+Balance balance(const Scene& scene, const ClothStep& step, double dt, Threads& threads) {
   const Particles& l = step.particles();
   const EnergySum now = motion(scene, step, l.x, l.v);
-  return {now.kinetic + step.model().held_energy(l.x, dt), now.potential,
+  return {now.kinetic + step.model().held_energy(l.x, dt, threads), now.potential,
           2 * step.cloth().drag * now.kinetic * scene.time.frame};
 }
 
@@ -140,13 +140,13 @@ bool Upkeep::kept_up(const Balance& now) {
 }
 
 void EnergyGuard::open(const Scene& scene, Method method, const Cloths& cloths, double time,
-                       double dt) {
+                       double dt, Threads& threads) {
   *this = {};
   for (const auto& step : cloths) {
     const Particles& l = step->particles();
     free_mass_ += free_mass(l);
     const auto held = [&](const Rows& x) {
-      return step->model().held_energy(x, dt) + step->model().attachment_energy(x, dt);
+      return step->model().held_energy(x, dt, threads) + step->model().attachment_energy(x, dt);
     };
     put_in_ += std::max(held(l.x), held(pushed_out(scene, time, l)));
     if (const Load* load = step->model().load()) put_in_ += load->reserve();

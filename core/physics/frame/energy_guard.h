@@ -26,7 +26,7 @@ double fastest_follower(const ClothStep& step, double from, double to);
 // was at `start` with positions x and velocities v, and besides more than what gravity, paths and wind
 // can have put in until `end`.
 bool gained(const Scene& scene, const ClothStep& step, const Rows& x, const Rows& v, double dt,
-            double start, double end);
+            double start, double end, Threads& threads);
 
 // What a cloth holds at the end of a frame, as the method feels it, and what drag took of its motion in
 // it [J].
@@ -35,7 +35,7 @@ struct Balance {
   double potential = 0;  // of gravity
   double lost = 0;
 };
-Balance balance(const Scene& scene, const ClothStep& step, double dt);
+Balance balance(const Scene& scene, const ClothStep& step, double dt, Threads& threads);
 
 // Whether paths or wind do work between two times.
 bool works(const Scene& scene, double from, double to);
@@ -63,7 +63,8 @@ class EnergyGuard {
   // driving instead, by the speed that it can give in every frame.
   static Vec3 counted_gravity(const Scene& scene);
   // Counts what the state holds that a run begins with, or goes on from after it was set.
-  void open(const Scene& scene, Method method, const Cloths& cloths, double time, double dt);
+  void open(const Scene& scene, Method method, const Cloths& cloths, double time, double dt,
+            Threads& threads);
   // Something that a hand moves goes at so many m/s from now on.
   void drive(double speed);
   // So much more energy is there to move the sheets [J].

@@ -53,6 +53,7 @@ FrameRun Simulation::State::frame_run() {
   FrameRun run{.scene = scene,
                .method = time_step.method,
                .cloths = cloths,
+               .threads = runner.threads(),
                .starts = start_.rows(),
                .sleeping = sleeping.get(),
                .frame = frame,
@@ -84,8 +85,8 @@ void Simulation::State::end_frame() {
     if (Tearing* tearing = step->model().tearing()) tearing->update();
   ++frame;
   total_substeps += time_step.substeps;
-  notes_.look({frame, time_step.method, time_step.dt, cloths, sleeping.get(), contact.get(),
-               guard_.energy(), hands_.act() || is_driven(scene, cloths)},
+  notes_.look({frame, time_step.method, time_step.dt, cloths, runner.threads(), sleeping.get(),
+               contact.get(), guard_.energy(), hands_.act() || is_driven(scene, cloths)},
               plan.notes);
   if (options.follow_strain)
     greatest_strain = std::max(greatest_strain.value_or(-1), strain_of(cloths).max);

@@ -77,7 +77,7 @@ void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::stri
   for (std::size_t c = 0; c < frame.cloths.size(); ++c)
     if (!is_asleep(frame.sleeping, c)) {
       const ClothStep& step = *frame.cloths[c];
-      held += step.model().held_energy(step.particles().x, kInstant);
+      held += step.model().held_energy(step.particles().x, kInstant, frame.threads);
     }
   if (!frame.energy.is_made(held)) return;
   left_strain_ = true;

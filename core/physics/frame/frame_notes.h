@@ -20,6 +20,7 @@ struct EndedFrame {
   Method method;
   double dt;  // s, of a substep
   const Cloths& cloths;
+  Threads& threads;
   const Sleeping* sleeping;     // or null
   const SheetContact* contact;  // or null
   const EnergyGuard& energy;

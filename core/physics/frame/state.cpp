@@ -189,7 +189,7 @@ bool Simulation::State::driven() const {
 }
 
 void Simulation::State::open_guard() {
-  guard_.energy().open(scene, time_step.method, cloths, time(), time_step.dt);
+  guard_.energy().open(scene, time_step.method, cloths, time(), time_step.dt, runner.threads());
   notes_.begin_anew();
   hands_.tell(guard_.energy());
 }

@@ -82,7 +82,7 @@ bool StepGuard::overshot(const FrameRun& run) const {
     const bool doubled = most - 1 > 2 * (at_start - 1);
     if (most <= at_start || !(most > kStretched || doubled)) continue;
     if (gained(run.scene, step, run.starts[c].x(), run.starts[c].v(), run.dt, start,
-               start + run.scene.time.frame))
+               start + run.scene.time.frame, run.threads))
       return true;
   }
   return false;
@@ -99,7 +99,7 @@ bool StepGuard::keeps_on(const FrameRun& run) {
                    cloths[c]->model().greatest_stretch(cloths[c]->particles().x) > kLasting;
   Balance all;
   for (std::size_t c = 0; c < cloths.size() && stretched; ++c) {
-    const Balance one = balance(run.scene, *cloths[c], run.dt);
+    const Balance one = balance(run.scene, *cloths[c], run.dt, run.threads);
     all.inner += one.inner;
     all.potential += one.potential;
     all.lost += one.lost;

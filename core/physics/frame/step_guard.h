@@ -26,6 +26,7 @@ struct FrameRun {
   const Scene& scene;
   Method method;
   const Cloths& cloths;
+  Threads& threads;
   std::span<const RollbackBuffer> starts;  // each cloth as it was at the frame's start
   const Sleeping* sleeping;                // or null
   std::int64_t frame;                      // frames before it

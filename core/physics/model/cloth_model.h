@@ -105,7 +105,7 @@ class ClothModel {
   // Of the cloth with its particles at `x`: the energy that its constraints hold as the method feels
   // them in substeps of dt, with what rounding of the positions puts in at once [J]; the greatest
   // squared length of the constraints that carry the cloth, of their rest.
-  virtual double held_energy(const Rows& x, double dt) const = 0;
+  virtual double held_energy(const Rows& x, double dt, Threads& threads) const = 0;
   virtual float greatest_stretch(const Rows& x) const = 0;
   // The greatest strain along lines that sweeps may solve as a whole, that of each constraint spread over so many
   // (strain_in_line.h); 0: there are no lines.

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <chrono>
 
-#include "physics/step/threads.h"
+#include "physics/step/share_rows.h"
 
 namespace weft::physics {
 namespace {
@@ -89,8 +89,9 @@ void Schedule::run(const Substeps& given, Threads& threads, std::span<const RowS
                    RowObserver* observer, Part part) {
   const Clock::time_point before = Clock::now();
   run_all(given, threads, awake, observer, part);
+  if (TaskRecord* record = threads.record()) record->enter("");
   costs_[std::size_t(part)].took(nanoseconds_since(before) / std::max(given.count, 1),
-                                 threads.count());
+                                 threads.running());
 }
 
 void Schedule::run_all(const Substeps& given, Threads& threads, std::span<const RowSpan> awake,
@@ -99,13 +100,17 @@ void Schedule::run_all(const Substeps& given, Threads& threads, std::span<const 
   if (given.dt != prepared_dt_) prepare(given.dt);
   Substeps substeps = given;
   substeps.velocities_between = velocities_between_;
-  const RowSpan all{0, rows_};
+  const auto tell = [&](void (RowObserver::*what)(RowSpan)) {
+    if (!observer) return;
+    if (TaskRecord* record = threads.record()) record->enter("");
+    share_rows(threads, rows_, false, [&](RowSpan rows) { (observer->*what)(rows); });
+  };
   threads.together([&] {
     if (part == Part::whole && rows_only() && !passes_.empty())
       return passes_.front().wavefront->run(substeps, threads, awake, observer);
-    if (observer) observer->before(all);
+    tell(&RowObserver::before);
     for (int s = 0; s < substeps.count; ++s) run_substep(substeps, s, threads, awake, part);
-    if (observer) observer->after(all);
+    tell(&RowObserver::after);
   });
 }
 
@@ -132,6 +137,7 @@ void Schedule::run_substep(const Substeps& substeps, int s, Threads& threads,
       p.wavefront->run(substeps.only(s), threads, awake);
       continue;
     }
+    if (TaskRecord* record = threads.record()) record->enter(p.whole->name);
     const Clock::time_point before = Clock::now();
     p.whole->run(substeps.at(s), threads);
     if (!profile_.empty()) profile_[p.first] += std::int64_t(nanoseconds_since(before));

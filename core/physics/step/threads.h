@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <memory>
 
+#include "physics/step/task_record.h"
+
 namespace weft::physics {
 
 // Waits for another thread: a little at a time, and before long such that others get the core.
@@ -48,6 +50,13 @@ class Threads {
 
   bool standing_by() const { return together_; }
 
+  // From here on the calling thread runs all tasks alone, cut as for count() threads, and `record` is told of them.
+  // Null: threads run them again. Not to be called within together() and share().
+  void record(TaskRecord* record) { record_ = record; }
+  TaskRecord* record() const { return record_; }
+  // How many run at once.
+  int running() const { return record_ ? 1 : count_; }
+
   // work(0) … work(tasks - 1), in any order; `alone`: on this thread, because they are short. Shares
   // do not share out again, and do not throw.
   template <class Work>
@@ -57,9 +66,13 @@ class Threads {
       return;
     }
     if (!together_) {
-      arena_.execute([&] { oneapi::tbb::parallel_for(std::size_t(0), tasks, work); });
+      arena_.execute([&] {
+        if (record_) return run_recorded(tasks, work);
+        oneapi::tbb::parallel_for(std::size_t(0), tasks, work);
+      });
       return;
     }
+    if (record_) return run_recorded(tasks, work);
     for (std::size_t first = 0; first < tasks; first += kMostShares) {
       const auto some = [&](int n) { work(first + std::size_t(n)); };
       share_out(int(std::min(tasks - first, kMostShares)), &some,
@@ -76,10 +89,12 @@ class Threads {
     explicit Together(Threads& of) : threads(of) {
       threads.over_.store(false, std::memory_order_release);
       threads.together_ = true;
-      for (int n = 1; n < threads.count_; ++n) helpers.run([this] { threads.help(); });
+      if (threads.record_) threads.record_->gather();
+      for (int n = 1; n < threads.running(); ++n) helpers.run([this] { threads.help(); });
     }
     ~Together() {
       threads.together_ = false;
+      if (threads.record_) threads.record_->leave();
       threads.over_.store(true, std::memory_order_release);
       helpers.wait();
     }
@@ -89,6 +104,16 @@ class Threads {
     Threads& threads;
     oneapi::tbb::task_group helpers;
   };
+  template <class Work>
+  void run_recorded(std::size_t tasks, const Work& work) {
+    record_->open();
+    for (std::size_t k = 0; k < tasks; ++k) {
+      record_->begin(int(k));
+      work(k);
+      record_->end();
+    }
+    record_->close();
+  }
   void share_out(int shares, const void* work, Call call);
   bool take(Pile& pile);
   bool take_any();
@@ -105,6 +130,7 @@ class Threads {
     std::atomic<std::uint64_t> left = 0;
   };
 
+  TaskRecord* record_ = nullptr;
   bool together_ = false;
   std::uint64_t round_ = 0;
   std::unique_ptr<Pile[]> piles_;

@@ -5,8 +5,9 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
-#include "physics/step/threads.h"
+#include "physics/step/share_rows.h"
 
 namespace weft::physics {
 namespace {
@@ -20,18 +21,17 @@ constexpr int kMostSubsteps = 8;  // of a chunk
 constexpr std::size_t kManyStages = 5;
 constexpr std::size_t kFirstLevelBytes = 40 * 1024;
 constexpr int kManyStagesLeast = 4, kManyStagesMost = 16;  // rows
-constexpr int kSharedHeight = 16;  // so that all threads are busy to the end of a frame
-// The least work worth a task [ns].
-constexpr double kTaskNanoseconds = 12000;
-constexpr int kShares = 4;  // of a stage, for each thread: rows are not alike
 // Of a stage: threads meet for what takes them longer than to meet. Bending of 300 triangles takes 7 µs.
 constexpr std::int64_t kFewItems = 256;
 
-// Substeps of a chunk: shorter ones have threads hand rows to each other too often.
-constexpr int kShortChunk = 2;
-// Each thread follows the one before by what a chunk leans and two tiles: little of a sheet that is this
-// many times as tall as all of that.
-constexpr int kTallSheet = 4;
+// What sharing rows costs [ns]: a tile, to be taken and told of; a byte of rows that come from the third level or from
+// another core's caches, or from memory. Fitted to two threads over chunks of 2 to 8 substeps and tiles of 8 to 16
+// rows: with less for a tile they foretell Gauss-Seidel and Jacobi on 100 points a side to 15 %; the rest is room for
+// threads that wait for a busy core.
+constexpr double kTileNanoseconds = 800, kCachedByte = 0.03, kMemoryByte = 0.1;
+constexpr std::size_t kThirdLevelBytes = std::size_t(32) << 20;
+// Rows of a tile where several threads share the sheet.
+constexpr int kSharedHeights[] = {2, 3, 4, 6, 8, 12, 16};
 
 constexpr int kNone = -1;  // no tile
 
@@ -41,6 +41,7 @@ struct Wavefront::Run {
   const Substeps& substeps;
   std::span<const RowSpan> awake;
   RowObserver* observer;
+  TaskRecord* record;
 };
 
 Wavefront::Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_bytes,
@@ -50,67 +51,117 @@ Wavefront::Wavefront(std::vector<RowStage*> stages, int rows, std::size_t row_by
       row_bytes_(row_bytes),
       row_nanoseconds_(row_nanoseconds) {
   for (const RowStage* s : stages_) reach_ += s->reach;
-}
-
-// One thread and a lattice that fits the cache: one tile a substep. Else tiles as tall as the cache
-// allows, or as a task is worth, and many substeps a chunk: that its lean leaves the cache costs less
-// than to come by more often.
-void Wavefront::choose_tiles(int count, int threads) {
-  const int reach = std::max(reach_, 1);
-  const std::size_t bytes = row_bytes_ * std::size_t(rows_);
-  chunk_substeps_ = 1;
-  height_ = rows_ + reach;
-  if (threads == 1 && bytes <= kSecondLevelBytes && stages_.size() >= kManyStages) {
-    const int rows = int(kFirstLevelBytes / std::max<std::size_t>(row_bytes_, 1));
-    height_ = std::min(height_, std::clamp(rows, kManyStagesLeast, kManyStagesMost));
-  } else if (threads > 1 || bytes > kTileBytes) {
-    const int cache_rows = int(kTileBytes / std::max<std::size_t>(row_bytes_, 1));
-    // A tile and its lean share the cache; several tiles per thread keep all threads busy.
-    height_ = std::max({2 * reach, cache_rows / 2, kLeastHeight});
-    if (threads > 1)
-      height_ = std::min(height_, std::max(std::min(rows_ / (4 * threads), kSharedHeight), reach));
-    height_ = std::clamp(height_, 1, rows_);
-    chunk_substeps_ =
-        bytes > kSecondLevelBytes ? kMostSubsteps : std::clamp(height_ / reach, 1, kMostSubsteps);
-    if (threads > 1) {
-      const double tile = row_nanoseconds_ * height_;
-      const int worth = std::min(kMostSubsteps, int(std::ceil(kTaskNanoseconds / tile)));
-      chunk_substeps_ = std::max(chunk_substeps_, worth);
-      // At both ends of a frame threads wait for each other, the longer the longer chunks are.
-      const int most = std::min(count / threads, kMostSubsteps);
-      tall_ = kTallSheet * threads * (most * reach + 2 * height_) <= rows_;
-      if (!tall_)
-        chunk_substeps_ = std::min(chunk_substeps_, std::max(count / (2 * threads), kShortChunk));
-    }
-    chunk_substeps_ = std::clamp(count / threads, 1, chunk_substeps_);
-  }
-  offset_.clear();
   int offset = 0;
-  for (int s = 0; s < chunk_substeps_; ++s)
+  for (int s = 0; s < kMostSubsteps; ++s)
     for (std::size_t q = 0; q < stages_.size(); ++q) {
       if (s + q > 0) offset += stages_[q]->reach;
       offset_.push_back(offset);
     }
-  ring_ = threads > 1 ? threads + 1 : 1;
+}
+
+// How far the last stage of so many substeps lies behind the first.
+int Wavefront::lean(int substeps) const {
+  return offset_[std::size_t(substeps) * stages_.size() - 1];
+}
+
+// One thread and a lattice that fits the cache: one tile a substep. Else tiles as tall as the cache allows, and many
+// substeps a chunk: that its lean leaves the cache costs less than to come by more often.
+void Wavefront::choose_tiles(int count) {
+  const int reach = std::max(reach_, 1);
+  const std::size_t bytes = row_bytes_ * std::size_t(rows_);
+  chunk_substeps_ = 1;
+  height_ = rows_ + reach;
+  if (bytes <= kSecondLevelBytes && stages_.size() >= kManyStages) {
+    const int rows = int(kFirstLevelBytes / std::max<std::size_t>(row_bytes_, 1));
+    height_ = std::min(height_, std::clamp(rows, kManyStagesLeast, kManyStagesMost));
+  } else if (bytes > kTileBytes) {
+    const int cache_rows = int(kTileBytes / std::max<std::size_t>(row_bytes_, 1));
+    // A tile and its lean share the cache.
+    height_ = std::clamp(std::max({2 * reach, cache_rows / 2, kLeastHeight}), 1, rows_);
+    chunk_substeps_ =
+        bytes > kSecondLevelBytes ? kMostSubsteps : std::clamp(height_ / reach, 1, kMostSubsteps);
+    chunk_substeps_ = std::clamp(count, 1, chunk_substeps_);
+  }
+  ring_ = 1;
+  shared_ = {};
+}
+
+// Tiles and chunks for several threads: those that are done soonest. Long chunks fetch rows seldom, but threads
+// wait for each other at both ends of a frame, and at every chunk where the sheet is not tall enough for all of
+// them at once; low tiles cost more, and follow each other closely.
+void Wavefront::choose_shared_tiles(int count, int threads) {
+  if (count == shared_.count && threads == shared_.threads) return;
+  ring_ = threads + 1;
+  const auto known = std::find_if(chosen_.begin(), chosen_.end(), [&](const Shared& s) {
+    return s.count == count && s.threads == threads;
+  });
+  shared_ = known != chosen_.end() ? *known : Shared{count, threads, best_shape(count, threads)};
+  if (known == chosen_.end()) chosen_[next_chosen_++ % chosen_.size()] = shared_;
+  choose_chunks(count, threads, shared_.shape);
+}
+
+Wavefront::Shape Wavefront::best_shape(int count, int threads) {
+  double least = std::numeric_limits<double>::infinity();
+  Shape best;
+  const int most = std::clamp(count / threads, 1, kMostSubsteps);
+  for (int substeps = 1; substeps <= most; ++substeps)
+    for (const int height : kSharedHeights)
+      for (const bool rising : {false, true}) {
+        if (rising && substeps == 1) continue;
+        const Shape shape{substeps, std::min(height, rows_), rising};
+        choose_chunks(count, threads, shape);
+        const double ns = estimate(threads);
+        if (ns < least) least = ns, best = shape;
+      }
+  return best;
+}
+
+// What a run in these chunks takes [ns]: each goes to the thread that is free first, begins when the one before it
+// is far enough ahead, and does not overtake it. Tiles at both ends of the sheet have fewer rows.
+double Wavefront::estimate(int threads) {
+  ends_.clear();
+  double start = 0;
+  for (std::size_t c = 0; c < chunks_.size(); ++c) {
+    const Chunk& chunk = chunks_[c];
+    const double row = row_nanoseconds(chunk.count, threads);
+    const double tile = height_ * row + kTileNanoseconds;
+    if (c >= std::size_t(threads)) start = std::max(start, ends_[c - std::size_t(threads)]);
+    double end = start + rows_ * row + chunk.tiles * kTileNanoseconds;
+    if (c > 0) end = std::max(end, ends_.back() + tile);
+    ends_.push_back(end);
+    start += (chunk.span + 1) * tile;
+  }
+  return ends_.back();
+}
+
+// Of a row of a chunk.
+double Wavefront::row_nanoseconds(int substeps, int threads) const {
+  const int touched = height_ + lean(substeps) + stages_.front()->reach;
+  const bool stay = row_bytes_ * std::size_t(touched) <= kSecondLevelBytes;
+  // Chunks follow each other closely: the first of them brings rows from memory.
+  const bool far = row_bytes_ * std::size_t(rows_) > kThirdLevelBytes;
+  const double byte = far ? kCachedByte + (kMemoryByte - kCachedByte) / threads : kCachedByte;
+  return row_nanoseconds_ * substeps + double(row_bytes_) * byte * (stay ? 1 : substeps);
 }
 
 Wavefront::Chunk Wavefront::chunk(int number, int first, int count) const {
-  const int offset = offset_[count * stages_.size() - 1];
+  const int offset = lean(count);
   const int tiles = (rows_ + offset + height_ - 1) / height_;
   const int span = (offset + stages_.front()->reach + height_ - 1) / height_;
   const int slot = number % ring_ * chunk_substeps_;
   return {first, count, slot, tiles, span, std::max(0, tiles - 1 - span)};
 }
 
-// The first chunks grow evenly up to the longest, and the last shrink. A thread begins when the one
+// `rising`: the first chunks grow evenly up to the longest, and the last shrink. A thread begins when the one
 // before it is span + 1 tiles ahead, the last of T threads so when (span + 1) T tiles of the mean
 // length (first + longest)/2 are done; the first chunk, of t tiles, is to last just as long:
 //
 //   first/longest = (span + 1) T / (2 t - (span + 1) T).
 //
-// The chunks between are as long as each other, as many for every thread. A tall sheet has no others:
-// coming by once more would take longer.
-void Wavefront::choose_chunks(int count, int threads) {
+// The chunks between are as long as each other, as many for every thread.
+void Wavefront::choose_chunks(int count, int threads, const Shape& shape) {
+  chunk_substeps_ = shape.substeps;
+  height_ = shape.height;
   chunks_.clear();
   most_tiles_ = 0;
   auto add = [&, first = 0](int length) mutable {
@@ -119,14 +170,15 @@ void Wavefront::choose_chunks(int count, int threads) {
     first += length;
   };
   const Chunk whole = chunk(0, 0, chunk_substeps_);
-  const double ahead = (whole.span + 1) * threads;
-  const double first_share = std::min(1.0, ahead / std::max(2 * whole.tiles - ahead, 1.0));
+  const double ramp = double(whole.span + 1) * threads;
+  const double first_share = std::clamp(ramp / std::max(2 * whole.tiles - ramp, 1.0), 0.0, 1.0);
   const auto length = [&](int n) {
     const double share = first_share + (1 - first_share) * (n - 1) / (threads - 1);
     return std::max(1, int(std::lround(chunk_substeps_ * share)));
   };
   int rising = 1;
-  for (; !tall_ && rising < threads && count >= 2 * length(rising) + chunk_substeps_; ++rising) {
+  for (; shape.rising && rising < threads && count >= 2 * length(rising) + chunk_substeps_;
+       ++rising) {
     add(length(rising));
     count -= 2 * length(rising);
   }
@@ -149,9 +201,12 @@ void Wavefront::run(const Substeps& substeps, Threads& threads, std::span<const 
            return a.end > b.begin;
          }) == awake.end());
   assert(awake.empty() || (awake.front().begin >= 0 && awake.back().end <= rows_));
-  const Run r{substeps, awake, observer};
+  const Run r{substeps, awake, observer, threads.record()};
   const bool several = threads.count() > 1;
-  choose_tiles(substeps.count, substeps.count > 1 ? threads.count() : 1);
+  if (!several)
+    choose_tiles(substeps.count);
+  else if (substeps.count > 1)
+    choose_shared_tiles(substeps.count, threads.count());
   prepare(substeps.dt);
   for (RowStage* s : stages_) s->reserve(chunk_substeps_ * ring_);
   if (several && substeps.count == 1) return run_one_by_one(r, threads);
@@ -177,21 +232,22 @@ RowSpan Wavefront::tile_rows(int tile, int offset) const {
           std::clamp((tile + 1) * height_ - offset, 0, rows_)};
 }
 
+// All that a tile touches.
+RowSpan Wavefront::rows_of(int tile, const Chunk& chunk) const {
+  return {tile_rows(tile, lean(chunk.count)).begin, tile_rows(tile, -stages_.front()->reach).end};
+}
+
 // Tiles of a single substep follow one on the other: stages whose rows are apart are shared out by themselves.
 void Wavefront::run_one_by_one(const Run& r, Threads& threads) {
-  const RowSpan all{0, rows_};
   const Substep substep = r.substeps.at(0);
-  const int share = std::max(1, rows_ / (kShares * threads.count()));  // rows
-  if (r.observer) r.observer->before(all);
+  if (r.observer)
+    share_rows(threads, rows_, false, [&](RowSpan rows) { r.observer->before(rows); });
   for (std::size_t q = 0; q < stages_.size(); ++q) {
-    const bool alone = !stages_[q]->rows_apart() || stages_[q]->items < kFewItems;
-    const int height = alone ? rows_ : share;
-    threads.share(std::size_t((rows_ + height - 1) / height), alone, [&](std::size_t k) {
-      const int begin = int(k) * height;
-      run_stage(r, q, {begin, std::min(begin + height, rows_)}, substep);
-    });
+    if (r.record) r.record->enter(stages_[q]->name);
+    share_rows(threads, rows_, !stages_[q]->rows_apart() || stages_[q]->items < kFewItems,
+               [&](RowSpan rows) { run_stage(r, q, rows, substep); });
   }
-  if (r.observer) r.observer->after(all);
+  if (r.observer) share_rows(threads, rows_, false, [&](RowSpan rows) { r.observer->after(rows); });
 }
 
 void Wavefront::run_stage(const Run& r, std::size_t q, RowSpan rows, const Substep& substep) const {
@@ -223,7 +279,6 @@ void Wavefront::run_tile(const Run& r, int tile, const Chunk& chunk) const {
 // Every tile counts the tiles it still waits for. Whoever finishes the last of them goes on with it,
 // and puts others that have become ready into a queue, for whoever comes next.
 void Wavefront::run_parallel(const Run& r, Threads& threads) {
-  choose_chunks(r.substeps.count, threads.count());
   const int chunks = int(chunks_.size());
   if (const int room = chunks * most_tiles_; room > room_) {
     waits_ = std::make_unique<std::atomic<int>[]>(room);
@@ -243,7 +298,15 @@ void Wavefront::run_parallel(const Run& r, Threads& threads) {
   taken_.store(0, std::memory_order_relaxed);
   queue_[0].store(0, std::memory_order_relaxed);
   queued_.store(1, std::memory_order_relaxed);
+  if (r.record) return work_recorded(r);
   threads.share(std::size_t(threads.count()), false, [&](std::size_t) { work(r); });
+}
+
+void Wavefront::work_recorded(const Run& r) {
+  r.record->enter(stages_.front()->name + (stages_.size() > 1 ? " … " + stages_.back()->name : ""));
+  r.record->open(row_bytes_);
+  work(r);
+  r.record->close();
 }
 
 // One thread's part: tiles from the queue, in the order in which they became ready.
@@ -262,10 +325,13 @@ void Wavefront::work(const Run& r) {
 int Wavefront::run_and_release(const Run& r, int tile) {
   const int k = tile % most_tiles_, c = tile / most_tiles_;
   const Chunk& chunk = chunks_[c];
+  if (r.record) r.record->begin(tile, rows_of(k, chunk), chunk.first, chunk.count);
   run_tile(r, k, chunk);
+  if (r.record) r.record->end();
   int next = kNone;
   const auto release = [&](int kk, int cc) {
     const int waiting = cc * most_tiles_ + kk;
+    if (r.record) r.record->depends(waiting, tile);
     if (waits_[waiting].fetch_sub(1, std::memory_order_acq_rel) > 1) return;
     if (next == kNone)
       next = waiting;

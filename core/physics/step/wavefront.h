@@ -7,11 +7,11 @@
 // tile k of a chunk of substeps runs stage q on rows [k h - offset(q), (k+1) h - offset(q)). A tile
 // needs the tile before it in its chunk, and in the chunk before the tile that lies past its reach;
 // nothing else. Tiles of several chunks are under way at once, without a barrier, and a tile's rows
-// stay in the cache for all its substeps (time skewing: Wonnacott 2000; Strzodka et al. 2011). The
-// first and the last chunks of a frame are shorter, but of a tall sheet: the later threads can begin
-// sooner, and the earlier ones have work for longer. On several threads, a substep by itself runs stage after stage.
+// stay in the cache for all its substeps (time skewing: Wonnacott 2000; Strzodka et al. 2011). How tall tiles and how
+// long chunks are is foreseen to take least. On several threads, a substep by itself runs stage after stage.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <span>
@@ -49,16 +49,33 @@ class Wavefront {
     int span;  // tile k of the next chunk waits for tile k + span of this one,
     int last;  // tile `last` of the next chunk for the last of this one, those after it for none
   };
-  void choose_tiles(int count, int threads);
-  void choose_chunks(int count, int threads);
+  // How several threads share a run out.
+  struct Shape {
+    int substeps = 1;     // of a chunk, at most
+    int height = 1;       // rows of a tile
+    bool rising = false;  // the first and last chunks are shorter
+  };
+  struct Shared {
+    int count = 0, threads = 0;  // of substeps, that share them
+    Shape shape;
+  };
+  void choose_tiles(int count);
+  void choose_shared_tiles(int count, int threads);
+  Shape best_shape(int count, int threads);
+  void choose_chunks(int count, int threads, const Shape& shape);
+  double estimate(int threads);
+  double row_nanoseconds(int substeps, int threads) const;
+  int lean(int substeps) const;
   Chunk chunk(int number, int first, int count) const;
   void run_tile(const Run& run, int tile, const Chunk& chunk) const;
   RowSpan tile_rows(int tile, int offset) const;
+  RowSpan rows_of(int tile, const Chunk& chunk) const;
   void run_one_by_one(const Run& run, Threads& threads);
   void run_stage(const Run& run, std::size_t stage, RowSpan rows, const Substep& substep) const;
   static void run_rows(const Run& run, RowStage& stage, RowSpan rows, const Substep& substep);
   void run_parallel(const Run& run, Threads& threads);
   void work(const Run& run);
+  void work_recorded(const Run& run);
   int run_and_release(const Run& run, int tile);
 
   std::vector<RowStage*> stages_;
@@ -71,10 +88,14 @@ class Wavefront {
   double prepared_dt_ = 0;
   int chunk_substeps_ = 1;  // at most
   int height_ = 1, ring_ = 1;
-  bool tall_ = false;        // threads wait for each other but briefly
-  std::vector<int> offset_;  // of every stage of every substep of a chunk
+  std::vector<int> offset_;  // of every stage of every substep of the longest chunk
   std::vector<Chunk> chunks_;
-  int most_tiles_ = 1;  // of a chunk; tile k of chunk c has number c * most_tiles_ + k
+  Shared shared_;  // what the chunks are for
+  std::array<Shared, 8>
+      chosen_;  // the last: where sheets meet, few numbers of substeps come again and again
+  std::size_t next_chosen_ = 0;
+  std::vector<double> ends_;  // ns, of every chunk as it is foreseen
+  int most_tiles_ = 1;        // of a chunk; tile k of chunk c has number c * most_tiles_ + k
   std::unique_ptr<std::atomic<int>[]> waits_;  // of every number: for how many other tiles
   std::unique_ptr<std::atomic<int>[]> queue_;  // numbers in the order in which they became ready
   int room_ = 0;                               // of both

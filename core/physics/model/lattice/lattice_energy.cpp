@@ -1,7 +1,9 @@
 // What is measured of a grid's model in double precision (lattice_model.h).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "physics/model/lattice/bending.h"
 #include "physics/model/lattice/energy.h"
@@ -10,6 +12,7 @@
 #include "physics/model/path.h"
 #include "physics/model/segment_distance.h"
 #include "physics/model/strain_in_line.h"
+#include "physics/step/threads.h"
 
 namespace weft::physics {
 namespace {
@@ -125,7 +128,21 @@ double LatticeModel::greatest_coordinate(const Rows& x) const {
 
 // A projected constraint counts as a spring of at most the inertia of its ends over dt², all that a
 // sweep makes of it, and of its positional share.
-double LatticeModel::stretch_energy(const Rows& x, double dt) const {
+double LatticeModel::stretch_energy(const Rows& x, double dt, Threads& threads) const {
+  constexpr std::int64_t kFew = 50000;  // constraints: 60 µs, what it takes to wake a thread
+  constexpr std::size_t kParts = 64;
+  std::array<double, kParts> sums{};
+  const StretchRow r = stretch_row(x, dt);
+  const auto first = [&](std::size_t part) {
+    return int(part * std::size_t(lattice_.rows) / kParts);
+  };
+  threads.share(kParts, parts_.constraints() < kFew, [&](std::size_t part) {
+    sums[part] = stretch_energy(x, r, {first(part), first(part + 1)});
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+StretchRow LatticeModel::stretch_row(const Rows& x, double dt) const {
   constexpr float kInfinite = std::numeric_limits<float>::infinity();
   const Cloth& cloth = parts_.cloth;
   const double projected = std::min(1.0, 2 * cloth.positional_k * parts_.scene.solver.iterations);
@@ -135,11 +152,18 @@ double LatticeModel::stretch_energy(const Rows& x, double dt) const {
             : method_ == Method::positional           ? float(projected)
                                                       : 1;
   r.inverse_dt2 = float(1 / (dt * dt));
+  return r;
+}
+
+// Of what joins these rows to themselves and to later ones; `r`: what all rows share.
+double LatticeModel::stretch_energy(const Rows& x, StretchRow r, RowSpan rows) const {
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  const Cloth& cloth = parts_.cloth;
   double sum = 0;
   for (const Stencil& f : stencils_) {
     r.rest = float(f.rest);
     r.give = cloth.strain_limit > 0 ? float(cloth.strain_limit * f.rest) : kInfinite;
-    for (int j = 0; j + f.dj < lattice_.rows; ++j) {
+    for (int j = rows.begin; j < std::min(rows.end, lattice_.rows - f.dj); ++j) {
       static_cast<FarRows&>(r) = far_rows(f, x, lattice_.columns, j);
       r.w_near = lattice_.w(j) + f.near();
       r.w_far = lattice_.w(j + f.dj) + f.far();
@@ -152,8 +176,9 @@ double LatticeModel::stretch_energy(const Rows& x, double dt) const {
   return sum;
 }
 
-double LatticeModel::held_energy(const Rows& x, double dt) const {
-  double sum = is_membrane() ? membrane().energy(lattice_.gather(x)) : stretch_energy(x, dt);
+double LatticeModel::held_energy(const Rows& x, double dt, Threads& threads) const {
+  double sum =
+      is_membrane() ? membrane().energy(lattice_.gather(x)) : stretch_energy(x, dt, threads);
   if (parts_.cloth.bending.given()) sum += bending_energy(parts_.cloth, lattice_.gather(x));
   return sum;
 }

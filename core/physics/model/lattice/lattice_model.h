@@ -31,7 +31,7 @@ class LatticeModel final : public ClothModel {
   Strain strain() const override;
   double limited_strain() const override;
   Vec3 pin_position(const Pin& pin, double time) const override;
-  double held_energy(const Rows& x, double dt) const override;
+  double held_energy(const Rows& x, double dt, Threads& threads) const override;
   float greatest_stretch(const Rows& x) const override;
   double strain_in_line(const Rows& x, double spread) const override;
   double attachment_energy(const Rows& x, double dt) const override;
@@ -54,7 +54,9 @@ class LatticeModel final : public ClothModel {
   std::vector<Joined> cut_constraints() const;  // that the cloth's cuts cross
   SurfaceMesh whole_surface() const;
   const BendLinks* bend_links() const { return tearing_ ? tearing_->bend_links() : nullptr; }
-  double stretch_energy(const Rows& x, double dt) const;
+  double stretch_energy(const Rows& x, double dt, Threads& threads) const;
+  double stretch_energy(const Rows& x, StretchRow r, RowSpan rows) const;
+  StretchRow stretch_row(const Rows& x, double dt) const;
   double greatest_coordinate(const Rows& x) const;
   // Whether the membrane's own forces act, or line sweeps solve it, and not springs in its place.
   bool is_membrane() const { return parts_.cloth.membrane.given() && is_explicit(method_); }

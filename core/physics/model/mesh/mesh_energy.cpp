@@ -93,7 +93,7 @@ double MeshModel::attachment_energy(const Rows& at, double dt) const {
   return sum;
 }
 
-double MeshModel::held_energy(const Rows& x, double dt) const {
+double MeshModel::held_energy(const Rows& x, double dt, Threads&) const {
   const double load = gas_ ? gas_->greatest_energy(particles_.gather(x)) : 0;
   if (!is_explicit(method_)) return projected_energy(x, dt) + load;
   return mesh_energy(triangles_, material_, particles_.gather(x)) + rounding_gain() + load;

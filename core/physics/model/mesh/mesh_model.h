@@ -34,7 +34,7 @@ class MeshModel final : public ClothModel {
   double strain_in_line(const Rows& x, double spread) const override;
   double limited_strain() const override { return strain().max; }
   Vec3 pin_position(const Pin& pin, double time) const override;
-  double held_energy(const Rows& x, double dt) const override;
+  double held_energy(const Rows& x, double dt, Threads& threads) const override;
   float greatest_stretch(const Rows& x) const override;
   double attachment_energy(const Rows& x, double dt) const override;
   double rounding_gain() const override;
