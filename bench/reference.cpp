@@ -119,8 +119,9 @@ std::string unsupported(const weft::Scene& scene) {
   for (const weft::Pin& pin : c.pins)
     if (!pin.keys.empty()) return "moving pins";
   for (const weft::Collider& collider : scene.colliders)
-    if (!collider.keys.empty() || collider.friction.model != weft::FrictionModel::coulomb ||
-        collider.cuts || collider.shape.index() > 1)
+    if (!collider.keys.empty() || !collider.rotate.keys.empty() ||
+        collider.friction.model != weft::FrictionModel::coulomb || collider.cuts ||
+        collider.shape.index() > 1)
       return "a collider that is not a fixed sphere or plane with Coulomb friction";
   return "";
 }

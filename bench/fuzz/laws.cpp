@@ -61,7 +61,7 @@ bool collides_with_itself(const Scene& scene) {
 bool driven(const Scene& scene) {
   return !scene.gravity_keys.empty() ||
          std::any_of(scene.colliders.begin(), scene.colliders.end(),
-                     [](const Collider& c) { return !c.keys.empty(); }) ||
+                     [](const Collider& c) { return !c.keys.empty() || !c.rotate.keys.empty(); }) ||
          std::any_of(scene.cloths.begin(), scene.cloths.end(), [](const Cloth& c) {
            return std::any_of(c.pins.begin(), c.pins.end(),
                               [](const Pin& pin) { return pin.moves(); });
@@ -112,7 +112,8 @@ bool left_alone(const Scene& scene) {
 bool only_planes(const Scene& scene) {
   return !scene.colliders.empty() &&
          std::all_of(scene.colliders.begin(), scene.colliders.end(), [](const Collider& c) {
-           return std::holds_alternative<Plane>(c.shape) && c.keys.empty() && !c.cuts;
+           return std::holds_alternative<Plane>(c.shape) && c.keys.empty() &&
+                  c.rotate.keys.empty() && !c.cuts;
          });
 }
 

@@ -209,10 +209,10 @@ std::vector<Pin> Parts::pins(const Cloth& c, const Time& time) {
   return c.mesh.given() ? vertex_pins(c, time) : grid_pins(c.grid, time);
 }
 
-Rotation Parts::rotation(const Grid& g, double frame) {
+Rotation Parts::rotation(const Vec3& near, double size, double frame) {
   Rotation r;
   r.axis = draw_.vector(draw_.decades(1e-3, 1e3));
-  r.about = plus(g.origin, draw_.vector(extent_of(g).size));
+  r.about = weft::plus(near, draw_.vector(size));
   double time = draw_.chance(0.6) ? 0 : frame * draw_.decades(0.1, 30);
   double degrees = draw_.chance(0.5) ? 0 : draw_.uniform(-3600, 3600);
   for (int n = draw_.between(1, 4); n > 0; --n) {
@@ -240,11 +240,16 @@ void Parts::add_motion(Scene& scene) {
     if (some(0.15)) c.spin = draw_.vector(draw_.chance(0.9) ? draw_.decades(0.01, 30) : 1000);
     if (some(0.2)) c.level_diagonals = LevelDiagonals::one;
     for (Pin& pin : c.pins) {
-      if (some(0.1)) pin.rotate = rotation(c.grid, scene.time.frame);
+      if (some(0.1)) pin.rotate = rotation(c.grid.origin, extent_of(c.grid).size, scene.time.frame);
       if (!scene.colliders.empty() && some(0.1))
         pin.follow = draw_.between(0, int(scene.colliders.size()) - 1);
     }
   }
+  for (Collider& c : scene.colliders)
+    if (some(0.2)) {
+      const double size = draw_.chance(0.5) ? 0 : extent(scene.cloths[0]).size;
+      c.rotate = rotation(place_of(c.shape), size, scene.time.frame);
+    }
 }
 
 Cloth Parts::cloth(const Solver& solver, const Time& time) {

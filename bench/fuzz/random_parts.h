@@ -71,7 +71,7 @@ class Parts {
   weft::Shape shape(const weft::Vec3& at, double size);
   weft::Friction friction();
   std::vector<weft::Key> path(const weft::Vec3& start, double size, double frame);
-  weft::Rotation rotation(const weft::Grid& grid, double frame);
+  weft::Rotation rotation(const weft::Vec3& near, double size, double frame);
 
   Draw& draw_;
   double richness_;

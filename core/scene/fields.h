@@ -192,6 +192,7 @@ void fields(Walk& walk, Collider& collider) {
   walk("friction", collider.friction);
   walk("offset", collider.offset);
   walk("keys", collider.keys);
+  walk("rotate", collider.rotate);
   walk("animation", collider.animation);
   walk("cuts", collider.cuts);
 }

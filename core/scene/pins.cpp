@@ -202,9 +202,7 @@ class Pins {
   // How a pin moves.
   void path(const Pin& pin, const std::string& here) {
     check_keys(pin.keys, here + "/keys", result_);
-    check_keys(pin.rotate.keys, here + "/rotate/keys", result_);
-    if (hypot(pin.rotate.axis) < 1e-6)
-      fault(here + "/rotate/axis", "axis is zero", "a direction at least 1e-6 long");
+    check_rotation(pin.rotate, here + "/rotate", result_);
     const auto colliders = static_cast<int>(scene_.colliders.size());
     if (pin.follow >= colliders)
       fault(here + "/follow", "there is no collider " + std::to_string(pin.follow),
@@ -221,6 +219,12 @@ class Pins {
 };
 
 }  // namespace
+
+void check_rotation(const Rotation& rotation, const std::string& place, Check& result) {
+  check_keys(rotation.keys, place + "/keys", result);
+  if (hypot(rotation.axis) < 1e-6)
+    result.fault(place + "/axis", "axis is zero", "a direction at least 1e-6 long");
+}
 
 void check_pins(const Scene& scene, const Cloth& cloth, const std::string& place, Check& result) {
   Pins pins(scene, cloth, result);

@@ -23,4 +23,7 @@ void check_keys(const std::vector<AnyKey>& keys, const std::string& place, Check
           "times that increase");
 }
 
+// The same of a rotation's keys, and a fault where its axis has no direction.
+void check_rotation(const Rotation& rotation, const std::string& place, Check& result);
+
 }  // namespace weft::text

@@ -209,6 +209,7 @@ class Together {
                 number_words(friction.bias),
             "both above 0, or neither");
     if (sound({place + "/keys"})) check_keys(collider.keys, place + "/keys", result_);
+    if (sound({place + "/rotate"})) check_rotation(collider.rotate, place + "/rotate", result_);
     const std::string shape = place + "/" + kShapeNames[collider.shape.index()];
     std::visit([&](const auto& one) { this->shape(one, shape); }, collider.shape);
     if (sound({place + "/animation"})) check_animation(collider, place + "/animation", result_);

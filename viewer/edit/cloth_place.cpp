@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "edit/turn.h"
+#include "weft/turn.h"
 
 namespace weft::viewer {
 

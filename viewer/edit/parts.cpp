@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "edit/cloth_place.h"
-#include "edit/turn.h"
 #include "weft/mesh.h"
 #include "weft/shape.h"
+#include "weft/turn.h"
 
 namespace weft::viewer {
 
@@ -41,6 +41,7 @@ Collider copy_of(const Collider& body) {
   const Vec3 by = beside(triangulate(body.shape).positions);
   copy.shape = moved(body.shape, by);
   shift(copy.keys, by);
+  copy.rotate.about = plus(copy.rotate.about, by);
   return copy;
 }
 
@@ -133,19 +134,8 @@ Scene without(Scene scene, const Part& part) {
 }
 
 Shape turned(Shape shape, std::size_t axis, double angle) {
-  const Matrix turn = rotation(axis, angle);
   const Vec3 place = place_of(shape);
-  for_each_value(shape, [&](const char*, auto& value, ShapeValue is) {
-    if constexpr (std::is_same_v<decltype(value), Vec3&>) {
-      if (is == ShapeValue::point) {
-        const Vec3 from{value[0] - place[0], value[1] - place[1], value[2] - place[2]};
-        value = plus(place, times(turn, from));
-      }
-      if (is == ShapeValue::direction) value = times(turn, value);
-      if (is == ShapeValue::angles) value = angles_of(times(turn, matrix_of(value)));
-    }
-  });
-  return shape;
+  return weft::turned(std::move(shape), rotation(axis, angle), place);
 }
 
 Shape sized(Shape shape, double factor) {

@@ -142,12 +142,16 @@ void Pusher::let_go(Workspace& workspace) {
   const std::string shape = place + "/" + kShapeNames[collider.shape.index()] + "/";
   std::vector<Document::Change> changes{{place + "/keys", text::Json::array()}};
   // The other end of an axis comes along.
-  const Vec3 from = place_of(collider.shape);
-  const Shape there = moved(collider.shape, {to[0] - from[0], to[1] - from[1], to[2] - from[2]});
+  Collider still = collider;
+  still.keys.clear();
+  const Vec3 by = minus(to, place_of(shape_at(still, workspace.frame_data().time)));
+  const Shape there = moved(collider.shape, by);
+  if (!collider.rotate.keys.empty())
+    changes.push_back({place + "/rotate/about", text::Json(plus(collider.rotate.about, by))});
   for_each_value(there, [&](const char* key, const auto& value, ShapeValue is) {
     if constexpr (std::is_same_v<decltype(value), const Vec3&>) {
-      if (is == ShapeValue::place) changes.push_back({shape + key, to});
-      if (is == ShapeValue::point) changes.push_back({shape + key, value});
+      if (is == ShapeValue::place || is == ShapeValue::point)
+        changes.push_back({shape + key, value});
     }
   });
   workspace.edit(changes, false, std::string("move ") + kShapeNames[collider.shape.index()]);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMostPins = 100;
 constexpr const char* kPlaces = "Time [s], and x, y, z then";
+constexpr const char* kAngles = "Time [s], and the angle then [degrees]";
 constexpr const char* kOffsets = "Time [s], and how far each is from its start: x, y, z";
 
 std::size_t number_in(const std::string& pointer, const std::string& before) {
@@ -101,6 +102,14 @@ void Parameters::collider_path(const std::string& pointer, const Json& value) {
   if (number >= now.bodies.size()) return;  // not simulated yet
   Json keys = value;
   const Vec3 place = place_of(moved(now.bodies[number].shape, now.origin));
+  if (pointer.ends_with("/rotate/keys")) {
+    if (!draw_path("turn", pointer, keys, now.time, {0}, kAngles)) return;
+    // One that begins to turn does so about itself.
+    const Collider& body = workspace_->document().scene().colliders[number];
+    if (value.empty() && body.rotate.about == Vec3{})
+      change(pointer.substr(0, pointer.rfind('/')) + "/about", Json(place_of(body.shape)));
+    return change(pointer, keys);
+  }
   if (draw_path("path", pointer, keys, now.time, {place.begin(), place.end()}, kPlaces))
     change(pointer, keys);
 }
@@ -157,8 +166,7 @@ bool Parameters::pin_moves(const std::string& place, Json& pin, const Vec3& at) 
     changed = true;
   }
   const Json turn = pin.value("rotate", Json{{"axis", {0, 1, 0}}, {"about", at}});
-  if (Json keys = keys_of(turn); draw_path("turn", place + "/rotate", keys, now, {0},
-                                           "Time [s], and the angle then [degrees]")) {
+  if (Json keys = keys_of(turn); draw_path("turn", place + "/rotate", keys, now, {0}, kAngles)) {
     pin["rotate"] = turn;
     pin["rotate"]["keys"] = keys;
     changed = true;

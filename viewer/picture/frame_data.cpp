@@ -68,7 +68,7 @@ void copy_view(const View& view, const Scene& scene, FrameData& to) {
 
 Collider collider_at(const Collider& collider, double time) {
   Collider now;
-  now.shape = at_time(moved(collider.shape, displacement(collider, time)), time);
+  now.shape = shape_at(collider, time);
   now.friction = collider.friction;
   now.offset = collider.offset;
   now.cuts = collider.cuts;

@@ -179,6 +179,8 @@ struct Collider {
   bool cuts = false;  // cuts the constraints that pass through it instead of pushing
   // Of a mesh: its vertices over time, placed as it is: .pc2, .mdd, .glb or .gltf beside the scene file, or absolute.
   std::string animation{};
+  // It turns about an axis, where the scene has its shape, and then goes along its keys, axis and all.
+  Rotation rotate{};
   friend bool operator==(const Collider&, const Collider&) = default;
 };
 

@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "weft/scene.h"
+#include "weft/turn.h"
 
 namespace weft {
 
 // Triangles of a closed surface (a plane: of a square about its point; a mesh: its own, open or closed),
-// counter-clockwise seen from outside, in the scene's coordinates without the collider's keys.
+// counter-clockwise seen from outside, in the scene's coordinates without the collider's keys and rotation.
 struct ShapeMesh {
   std::vector<Vec3> positions;  // m
   std::vector<Vec3> normals;    // unit, outward, one for each position
@@ -36,11 +37,15 @@ std::optional<std::array<Vec3, 2>> bounds_of(const Shape& shape);
 // The shape moved by so much [m].
 Shape moved(Shape shape, const Vec3& by);
 
+// The shape turned about a point [m].
+Shape turned(Shape shape, const Matrix& turn, const Vec3& about);
+
 // The shape as it is at a time [s] by its animation, where it has one.
 Shape at_time(Shape shape, double time);
+// The shape of a collider as it stands at a time [s]: animated, turned and moved.
+Shape shape_at(const Collider& collider, double time);
 
-// How far a collider has moved along its keys at `time` [m]; zero without keys. Add it to the
-// positions of triangulate().
+// How far the place of a collider has moved by its rotation and its keys at `time` [m].
 Vec3 displacement(const Collider& collider, double time);
 
 // Whether the mesh of a cloth, at rest, is fine enough for a collider's features. Where it is not, the collider

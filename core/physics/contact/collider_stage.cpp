@@ -10,7 +10,8 @@ namespace {
 std::string detail_of(const Collider& c) {
   return std::string(kShapeNames[c.shape.index()]) +
          (c.friction.model == FrictionModel::course ? ", course friction" : ", Coulomb friction") +
-         (c.keys.empty() ? "" : ", moving") + (c.animation.empty() ? "" : ", animated");
+         (c.keys.empty() ? "" : ", moving") + (c.rotate.keys.empty() ? "" : ", turning") +
+         (c.animation.empty() ? "" : ", animated");
 }
 
 class ColliderStage final : public ColliderRowStage {
@@ -29,7 +30,7 @@ class ColliderStage final : public ColliderRowStage {
   void run(int j, const Substep& s) override {
     if (far_.skip(j, s)) return;
     ColliderRow row = collider_.row(parts_, j, s);
-    if (probe_) probe_->look(row, row.body, j, s);
+    if (probe_) probe_->look(row, j, s);
     far_.found(j, s, kernel_(row));
   }
   std::size_t bytes() const override { return probe_ ? probe_->bytes() : 0; }

@@ -39,16 +39,13 @@ std::unique_ptr<ColliderRowStage> make_collider(const ClothParts& parts, const C
 // The layer of a collider's bias; null where its friction does not damp.
 std::unique_ptr<RowStage> make_friction_layer(const ClothParts& parts, const Collider& collider,
                                               const StartInside& start);
-// Triangles against a collider, right after its particles; null for planes, and where nothing holds the
+// Triangles against a collider, right after its particles; none for planes, and where nothing holds the
 // corners of triangles together. `particles`: what that stage found.
-std::unique_ptr<RowStage> make_collider_triangles(const LatticeParts& parts,
-                                                  const Collider& collider,
-                                                  const StartInside& start,
-                                                  const SpeculativeCulling& particles);
-// The same for the triangles of a mesh; null where the cloth has none.
-std::unique_ptr<RowStage> make_collider_triangles(const ClothParts& parts, const Collider& collider,
-                                                  const StartInside& start,
-                                                  const SpeculativeCulling& particles);
+Stages make_collider_triangles(const LatticeParts& parts, const Collider& collider,
+                               const StartInside& start, const SpeculativeCulling& particles);
+// The same for the triangles of a mesh; none where the cloth has none.
+Stages make_collider_triangles(const ClothParts& parts, const Collider& collider,
+                               const StartInside& start, const SpeculativeCulling& particles);
 // A collider that cuts.
 std::unique_ptr<RowStage> make_cut(const LatticeParts& parts, const Collider& collider,
                                    const StartInside& start);

@@ -24,21 +24,17 @@ constexpr double kMostLever = 2;  // the greatest share of a corner; 1.37 where 
 constexpr double kSudden = 5;     // m/s; of a blow by something else than the collider
 constexpr double kShort = 1.5;    // times the flat ones: edges that need no reach of their own
 
-struct Touch {
-  Weights weights{};
-  Vec3 normal{};
-  double depth = 0;  // m; > 0: to be lifted by, at the end of the substep
-  Vec3 way{};        // m; how far the surface there has come, beside the collider
-};
+}  // namespace
 
 // The first contact on the way of the triangle, seen from the collider.
-Touch first_touch(const DeepestOnBody& d, double offset) {
+ColliderTriangles::Touch ColliderTriangles::first_touch(const DeepestOnBody& d, double offset) {
   if (d.nearest.distance >= offset) return {};
   return {d.weights, d.nearest.normal, offset - d.nearest.distance, d.way};
 }
 template <class Shape>
-Touch first_touch(const Shape& shape, double offset, const Corners& end, int places, double edge,
-                  double tolerance) {
+ColliderTriangles::Touch ColliderTriangles::first_touch(const Shape& shape, double offset,
+                                                        const Corners& end, int places, double edge,
+                                                        double tolerance) {
   for (int n = 1; n <= places; ++n) {
     const double left = 1 - double(n) / places;
     Corners c = end;
@@ -51,8 +47,8 @@ Touch first_touch(const Shape& shape, double offset, const Corners& end, int pla
   return {};
 }
 
-// Changes of position and velocity of the touching point, as a particle's in collide.h.
-std::pair<Vec3, Vec3> rub(const CollideRow& r, const Touch& touch, const Vec3& speed) {
+std::pair<Vec3, Vec3> ColliderTriangles::rub(const CollideRow& r, const Touch& touch,
+                                             const Vec3& speed) {
   const double into = dot(speed, touch.normal);
   const Vec3 tangential = minus(speed, times(touch.normal, into));
   const double distance = length(tangential) * r.dt;
@@ -62,8 +58,6 @@ std::pair<Vec3, Vec3> rub(const CollideRow& r, const Touch& touch, const Vec3& s
   return {plus(times(touch.normal, touch.depth), times(lost, r.dt)),
           plus(times(touch.normal, std::max(0.0, -into)), lost)};
 }
-
-}  // namespace
 
 ColliderTriangles::ColliderTriangles(const ClothParts& parts, const Collider& collider,
                                      const StartInside& start, const SpeculativeCulling& particles,
@@ -90,11 +84,6 @@ void ColliderTriangles::restart() {
   std::fill(lengths_.begin(), lengths_.end(), Length{});
 }
 
-void ColliderTriangles::run(int begin, int end, const Substep& s) {
-  for (int j = begin; j < std::min(end, last_row()); ++j)
-    if (!is_harmless(j, s) && !far_.skip(j, s)) keep_out(j, s);
-}
-
 RowReach ColliderTriangles::reach_of_particles(int j, const Substep& s) const {
   const int next = std::min(j + 1, cloth_.particles.rows - 1);
   const RowReach a = particles_.reach_at(j, s.time), b = particles_.reach_at(next, s.time);
@@ -105,12 +94,24 @@ int ColliderTriangles::passes(double longest) const {
   return longest > AllowedDepth::kStretched * edge_ ? kPasses : 1;
 }
 
-void ColliderTriangles::lift(const ColliderRow& r, const std::array<int, 3>& j,
-                             const std::array<int, 3>& i) {
-  for (int n = 0; n < kTurns && touch(r, j, i); ++n) continue;
+bool ColliderTriangles::lift(const ColliderRow& r, const std::array<int, 3>& j,
+                             const std::array<int, 3>& i, std::size_t first) {
+  bool moved = false, on = true;
+  for (int n = 0; n < kTurns && on; ++n) {
+    const Touch touch = find(r, j, i, first);
+    on = touch.depth > 0 && lift_once(r, touch, j, i);
+    moved |= touch.depth > 0;
+  }
+  return moved;
+}
+
+bool ColliderTriangles::touches(const ColliderRow& r, const std::array<int, 3>& j,
+                                const std::array<int, 3>& i, std::size_t first) {
+  return find(r, j, i, first).depth > 0;
 }
 
 void ColliderTriangles::keep_out(int j, const Substep& s) {
+  if (is_harmless(j, s) || far_.skip(j, s)) return;
   Length& length = lengths_[std::size_t(j)];
   const bool known = length.known(s.time);
   const double longest = known ? length.longest : greatest(cloth_.particles.x, j);
@@ -127,20 +128,23 @@ double ColliderTriangles::time_to_grow(int j, double by) const {
   return std::max(0.0, by) / (2 * greatest(cloth_.particles.v, j) + kSudden + collider_.fastest());
 }
 
-bool ColliderTriangles::touch(const ColliderRow& r, const std::array<int, 3>& j,
-                              const std::array<int, 3>& i) {
-  Particles& l = cloth_.particles;
-  const Vec3 place{r.cx, r.cy, r.cz}, u{r.ux, r.uy, r.uz};
-  std::array<Vec3, 3> v;
+// Velocity of a corner past the collider.
+Vec3 ColliderTriangles::past(const ColliderRow& r, int j, int i) const {
+  const Particles& l = cloth_.particles;
+  const Vec3 own{l.v.at(0, j, i), l.v.at(1, j, i), l.v.at(2, j, i)};
+  return minus(own, r.carried(r.about_place(l.position(j, i)), own));
+}
+
+ColliderTriangles::Touch ColliderTriangles::find(const ColliderRow& r, const std::array<int, 3>& j,
+                                                 const std::array<int, 3>& i, std::size_t first) {
   Corners c;
   for (int k = 0; k < 3; ++k) {
-    v[k] = minus({l.v.at(0, j[k], i[k]), l.v.at(1, j[k], i[k]), l.v.at(2, j[k], i[k])}, u);
-    c.x[k] = minus({l.x.at(0, j[k], i[k]), l.x.at(1, j[k], i[k]), l.x.at(2, j[k], i[k])}, place);
-    c.path[k] = times(v[k], r.dt);
+    c.x[k] = r.into(r.about_place(cloth_.particles.position(j[k], i[k])));
+    c.path[k] = r.into(times(past(r, j[k], i[k]), r.dt));
   }
   std::span<const int> features;
-  if (features_) features = features_->about(r, c, edge_, j[0], i[0]);
-  if (features_ && features.empty()) return false;
+  if (features_) features = features_->about(r, c, edge_, j[first], i[first]);
+  if (features_ && features.empty()) return {};
   double path = 0;
   for (int k = 0; k < 3; ++k) {
     c.x[k] = upright_.into(c.x[k]);
@@ -162,8 +166,14 @@ bool ColliderTriangles::touch(const ColliderRow& r, const std::array<int, 3>& j,
         }
       },
       upright_.shape);
-  if (touch.depth <= 0) return false;
-  touch.normal = upright_.out_of(touch.normal);
+  touch.normal = r.out_of(upright_.out_of(touch.normal));
+  touch.way = r.out_of(touch.way);
+  return touch;
+}
+
+bool ColliderTriangles::lift_once(const ColliderRow& r, const Touch& touch,
+                                  const std::array<int, 3>& j, const std::array<int, 3>& i) {
+  Particles& l = cloth_.particles;
   std::array<double, 3> share;
   double mobility = 0, greatest = 0;
   Vec3 speed{};
@@ -171,7 +181,7 @@ bool ColliderTriangles::touch(const ColliderRow& r, const std::array<int, 3>& j,
     share[k] = l.w(j[k], i[k]) * touch.weights[k];
     mobility += share[k] * touch.weights[k];
     greatest = std::max(greatest, share[k]);
-    speed = plus(speed, times(v[k], touch.weights[k]));
+    speed = plus(speed, times(past(r, j[k], i[k]), touch.weights[k]));
   }
   speed = minus(speed, times(touch.way, r.inverse_dt));
   if (mobility <= 0) return false;

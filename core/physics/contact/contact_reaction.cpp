@@ -7,7 +7,7 @@
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/collider_stage.h"
 #include "physics/contact/friction.h"
-#include "physics/model/path.h"
+#include "physics/model/placement.h"
 
 namespace weft::physics {
 namespace {
@@ -69,25 +69,31 @@ void support(const Scene& scene, const Cloth& cloth, double time, const Lag& lag
              const Particles& l, std::vector<Vec3>& a) {
   for (const Collider& c : scene.colliders) {
     if (c.cuts) continue;
-    const Vec3 place = c.keys.empty() ? place_of(c.shape) : position_at(c.keys, time);
-    const Vec3 u = c.keys.empty() ? Vec3{} : velocity_over(c.keys, time, lag.dt);
+    const Placement placement(c, time);
+    const RigidMotion motion(c, time, lag.dt);
     const BodySurface* body = surface_of(c);
     const bool chords = c.friction.model == FrictionModel::coulomb && resolves(cloth, c);
     l.for_each([&](int j, int i) {
       if (l.w(j, i) <= 0) return;
-      const Vec3 x = l.position(j, i), p = minus(x, place);
+      const Vec3 x = l.position(j, i), p = placement.seen(x);
       Vec3& own = a[std::size_t(l.number(j, i))];
       // A substep ends on the surface, or off a curved one by what it went into it before.
       const double rounding =
           kRounding * std::max({1.0, std::abs(x[0]), std::abs(x[1]), std::abs(x[2])});
-      const double most = length(own) * lag.dt * lag.dt;
+      const Vec3 v{l.v.at(0, j, i), l.v.at(1, j, i), l.v.at(2, j, i)};
+      const Vec3 off = minus(x, placement.place), past = minus(v, motion.carried(off, v, lag.dt));
+      // What goes along with the collider, or slides over it, has this.
+      const Vec3 going = motion.acceleration(off, past);
+      const Vec3 seen = placement.into(minus(own, going));
+      const double most = length(seen) * lag.dt * lag.dt;
       if (least_distance(body, time, p) > c.offset + rounding + most) return;
       const Nearest surface = nearest_at(c.shape, time, p);
-      const double inward = -dot(own, surface.normal);
+      const double inward = -dot(seen, surface.normal);
       if (inward > 0 && surface.distance < c.offset + rounding + inward * lag.dt * lag.dt) {
-        const Vec3 v{l.v.at(0, j, i), l.v.at(1, j, i), l.v.at(2, j, i)};
         const Vec3 local = body ? velocity_at(*body, time, lag.dt, p) : Vec3{};
-        own = supported(c, time, chords, p, surface, minus(minus(v, u), local), own, lag);
+        const Vec3 sliding = minus(placement.into(past), local);
+        const Vec3 left = supported(c, time, chords, p, surface, sliding, seen, lag);
+        own = plus(placement.out_of(left), going);
       }
     });
   }

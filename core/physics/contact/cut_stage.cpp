@@ -26,10 +26,9 @@ class CutStage final : public ColliderRowStage {
   void run(int j, const Substep& s) override {
     if (far_.skip(j, s)) return;
     Lattice& l = parts_.lattice;
-    const CollideRow r = collider_.row(parts_, j, s);
-    const Vec3 place{r.cx, r.cy, r.cz};
+    const ColliderRow r = collider_.row(parts_, j, s);
     const auto at = [&](int row, int i) {
-      return upright_.into(minus({l.x.at(0, row, i), l.x.at(1, row, i), l.x.at(2, row, i)}, place));
+      return upright_.into(r.into(r.about_place(l.position(row, i))));
     };
     RowReach reach{1e30f, 0};
     float* const distance = distances_.data() + std::size_t(s.slot) * l.stride;
@@ -48,6 +47,7 @@ class CutStage final : public ColliderRowStage {
         },
         upright_.shape);
     reach.clearance -= float(2 * longest_);
+    reach.speed += r.rim;
     far_.found(j, s, reach);
   }
 

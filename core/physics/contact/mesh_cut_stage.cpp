@@ -25,23 +25,25 @@ class MeshCutStage final : public ColliderRowStage {
 
   void run(int j, const Substep& s) override {
     if (far_.skip(j, s)) return;
-    const CollideRow row = collider_.row(parts_, j, s);
+    const ColliderRow row = collider_.row(parts_, j, s);
     RowReach reach{1e30f, 0};
     std::visit([&](const auto& shape) { cut_row(shape, row, j, reach); }, upright_.shape);
+    reach.speed += row.rim;
     far_.found(j, s, reach);
   }
   std::size_t bytes() const override { return ends_.size() * sizeof(ends_[0]); }
 
  private:
   template <class Shape>
-  void cut_row(const Shape& shape, const CollideRow& row, int j, RowReach& reach) {
+  void cut_row(const Shape& shape, const ColliderRow& row, int j, RowReach& reach) {
     const Particles& p = parts_.particles;
-    const Vec3 center{row.cx, row.cy, row.cz};
+    const auto seen = [&](const Particles::Place& at) {
+      return upright_.into(row.into(row.about_place(p.position(at.j, at.i))));
+    };
     for (const int edge : tearing_.edges_of_row(j)) {
       if (!tearing_.holds(std::size_t(edge))) continue;
       const auto [near, far] = ends_[std::size_t(edge)];
-      const Vec3 from = upright_.into(minus(p.position(near.j, near.i), center));
-      const Vec3 e = minus(upright_.into(minus(p.position(far.j, far.i), center)), from);
+      const Vec3 from = seen(near), e = minus(seen(far), from);
       const double clearance = nearest_of(shape, from).distance - row.offset - length(e);
       if (clearance <= 0 && comes_inside(shape, row.offset, from, e)) {
         tearing_.end(edge);

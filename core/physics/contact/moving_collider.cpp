@@ -22,6 +22,13 @@ namespace {
 
 constexpr double kStrain = 0.2;  // SpeculativeCulling's
 
+// How fast the surface of a collider turns about a point at most, ever [m/s].
+double surface_speed(const Collider& collider, const Vec3& about) {
+  constexpr double kEver = 1e9;  // s
+  const double turn = fastest_turn(collider.rotate, 0, kEver);
+  return turn == 0 ? 0 : turn * lever_of(collider, about);
+}
+
 }  // namespace
 
 double longest_edge(const Cloth& cloth) {
@@ -83,7 +90,19 @@ MovingCollider::MovingCollider(const ClothParts& parts, const Collider& collider
         r.cz = float(place[2]);
       },
       collider.shape);
+  if (const Rotation& turn = collider.rotate; !turn.keys.empty())
+    rim_ = surface_speed(collider, place_of(collider.shape));
   follow_keys();
+}
+
+Vec3 ColliderRow::carried(const Vec3& about_place, const Vec3& v) const {
+  const Vec3 u{ux, uy, uz};
+  if (!turns) return u;
+  const Vec3 before = minus(about_place, times(minus(v, u), dt));
+  Vec3 velocity = u;
+  for (std::size_t k = 0; k < 3; ++k)
+    velocity[k] += dot({turning[k][0], turning[k][1], turning[k][2]}, before);
+  return velocity;
 }
 
 void MovingCollider::follow_keys() {
@@ -94,6 +113,7 @@ void MovingCollider::follow_keys() {
     along = std::max(along, length(e) / (b.time - a.time));
   }
   fastest_ = along + deepest() / growth_ + (body_ ? body_->fastest() : 0);
+  if (!collider_.rotate.keys.empty()) fastest_ += surface_speed(collider_, collider_.rotate.about);
 }
 
 double MovingCollider::deepest() const {
@@ -119,16 +139,29 @@ ColliderRow MovingCollider::row(const ClothParts& parts, int j, const Substep& s
     r.body.before = body_->moves() ? body_->at(s.time - s.dt) : r.body.now;
     r.body.travel = body_->travel(s.time - s.dt, s.time);
   }
-  if (collider_.keys.empty()) return r;
-  const Vec3 c = position_at(collider_.keys, s.time);
-  const Vec3 u = velocity_over(collider_.keys, s.time, s.dt);
-  r.cx = float(c[0]);
-  r.cy = float(c[1]);
-  r.cz = float(c[2]);
-  r.ux = float(u[0]);
-  r.uy = float(u[1]);
-  r.uz = float(u[2]);
+  if (moves_rigidly(collider_)) place(r, s);
   return r;
+}
+
+void MovingCollider::place(ColliderRow& r, const Substep& s) const {
+  const Placement now(collider_, s.time);
+  const RigidMotion motion(collider_, s.time, s.dt);
+  r.cx = float(now.place[0]);
+  r.cy = float(now.place[1]);
+  r.cz = float(now.place[2]);
+  r.ux = float(motion.velocity[0]);
+  r.uy = float(motion.velocity[1]);
+  r.uz = float(motion.velocity[2]);
+  if (!now.turned) return;
+  r.turn = now.turn;
+  r.turns = motion.turns;
+  r.rim = float(rim_);
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t m = 0; m < 3; ++m) r.turning[k][m] = float(motion.turning[k][m]);
+  // Kernels look at meshes as these see themselves (BodyProbe).
+  if (!body_)
+    std::visit([&](const auto& shape) { r.shape = constants_of(shape); },
+               turned(collider_.shape, now.turn, {}));
 }
 
 SpeculativeCulling::SpeculativeCulling(const ClothParts& parts, double collider_speed)
@@ -164,7 +197,8 @@ void SpeculativeCulling::found(int j, const Substep& s, const RowReach& reach, d
   const double pull = std::max(1.0, (stretch - 1) / kStrain);
   const double speed = 2 * (reach.speed + collider_speed_), a = pull * acceleration_;
   const double c = std::max(0.0, double(reach.clearance));
-  const double wait = (std::sqrt(speed * speed + 2 * a * c) - speed) / a;
+  // A plane that turns is infinitely fast far off.
+  const double wait = std::isinf(speed) ? 0 : (std::sqrt(speed * speed + 2 * a * c) - speed) / a;
   rows_[j].ran = s.time;
   rows_[j].resume = s.time + wait;
   rows_[j].reach = reach;

@@ -2,9 +2,12 @@
 // from it to matter.
 #pragma once
 
+#include <optional>
+
 #include "physics/contact/body/body_passage.h"
 #include "physics/contact/colliders/shapes.h"
 #include "physics/model/cloth_model.h"
+#include "physics/model/placement.h"
 
 namespace weft::physics {
 
@@ -59,8 +62,15 @@ bool caught_by_triangles(const Collider& collider);
 
 // One row and the collider, and, where that is a mesh, how its surface has come there.
 struct ColliderRow : CollideRow {
-  double time = 0;  // s, at the end of the substep
+  double time = 0;               // s, at the end of the substep
+  std::optional<Matrix> turn{};  // of a collider that ever turns, as Placement's, then
   BodyPassage body{};
+
+  // As Placement's and RigidMotion's, of what lies about the place as kernels have it.
+  Vec3 about_place(const Vec3& point) const { return minus(point, {cx, cy, cz}); }
+  Vec3 into(const Vec3& way) const { return turn ? times_transpose(*turn, way) : way; }
+  Vec3 out_of(const Vec3& way) const { return turn ? times(*turn, way) : way; }
+  Vec3 carried(const Vec3& about_place, const Vec3& v) const;
 };
 
 // A collider in motion, as the kernels take it. What is inside when it meets the cloth would be torn
@@ -74,7 +84,7 @@ class MovingCollider {
                  bool by_triangles = false);
   // The collider at the end of the substep, and row j of the cloth.
   ColliderRow row(const ClothParts& parts, int j, const Substep& s) const;
-  // Greatest speed along its keys, of its animation and of its growth [m/s].
+  // Greatest speed along its keys, of its turn, of its animation and of its growth [m/s].
   double fastest() const { return fastest_; }
   // Takes up keys, and what is inside, when they have changed.
   void follow_keys();
@@ -83,11 +93,12 @@ class MovingCollider {
 
  private:
   double deepest() const;  // m below the surface when they met
+  void place(ColliderRow& row, const Substep& s) const;
 
   const Collider& collider_;
   const BodySurface* body_;  // of a mesh
   CollideRow constants_{};
-  double fastest_ = 0;
+  double fastest_ = 0, rim_ = 0;  // m/s
   const StartInside& start_;
   const bool by_triangles_;
   const double growth_;  // s, until it has grown

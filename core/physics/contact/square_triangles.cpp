@@ -127,13 +127,13 @@ class SquareTriangles final : public ColliderTriangles {
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_collider_triangles(const LatticeParts& parts,
-                                                  const Collider& collider,
-                                                  const StartInside& start,
-                                                  const SpeculativeCulling& particles) {
-  if (!caught_by_triangles(collider)) return nullptr;
-  if (resolves(parts.cloth, collider) && parts.stencils.empty()) return nullptr;
-  return std::make_unique<SquareTriangles>(parts, collider, start, particles);
+Stages make_collider_triangles(const LatticeParts& parts, const Collider& collider,
+                               const StartInside& start, const SpeculativeCulling& particles) {
+  Stages stages;
+  if (!caught_by_triangles(collider)) return stages;
+  if (resolves(parts.cloth, collider) && parts.stencils.empty()) return stages;
+  stages.push_back(std::make_unique<SquareTriangles>(parts, collider, start, particles));
+  return stages;
 }
 
 }  // namespace weft::physics

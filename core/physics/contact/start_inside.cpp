@@ -6,15 +6,10 @@
 
 #include "physics/contact/body/body_triangle.h"
 #include "physics/contact/triangle_shape.h"
+#include "physics/model/placement.h"
 
 namespace weft::physics {
 namespace {
-
-Vec3 place_at(const Collider& collider, double time) {
-  return collider.keys.empty()
-             ? std::visit([](const auto& s) { return place_of(s); }, collider.shape)
-             : position_at(collider.keys, time);
-}
 
 // The least distance of a point of a triangle that cuts the core of a shape. That of a convex shape is a
 // convex function, so that nested golden sections find it.
@@ -58,13 +53,13 @@ void find_triangles_inside(const ClothParts& parts, const Collider& collider, St
   const AllowedDepth allowed(parts.cloth, collider);
   const double edge = longest_edge(parts.cloth);
   const Upright upright(at_time(collider.shape, found.time));
-  const Vec3 place = place_at(collider, found.time);
+  const Placement placement(collider, found.time);
   for (const std::array<int, 3>& triangle : parts.model.surface().triangles) {
     Corners c{};
     bool moves = false;
     for (int k = 0; k < 3; ++k) {
       const auto [j, i] = l.place(triangle[std::size_t(k)]);
-      c.x[k] = upright.into(minus(l.position(j, i), place));
+      c.x[k] = upright.into(placement.seen(l.position(j, i)));
       moves |= l.w(j, i) > 0;
     }
     const double longest = longest_side(c.x);
@@ -102,7 +97,7 @@ StartInside start_inside(const ClothParts& parts, const Collider& collider, doub
 
 double deepest_in(const Cloth& cloth, const Collider& collider, double time,
                   std::span<const Vec3> x, std::span<const std::array<std::int32_t, 3>> triangles) {
-  const Vec3 place = place_at(collider, time);
+  const Placement placement(collider, time);
   const Upright upright(at_time(collider.shape, time));
   const AllowedDepth allowed(cloth, collider);
   const double at_rest = longest_edge(cloth);
@@ -113,7 +108,7 @@ double deepest_in(const Cloth& cloth, const Collider& collider, double time,
         std::vector<Vec3> seen(x.size());
         double least = 0;
         for (std::size_t p = 0; p < x.size(); ++p) {
-          seen[p] = upright.into(minus(x[p], place));
+          seen[p] = upright.into(placement.seen(x[p]));
           distances[p] = nearest_of(shape, seen[p]).distance;
           least = std::min(least, distances[p]);
         }

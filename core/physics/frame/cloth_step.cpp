@@ -117,13 +117,11 @@ void ClothStep::choose_contact() {
       if (colliders[k].cuts) continue;
       auto particles = make_collider(parts(), colliders[k], starts_[k]);
       const SpeculativeCulling& far = particles->far();
-      auto faces = lattice ? make_collider_triangles(*lattice, colliders[k], starts_[k], far)
-                           : make_collider_triangles(parts(), colliders[k], starts_[k], far);
+      Stages faces = lattice ? make_collider_triangles(*lattice, colliders[k], starts_[k], far)
+                             : make_collider_triangles(parts(), colliders[k], starts_[k], far);
       list_.stages.push_back(std::move(particles));
-      if (faces) {
-        (resolves(cloth(), colliders[k]) ? stretched : small) = true;
-        list_.stages.push_back(std::move(faces));
-      }
+      if (!faces.empty()) (resolves(cloth(), colliders[k]) ? stretched : small) = true;
+      std::move(faces.begin(), faces.end(), std::back_inserter(list_.stages));
       pushed = true;
     }
   if (!pushed) list_.skip("collider", "the scene has none");

@@ -20,8 +20,8 @@
 // person does comes right after springs or predict. Then, with every method:
 //
 //   friction_layer   of every collider whose friction damps
-//   collider         of every collider that pushes, its triangles (collider_faces, stretched_faces) right after
-//                    it; all of this as often as the solver's collision_iterations say
+//   collider         of every collider that pushes, its triangles (collider_faces or stretched_faces, and of meshes
+//                    lifted_faces) right after it; all of this as often as the solver's collision_iterations say
 //   cut              of every collider that cuts
 //   tear
 //   strain_limit

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "physics/model/placement.h"
+
 namespace weft::physics {
 namespace {
 
@@ -26,7 +28,7 @@ bool loaded(const Cloths& cloths, bool changing) {
 }  // namespace
 
 bool is_driven(const Scene& scene, const Cloths& cloths) {
-  const auto moves = [](const Collider& c) { return !c.keys.empty() || !c.animation.empty(); };
+  const auto moves = [](const Collider& c) { return moves_rigidly(c) || !c.animation.empty(); };
   const auto pulls = [](const Pin& pin) { return pin.moves(); };
   return !scene.gravity_keys.empty() || blown(scene) || sews(cloths) || loaded(cloths, true) ||
          std::any_of(scene.colliders.begin(), scene.colliders.end(), moves) ||

@@ -8,6 +8,7 @@
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/colliders/shapes.h"
 #include "physics/model/path.h"
+#include "physics/model/placement.h"
 
 namespace weft::physics {
 namespace {
@@ -29,12 +30,13 @@ Rows pushed_out(const Scene& scene, double time, const Particles& l) {
   x.copy(l.x);
   for (const Collider& c : scene.colliders) {
     if (c.cuts) continue;
-    const Vec3 place = plus(place_of(c.shape), displacement(c, time));
+    const Placement placement(c, time);
     for_each_free(l, [&](int j, int i, double) {
       const Vec3 p{x.at(0, j, i), x.at(1, j, i), x.at(2, j, i)};
-      const Nearest n = nearest_at(c.shape, time, minus(p, place));
+      const Nearest n = nearest_at(c.shape, time, placement.seen(p));
+      const Vec3 out = placement.out_of(n.normal);
       for (int k = 0; k < 3 && n.distance < c.offset; ++k)
-        x.at(k, j, i) = coordinate(p[k] + (c.offset - n.distance) * n.normal[k]);
+        x.at(k, j, i) = coordinate(p[k] + (c.offset - n.distance) * out[k]);
     });
   }
   return x;
@@ -53,6 +55,10 @@ double free_mass(const Particles& l) {
   double mass = 0;
   for_each_free(l, [&](int, int, double m) { mass += m; });
   return mass;
+}
+
+bool unbounded(const Collider& c) {
+  return std::holds_alternative<Plane>(c.shape);
 }
 
 // The greatest speed of paths between two times, and of wind [m/s].
@@ -77,10 +83,15 @@ double fastest_drive(const Scene& scene, double from, double to) {
     }
     return most;
   };
+  // What has no bounds is looked at where the cloth is (fastest_turning()).
+  const auto rim = [&](const Collider& c) {
+    const double turn = fastest_turn(c.rotate, from, to);
+    return turn == 0 || unbounded(c) ? 0 : turn * lever_of(c, c.rotate.about);
+  };
   double most = greatest_wind(scene.wind);
   for (const Collider& c : scene.colliders) {
     const BodySurface* body = surface_of(c);
-    most = std::max(most, fastest(c.keys) + (body ? body->fastest(from, to) : 0));
+    most = std::max(most, fastest(c.keys) + (body ? body->fastest(from, to) : 0) + rim(c));
   }
   for (const Cloth& c : scene.cloths)
     for (const Pin& p : c.pins) most = std::max(most, fastest(p.keys) + turning(c, p));
@@ -99,6 +110,20 @@ double fastest_follower(const ClothStep& step, double from, double to) {
   return most;
 }
 
+double fastest_turning(const Scene& scene, const Particles& l, double from, double to) {
+  double most = 0;
+  for (const Collider& c : scene.colliders) {
+    const double turn = fastest_turn(c.rotate, from, to);
+    if (turn == 0 || !unbounded(c)) continue;
+    const Vec3 about = plus(c.rotate.about, along_keys(c, to));
+    const Vec3 axis = times(c.rotate.axis, 1 / length(c.rotate.axis));
+    for_each_free(l, [&](int j, int i, double) {
+      most = std::max(most, turn * length(cross(axis, minus(l.position(j, i), about))));
+    });
+  }
+  return most;
+}
+
 bool gained(const Scene& scene, const ClothStep& step, const Rows& x, const Rows& v, double dt,
             double start, double end, Threads& threads) {
   constexpr double kMore = 2;
@@ -106,7 +131,8 @@ bool gained(const Scene& scene, const ClothStep& step, const Rows& x, const Rows
   const EnergySum before = motion(scene, step, x, v), now = motion(scene, step, l.x, l.v);
   double put_in = std::max(0.0, before.potential - now.potential);
   const double speed =
-      kMore * std::max(fastest_drive(scene, start, end), fastest_follower(step, start, end));
+      kMore * std::max({fastest_drive(scene, start, end), fastest_follower(step, start, end),
+                        fastest_turning(scene, l, start, end)});
   if (speed > 0) put_in += 0.5 * free_mass(l) * speed * speed;
   const double inner = now.kinetic + step.model().held_energy(l.x, dt, threads);
   // EnergySum alone accounts for most frames.
@@ -122,7 +148,9 @@ Balance balance(const Scene& scene, const ClothStep& step, double dt, Threads& t
 }
 
 bool works(const Scene& scene, double from, double to) {
-  return fastest_drive(scene, from, to) > 0;
+  const auto turns = [&](const Collider& c) { return fastest_turn(c.rotate, from, to) > 0; };
+  return fastest_drive(scene, from, to) > 0 ||
+         std::any_of(scene.colliders.begin(), scene.colliders.end(), turns);
 }
 
 bool Upkeep::kept_up(const Balance& now) {

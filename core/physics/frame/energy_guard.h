@@ -22,6 +22,9 @@ namespace weft::physics {
 // body that turns.
 double fastest_follower(const ClothStep& step, double from, double to);
 
+// The greatest speed that planes have where a cloth is, by turning between two times [m/s].
+double fastest_turning(const Scene& scene, const Particles& particles, double from, double to);
+
 // Whether the motion and elastic energy of a cloth, as the method feels it, is more than twice what it
 // was at `start` with positions x and velocities v, and besides more than what gravity, paths and wind
 // can have put in until `end`.

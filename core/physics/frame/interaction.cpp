@@ -6,6 +6,8 @@
 #include "physics/contact/colliders/shapes.h"
 #include "physics/contact/start_inside.h"
 #include "physics/frame/state.h"
+#include "physics/model/placement.h"
+#include "weft/shape.h"
 
 namespace weft {
 
@@ -98,8 +100,11 @@ void Simulation::State::move_collider(int collider, const Vec3& target) {
   const double now = time();
   const Vec3 from = c.keys.empty() ? place_of(c.shape) : position_at(c.keys, now);
   touch();
-  set_path(std::size_t(collider), {{now, from}, {now + scene.time.frame, target}});
-  const Vec3 way = minus(target, from);
+  // By as much as its turn has taken it off its path until then.
+  const double later = now + scene.time.frame;
+  const Vec3 off = minus(displacement(c, later), along_keys(c, later));
+  const Vec3 to = minus(target, off), way = minus(to, from);
+  set_path(std::size_t(collider), {{now, from}, {later, to}});
   guard_.energy().drive(length(way) / scene.time.frame);
 }
 

@@ -29,6 +29,7 @@ Scene moved(Scene scene, const Vec3& by) {
   for (Collider& collider : scene.colliders) {
     collider.shape = moved(collider.shape, by);
     for (Key& key : collider.keys) move(key.position);
+    if (!collider.rotate.keys.empty()) move(collider.rotate.about);
   }
   return scene;
 }

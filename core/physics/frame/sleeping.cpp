@@ -6,6 +6,7 @@
 
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/colliders/shapes.h"
+#include "physics/model/placement.h"
 #include "weft/shape.h"
 
 namespace weft::physics {
@@ -130,6 +131,15 @@ bool Sleeping::met_by_restless(const Block& block) const {
   return false;
 }
 
+// How far a sphere comes at most, seen from a collider that turns [m].
+double turn_past(const Collider& c, double time, double later, const Vec3& middle, double radius) {
+  const double turn = fastest_turn(c.rotate, time, later) * (later - time);
+  if (turn == 0) return 0;
+  const Vec3 about = plus(c.rotate.about, along_keys(c, later));
+  const Vec3 axis = times(c.rotate.axis, 1 / length(c.rotate.axis));
+  return turn * (length(cross(axis, minus(middle, about))) + radius);
+}
+
 // A sphere about the block's box against where the collider gets to during the frame.
 bool Sleeping::met_by_collider(const Block& block, double time) const {
   Vec3 middle;
@@ -140,10 +150,11 @@ bool Sleeping::met_by_collider(const Block& block, double time) const {
   }
   for (const Collider& c : scene_.colliders) {
     const BodySurface* body = surface_of(c);
-    if (c.keys.empty() && !(body && body->moves())) continue;
+    if (!moves_rigidly(c) && !(body && body->moves())) continue;
     const double later = time + scene_.time.frame;
-    const Vec3 way = minus(displacement(c, later), displacement(c, time));
-    const double path = length(way) + (body ? body->travel(time, later) : 0);
+    const Vec3 way = minus(along_keys(c, later), along_keys(c, time));
+    const double path = length(way) + turn_past(c, time, later, middle, std::sqrt(square)) +
+                        (body ? body->travel(time, later) : 0);
     if (path == 0) continue;
     const double reach = c.offset + (c.friction.damps() ? c.friction.bias : 0);
     if (signed_distance(c, later, middle) < std::sqrt(square) + reach + path) return true;

@@ -24,7 +24,9 @@ Verdict StepGuard::judge(const FrameRun& run) {
   if (run.sleeping && run.sleeping->all_asleep()) return Verdict::accept;
   const double start = double(run.frame) * run.scene.time.frame;
   for (const auto& step : run.cloths)
-    energy_.drive(fastest_follower(*step, start, start + run.scene.time.frame));
+    energy_.drive(
+        fastest_follower(*step, start, start + run.scene.time.frame) +
+        fastest_turning(run.scene, step->particles(), start, start + run.scene.time.frame));
   if (run.finite) energy_.look(run.energy, run.driven);
   const bool springs = is_explicit(run.method);
   const bool lines = !springs && run.scene.solver.sweep == Sweep::line;

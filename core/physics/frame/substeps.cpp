@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "physics/frame/projection_substep.h"
 #include "physics/frame/start_notes.h"
@@ -10,6 +11,7 @@
 #include "physics/frame/velocities.h"
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/number.h"
+#include "physics/model/placement.h"
 
 namespace weft {
 
@@ -65,6 +67,18 @@ void note_rounding(const Cloths& cloths, double dt, std::vector<std::string>& no
                     number(slowest) + " m/s; longer ones are more exact");
 }
 
+// Paths of the cloth are straight as a body sees it: off an arc of radius r and angle a by r a²/8.
+void note_turning(const Scene& scene, double dt, std::vector<std::string>& notes) {
+  constexpr double kEver = 1e9;    // s
+  constexpr double kCoarse = 0.2;  // rad; off by 0.5 % of the distance from the axis
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k)
+    if (const double turn = fastest_turn(scene.colliders[k].rotate, 0, kEver) * dt; turn > kCoarse)
+      notes.push_back("collider " + std::to_string(k) + " turns by up to " +
+                      number(turn * 180 / std::numbers::pi) +
+                      "° in a substep, in which paths are followed as if straight; more substeps "
+                      "are more exact");
+}
+
 }  // namespace
 
 void Simulation::State::choose_method_and_substeps() {
@@ -83,6 +97,7 @@ void Simulation::State::choose_method_and_substeps() {
     note_tearing(scene, time_step.method, count, notes);
   }
   note_rounding(cloths, scene.time.frame / count, notes);
+  note_turning(scene, scene.time.frame / count, notes);
   note_models(notes);
   plan = describe_stages();
   plan.dt_limit = std::isfinite(time_step.limit) ? time_step.limit : 0;

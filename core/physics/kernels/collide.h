@@ -27,6 +27,7 @@
 // surface that it entered by.
 #pragma once
 
+#include "physics/kernels/carried.h"
 #include "physics/kernels/root.h"
 #include "physics/kernels/row_kernels.h"
 #include "physics/kernels/shape_kernels.h"
@@ -75,10 +76,6 @@ template <class Shape>
 WEFT_INLINE Wide3 own_velocity(const Shape& shape, int i) {
   if constexpr (Found<Shape>) return shape.velocity(i);
   return Wide3{};
-}
-
-WEFT_INLINE WideInt free_lanes(const CollideRow& r, int i) {
-  return (load(r.w + i) > 0.0f) & lanes_below(r.columns - i);
 }
 
 // How touching particles are pushed onto the surface: by `depth` along the unit `normal`. `across` is
@@ -168,7 +165,7 @@ WEFT_INLINE Entry entry(const CollideRow& r, const Shape& shape, Wide3 end, Wide
 template <class Shape, bool kCourse>
 WEFT_INLINE RowReach collide_row(const CollideRow& r) {
   const Shape shape(r.shape);
-  const Wide3 place = wide3(r.cx, r.cy, r.cz), u = wide3(r.ux, r.uy, r.uz);
+  const Wide3 place = wide3(r.cx, r.cy, r.cz);
   const float shortest = 0.25f * r.shape.thin * r.shape.thin;
   Wide clearance = wide(kFar), fastest{};
   for (int i = 0; i < padded(r.columns); i += kLanes) {
@@ -176,10 +173,10 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
     const Wide3 p = load3(r.x, i) - place;
     const Surface s = surface_now(shape, p, i);
     const Wide left = s.distance - r.offset;
-    const Wide3 relative = load3(r.v, i) - u;
+    const Wide3 v = load3(r.v, i), u = carried(r, p, v), relative = v - u;
     const Wide speed = dot(relative, relative);
     clearance = min(clearance, select(free, left, wide(kFar)));
-    fastest = max(fastest, select(free, speed, Wide{}));
+    fastest = max(fastest, select(free, past_place(r, v), Wide{}));
     const WideInt below = free & (left < 0.0f);
     WideInt touching = below;
     Push push{-left, s.normal, s.normal};
@@ -206,31 +203,30 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
       rub(r, i, u + own, touching, push);
     }
   }
-  return {least(clearance), __builtin_sqrtf(greatest(fastest))};
+  return {least(clearance), __builtin_sqrtf(greatest(fastest)) + r.rim};
 }
 
 // Within a layer about the surface velocities along it are damped; positions before the substep stay.
 template <class Shape>
 WEFT_INLINE RowReach damp_sliding_row(const CollideRow& r) {
   const Shape shape(r.shape);
-  const Wide3 place = wide3(r.cx, r.cy, r.cz), u = wide3(r.ux, r.uy, r.uz);
+  const Wide3 place = wide3(r.cx, r.cy, r.cz);
   Wide clearance = wide(kFar), fastest{};
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const WideInt free = free_lanes(r, i);
-    const Wide3 x = load3(r.x, i), v = load3(r.v, i);
-    const Surface s = surface_now(shape, x - place, i);
+    const Wide3 x = load3(r.x, i), v = load3(r.v, i), p = x - place;
+    const Surface s = surface_now(shape, p, i);
     const Wide left = s.distance - (r.offset + r.bias);
-    const Wide3 relative = v - u;
     clearance = min(clearance, select(free, left, wide(kFar)));
-    fastest = max(fastest, select(free, dot(relative, relative), Wide{}));
+    fastest = max(fastest, select(free, past_place(r, v), Wide{}));
     const WideInt within = free & (left < 0.0f);
     if (!any(within)) continue;
-    const Wide3 slid = relative - own_velocity(shape, i);
+    const Wide3 slid = v - carried(r, p, v) - own_velocity(shape, i);
     const Wide3 lost = (slid - s.normal * dot(slid, s.normal)) * wide(r.damped);
     store3(r.v, i, select(within, v - lost, v));
     store3(r.x, i, select(within, x - lost * wide(r.dt), x));
   }
-  return {least(clearance), __builtin_sqrtf(greatest(fastest))};
+  return {least(clearance), __builtin_sqrtf(greatest(fastest)) + r.rim};
 }
 
 // A convex shape's distance is never below its tangents: d(y) >= d(p) + n(p)·(y - p). On a triangle the tangent
@@ -335,12 +331,12 @@ template <class Shape>
 WEFT_INLINE RowReach below_faces_row(const FacesRow& f) {
   const CollideRow& r = f.row;
   const Shape shape(r.shape);
-  const Wide3 place = wide3(r.cx, r.cy, r.cz), u = wide3(r.ux, r.uy, r.uz);
+  const Wide3 place = wide3(r.cx, r.cy, r.cz);
   Wide clearance = wide(kFar), fastest{};
   for (int i = 0; i < padded(r.columns); i += kLanes)
-    for (const Wide3& v : {load3(r.v, i) - u, load3(f.v_next, i) - u})
-      fastest = max(fastest, select(lanes_below(r.columns - i), dot(v, v), Wide{}));
-  const float speed = __builtin_sqrtf(greatest(fastest));
+    for (const Wide3& v : {load3(r.v, i), load3(f.v_next, i)})
+      fastest = max(fastest, select(lanes_below(r.columns - i), past_place(r, v), Wide{}));
+  const float speed = __builtin_sqrtf(greatest(fastest)) + r.rim;
   const float enough = r.offset - f.slack;
   const float far = r.offset + kFaceReach * f.edge + speed * r.dt;
   const auto surface = [&](ConstRow3 row, int i) { return shape.at(load3(row, i) - place); };

@@ -45,9 +45,13 @@ struct CollideRow {
   const float* w;
   float dt, inverse_dt;
   float cx, cy, cz;  // where the shape is at the end of the substep [m]
-  float ux, uy, uz;  // velocity of the surface [m/s]
-  float offset;      // kept off the surface [m]
-  bool resolved;     // the mesh is fine enough for its features
+  float ux, uy, uz;  // velocity of that place [m/s]
+  // Whether it turns in this substep: what was p off the place as it began has the mean velocity u + turning p (1/s).
+  bool turns;
+  float turning[3][3];
+  float rim;      // m/s; its surface turns about the place no faster
+  float offset;   // kept off the surface [m]
+  bool resolved;  // the mesh is fine enough for its features
   float friction_static, friction_dynamic;
   float bias;    // m, off the offset surface: within it sliding is damped
   float damped;  // by this share

@@ -5,6 +5,7 @@
 #include <map>
 #include <vector>
 
+#include "physics/model/placement.h"
 #include "weft/body_point.h"
 
 namespace weft::physics {
@@ -15,10 +16,10 @@ class Followed {
   // asked about, outlives this.
   Followed(const Scene& scene, const Cloth& cloth, const std::function<Vec3(const Pin&)>& start);
 
-  // By how much a pin of the cloth, which follows a collider, has been taken along since the start [m]: as far as the
-  // collider has moved along its keys, or, by one with an animation, as the point of its surface that was nearest
-  // then.
-  Vec3 way(const Pin& pin, double time) const;
+  // Where a pin of the cloth, which follows a collider and would be at `alone`, is by what it has been taken along
+  // since the start [m]: moved and turned as the collider, or, by one with an animation, moved as the point of its
+  // surface that was nearest then.
+  Vec3 taken_along(const Pin& pin, const Vec3& alone, double time) const;
 
  private:
   struct Beside {
@@ -27,7 +28,7 @@ class Followed {
   };
 
   const Scene& scene_;
-  std::vector<Vec3> first_moves_;                 // of colliders
+  std::vector<Placement> first_;                  // of colliders
   std::map<std::pair<int, int>, Beside> beside_;  // of pins, by what they hold
 };
 

@@ -16,6 +16,7 @@ struct MeshBody : MeshSource {
   std::shared_ptr<const PointCache> motion{};  // of its vertices, as read; null: it keeps its form
   std::shared_ptr<const BodySurface> surface{};  // of both, scaled and turned (load_meshes())
   double time = 0;  // s; what is asked of the shape by itself is asked of it as it is then
+  Vec3 turn{};      // degrees, as `rotate`, and after it; about its place: shape_at()
 
   // Infinite, as it is not known; of an open one 0, for its offset is all.
   double half_thickness() const;
@@ -28,7 +29,7 @@ struct MeshBody : MeshSource {
   }
   friend bool operator==(const MeshBody& a, const MeshBody& b) {
     return static_cast<const MeshSource&>(a) == static_cast<const MeshSource&>(b) &&
-           a.time == b.time && (!a.file.empty() || a.motion == b.motion);
+           a.time == b.time && a.turn == b.turn && (!a.file.empty() || a.motion == b.motion);
   }
 };
 

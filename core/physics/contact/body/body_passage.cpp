@@ -23,12 +23,17 @@ BodyPassage::Hit BodyPassage::first_on(const Vec3& from, const Vec3& to) const {
   return first > 1 ? Hit{} : hit;
 }
 
-// What is only pressed into the surface sees the same side from both ends of its path.
+// What is only pressed into the surface sees the same side from both ends of its path. What rests on the surface lies in
+// it to rounding, and enters there all the same.
 BodyPassage::Point BodyPassage::entered_at(const Vec3& from, const Vec3& to, const Point& was,
                                            const Point& is) const {
   constexpr double kSameSide = 0.5;  // cosine
   if (dot(was.normal, is.normal) > kSameSide) return is;
-  const Hit hit = first_on(from, to);
+  constexpr double kResting =
+      1e-5;  // m; rounding of positions, within 8 m of zero, many times over
+  const bool rests = std::abs(was.distance) < kResting;
+  const Vec3 outside = rests ? plus(from, times(was.normal, kResting - was.distance)) : from;
+  const Hit hit = first_on(outside, to);
   if (hit.triangle < 0) return is;
   const Vec3 n = now.face_normal(hit.triangle);
   const double beyond = dot(minus(to, now.on(hit.triangle, hit.weights)), n);

@@ -2,16 +2,13 @@
 
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/colliders/shapes.h"
+#include "physics/model/placement.h"
 
 namespace weft {
 
 using namespace physics;
 
 namespace {
-
-Vec3 place_at(const Collider& collider, double time) {
-  return plus(place_of(collider.shape), displacement(collider, time));
-}
 
 Vec3 unit_or(const Vec3& v, const Vec3& other) {
   const double size = length(v);
@@ -30,7 +27,7 @@ std::array<Vec3, 3> axes_of(const Triangle& t) {
 
 BodyPoint body_point(const Collider& collider, double time, const Vec3& place) {
   const BodyMoment moment = surface_of(collider)->at(time);
-  const Vec3 p = minus(place, place_at(collider, time));
+  const Vec3 p = Placement(collider, time).seen(place);
   const BodyMoment::Point nearest = moment.nearest(p);
   BodyPoint point{nearest.triangle, nearest.weights, {}};
   const Vec3 off = minus(p, moment.on(point.triangle, point.weights));
@@ -42,9 +39,9 @@ BodyPoint body_point(const Collider& collider, double time, const Vec3& place) {
 Vec3 position_of(const Collider& collider, double time, const BodyPoint& point) {
   const BodyMoment moment = surface_of(collider)->at(time);
   const std::array<Vec3, 3> axes = axes_of(moment.corners(point.triangle));
-  Vec3 p = plus(place_at(collider, time), moment.on(point.triangle, point.weights));
+  Vec3 p = moment.on(point.triangle, point.weights);
   for (std::size_t k = 0; k < 3; ++k) p = plus(p, times(axes[k], point.off[k]));
-  return p;
+  return Placement(collider, time).in_scene(p);
 }
 
 }  // namespace weft

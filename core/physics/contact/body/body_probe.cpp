@@ -49,22 +49,22 @@ std::size_t BodyProbe::bytes() const {
   return bytes;
 }
 
-void BodyProbe::look(CollideRow& row, const BodyPassage& body, int j, const Substep& s) {
+void BodyProbe::look(ColliderRow& row, int j, const Substep& s) {
   NearTriangles::Placed now, before;
   NearTriangles::Nearest found;
   for (Group& group : groups_[std::size_t(j)]) {
     now.done = before.done = false;
     for (const int i : group.lanes)
-      if (row.w[i] > 0) look({row, body, s, group, now, before, found}, j, i);
+      if (row.w[i] > 0) look({row, row.body, s, group, now, before, found}, j, i);
   }
   row.shape.found = &found_[std::size_t(j)];
 }
 
 BodyProbe::Path BodyProbe::path(const Look& look, int i) const {
-  const CollideRow& r = look.row;
-  const Vec3 p{double(r.x.x[i]) - r.cx, double(r.x.y[i]) - r.cy, double(r.x.z[i]) - r.cz};
-  const Vec3 way{(double(r.v.x[i]) - r.ux) * r.dt, (double(r.v.y[i]) - r.uy) * r.dt,
-                 (double(r.v.z[i]) - r.uz) * r.dt};
+  const ColliderRow& r = look.row;
+  const Vec3 v{r.v.x[i], r.v.y[i], r.v.z[i]};
+  const Vec3 off = r.about_place({r.x.x[i], r.x.y[i], r.x.z[i]});
+  const Vec3 p = r.into(off), way = r.into(times(minus(v, r.carried(off, v)), r.dt));
   constexpr double kRounding = 1 + 1e-6;  // kernels see what is farther in single precision
   const double limit = std::max(double(r.offset) + r.bias, length(way) + look.body.travel);
   return {minus(p, way), p, limit * kRounding};
@@ -99,10 +99,11 @@ void BodyProbe::look(const Look& look, int j, int i) {
     m.before = nearest(look, false, path.before, known);
   distance_[at] = float(m.now.distance);
   distance_before_[at] = float(m.before.distance);
-  put(normal_, j, i, m.now.normal);
-  put(normal_before_, j, i, m.before.normal);
+  put(normal_, j, i, look.row.out_of(m.now.normal));
+  put(normal_before_, j, i, look.row.out_of(m.before.normal));
   if (look.body.moves())
-    put(velocity_, j, i, times(look.body.way(m.now.triangle, m.now.weights), 1 / look.s.dt));
+    put(velocity_, j, i,
+        look.row.out_of(times(look.body.way(m.now.triangle, m.now.weights), 1 / look.s.dt)));
 }
 
 double BodyProbe::least(const Known& known, const NearTriangles& near, const Vec3& p,

@@ -7,9 +7,8 @@
 
 #include <vector>
 
-#include "physics/contact/body/body_passage.h"
 #include "physics/contact/body/near_triangles.h"
-#include "physics/model/cloth_model.h"
+#include "physics/contact/moving_collider.h"
 
 namespace weft::physics {
 
@@ -20,7 +19,7 @@ class BodyProbe {
   // Looks at row j and gives the kernels what it finds: exact where the surface is nearer than the offset
   // and the bias, or than the particle and the surface have come in this substep; else the distance is a lower
   // bound.
-  void look(CollideRow& row, const BodyPassage& body, int j, const Substep& s);
+  void look(ColliderRow& row, int j, const Substep& s);
   std::size_t bytes() const;
 
  private:
@@ -39,7 +38,7 @@ class BodyProbe {
   };
   // One group and the body, in one substep.
   struct Look {
-    const CollideRow& row;
+    const ColliderRow& row;
     const BodyPassage& body;
     const Substep& s;
     Group& group;

@@ -40,8 +40,7 @@ std::span<const int> FeatureProbe::about(const ColliderRow& row, const Corners& 
 void FeatureProbe::renew(Group& group, const ColliderRow& row, const AboutTriangle& triangle,
                          int j) const {
   AlignedBox all;
-  for (const int i : group.lanes)
-    all.add(minus(particles_.position(j, i), {row.cx, row.cy, row.cz}));
+  for (const int i : group.lanes) all.add(row.into(row.about_place(particles_.position(j, i))));
   const double most = kGrown * triangle.most;
   all = all.grown(most / kSmallFeature);
   all.add(triangle.box);

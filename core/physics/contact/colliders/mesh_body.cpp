@@ -46,6 +46,7 @@ const physics::ColliderKernels kMeshBody = {{coulomb, course}, nullptr, damp_sli
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/colliders/shapes.h"
 #include "weft/mesh.h"
+#include "weft/turn.h"
 
 namespace weft {
 
@@ -61,8 +62,18 @@ ShapeConstants constants_of(const MeshBody&) {
 }
 
 Nearest nearest_of(const MeshBody& body, const Vec3& p) {
-  const BodySurface::Point point = body.surface->at(body.time).nearest(p);
-  return {point.distance, point.normal};
+  return nearest_of(body, body.time, p);
+}
+
+Nearest nearest_of(const MeshBody& body, double time, const Vec3& p) {
+  const BodyMoment moment = body.surface->at(time);
+  if (body.turn == Vec3{}) {
+    const BodyMoment::Point point = moment.nearest(p);
+    return {point.distance, point.normal};
+  }
+  const Matrix turn = matrix_of(body.turn);
+  const BodyMoment::Point point = moment.nearest(times_transpose(turn, p));
+  return {point.distance, times(turn, point.normal)};
 }
 
 double feature_of(const MeshBody& body) {
@@ -92,6 +103,10 @@ ShapeMesh mesh_of(const MeshBody& body) {
     const auto first = std::uint32_t(3 * n);
     mesh.triangles.push_back({first, first + 1, first + 2});
   }
+  if (body.turn == Vec3{}) return mesh;
+  const Matrix turn = matrix_of(body.turn);
+  for (std::vector<Vec3>* vectors : {&mesh.positions, &mesh.normals})
+    for (Vec3& v : *vectors) v = times(turn, v);
   return mesh;
 }
 

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/contact/body/body_surface.h"
+#include "physics/model/placement.h"
 
 namespace weft {
 
@@ -67,12 +69,18 @@ std::array<Vec3, 2> bounds_about_place(const One& shape) {
 
 std::array<Vec3, 2> bounds_about_place(const MeshBody& body) {
   const BodyMoment moment = body.surface->at(body.time);
-  std::array<Vec3, 2> bounds{moment.vertex(0), moment.vertex(0)};
-  for (int vertex = 1; vertex < int(moment.form().of_file.size()); ++vertex)
+  const Matrix turn = matrix_of(body.turn);
+  const auto at = [&](int vertex) {
+    return body.turn == Vec3{} ? moment.vertex(vertex) : times(turn, moment.vertex(vertex));
+  };
+  std::array<Vec3, 2> bounds{at(0), at(0)};
+  for (int vertex = 1; vertex < int(moment.form().of_file.size()); ++vertex) {
+    const Vec3 p = at(vertex);
     for (std::size_t k = 0; k < 3; ++k) {
-      bounds[0][k] = std::min(bounds[0][k], moment.vertex(vertex)[k]);
-      bounds[1][k] = std::max(bounds[1][k], moment.vertex(vertex)[k]);
+      bounds[0][k] = std::min(bounds[0][k], p[k]);
+      bounds[1][k] = std::max(bounds[1][k], p[k]);
     }
+  }
   return bounds;
 }
 
@@ -89,9 +97,34 @@ std::optional<std::array<Vec3, 2>> bounds_of(const Shape& shape) {
       shape);
 }
 
+Shape turned(Shape shape, const Matrix& turn, const Vec3& about) {
+  for_each_value(shape, [&](const char*, auto& value, ShapeValue is) {
+    if constexpr (std::is_same_v<decltype(value), Vec3&>) {
+      if (is == ShapeValue::place || is == ShapeValue::point)
+        value = plus(about, times(turn, minus(value, about)));
+      if (is == ShapeValue::direction) value = times(turn, value);
+      if (is == ShapeValue::angles) value = angles_of(times(turn, matrix_of(value)));
+    }
+  });
+  return shape;
+}
+
 Vec3 displacement(const Collider& collider, double time) {
-  if (collider.keys.empty()) return {};
-  return minus(position_at(collider.keys, time), place_of(collider.shape));
+  return minus(Placement(collider, time).place, place_of(collider.shape));
+}
+
+// The surface of a mesh is made with its own angles: it has this turn besides.
+Shape shape_at(const Collider& collider, double time) {
+  const Placement now(collider, time);
+  const Vec3 start = place_of(collider.shape);
+  Shape shape = collider.shape;
+  if (now.turned) {
+    if (MeshBody* body = std::get_if<MeshBody>(&shape))
+      body->turn = angles_of(now.turn);
+    else
+      shape = turned(shape, now.turn, start);
+  }
+  return at_time(moved(shape, minus(now.place, start)), time);
 }
 
 Shape at_time(Shape shape, double time) {
@@ -100,18 +133,33 @@ Shape at_time(Shape shape, double time) {
 }
 
 double signed_distance(const Collider& collider, double time, const Vec3& point) {
-  const Vec3 place =
-      collider.keys.empty() ? place_of(collider.shape) : position_at(collider.keys, time);
-  return nearest_at(collider.shape, time, minus(point, place)).distance;
+  return nearest_at(collider.shape, time, Placement(collider, time).seen(point)).distance;
 }
 
 namespace physics {
 
-Nearest nearest_at(const Shape& shape, double time, const Vec3& p) {
-  if (const MeshBody* body = std::get_if<MeshBody>(&shape)) {
-    const BodySurface::Point point = body->surface->at(time).nearest(p);
-    return {point.distance, point.normal};
+// Of a box about the shape as it stands at the start, and of how far its animation ever takes it.
+double lever_of(const Collider& collider, const Vec3& about) {
+  const Vec3& along = collider.rotate.axis;
+  const Vec3 axis = times(along, 1 / length(along));
+  if (const Plane* plane = std::get_if<Plane>(&collider.shape)) {
+    constexpr double kAlong = 1e-12;  // sine, beyond rounding
+    const bool itself = length(cross(axis, plane->normal)) <= kAlong * length(plane->normal);
+    return itself ? 0 : std::numeric_limits<double>::infinity();
   }
+  const std::array<Vec3, 2> bounds = *bounds_of(collider.shape);
+  double most = 0;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    Vec3 p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = bounds[(corner >> k) & 1][k];
+    most = std::max(most, length(cross(axis, minus(p, about))));
+  }
+  const BodySurface* body = surface_of(collider);
+  return most + collider.offset + (body ? body->travel(0, 1e9) : 0);
+}
+
+Nearest nearest_at(const Shape& shape, double time, const Vec3& p) {
+  if (const MeshBody* body = std::get_if<MeshBody>(&shape)) return nearest_of(*body, time, p);
   return std::visit([&](const auto& s) { return nearest_of(s, p); }, shape);
 }
 

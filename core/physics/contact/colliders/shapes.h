@@ -47,6 +47,9 @@ struct Core {
 WEFT_SHAPES(WEFT_SHAPE)
 #undef WEFT_SHAPE
 
+// Of a mesh at a time [s] of its animation.
+Nearest nearest_of(const MeshBody& body, double time, const Vec3& p);
+
 // The box's own axes in the scene: turned about x, then y, then z.
 std::array<Vec3, 3> axes_of(const Box& box);
 
@@ -67,8 +70,12 @@ inline const BodySurface* surface_of(const Collider& collider) {
   return body ? body->surface.get() : nullptr;
 }
 
-// Of a collider that stands at its place, by how it is at a time [s].
+// Of a collider, by how its animation has it at a time [s], from p as it sees it (Placement::seen()).
 Nearest nearest_at(const Shape& shape, double time, const Vec3& p);
+
+// How far the surface of a collider, without its keys, is from a line along the axis of its rotation at most [m].
+// Infinite of a plane, but 0 where the plane goes through itself as it turns.
+double lever_of(const Collider& collider, const Vec3& about);
 
 // Two unit vectors across a unit one; after it they are right-handed.
 inline std::array<Vec3, 2> across(const Vec3& axis) {

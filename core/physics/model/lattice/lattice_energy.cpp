@@ -118,8 +118,7 @@ double LatticeModel::limited_strain() const {
 
 Vec3 LatticeModel::pin_position(const Pin& pin, double time) const {
   const Vec3 alone = pin_alone_at(parts_.cloth, pin, time);
-  if (pin.follow < 0) return alone;
-  return plus(alone, followed_.way(pin, time));
+  return pin.follow < 0 ? alone : followed_.taken_along(pin, alone, time);
 }
 
 double LatticeModel::greatest_coordinate(const Rows& x) const {

@@ -219,8 +219,7 @@ void MeshModel::append_limits(StageList& list) {
 
 Vec3 MeshModel::pin_position(const Pin& pin, double time) const {
   const Vec3 alone = pin_alone_at(pin, start_[std::size_t(pin.i)], time);
-  if (pin.follow < 0) return alone;
-  return plus(alone, followed_.way(pin, time));
+  return pin.follow < 0 ? alone : followed_.taken_along(pin, alone, time);
 }
 
 double MeshModel::stiffening(double stretch) const {
