@@ -42,8 +42,8 @@ struct Pair {
     }
   }
   // Moves everything for a substep: the upper sheet slides and waves over the lower; in the middle of
-  // the time one half of it is torn away and comes back.
-  void move(int step) {
+  // the time one half of it is torn away and comes back. `faster`: than that.
+  void move(int step, float faster = 1) {
     for (std::size_t s = 0; s < 2; ++s)
       for (int j = 0; j < kPoints; ++j)
         for (int i = 0; i < kPoints; ++i) {
@@ -53,8 +53,8 @@ struct Pair {
           if (s == 1 && i >= kPoints / 2 && step >= 60 && step < 120)
             speed[1] += step < 90 ? 6 : -6;
           for (int k = 0; k < 3; ++k) {
-            sheet(s).v.at(k, j, i) = speed[k];
-            sheet(s).x.at(k, j, i) += speed[k] * float(kDt);
+            sheet(s).v.at(k, j, i) = faster * speed[k];
+            sheet(s).x.at(k, j, i) += faster * speed[k] * float(kDt);
           }
         }
   }
@@ -156,6 +156,64 @@ TEST_P(SurfaceLists, NothingPassesWhateverMoves) {
     ASSERT_EQ(count_crossings(x, faces), 0) << step;
   }
   EXPECT_GT(pair.contact->record().contacts, 10000);
+}
+
+// Moves particles about their places at random, now wildly, now a few, now hardly.
+void shake(Pair& pair, int step, Random& random) {
+  const float most[] = {0.02f, 0.002f, 1e-5f};
+  const float by = most[step / 20 % 3];
+  for (std::size_t s = 0; s < 2; ++s)
+    for (int j = 0; j < kPoints; ++j)
+      for (int i = 0; i < kPoints; ++i)
+        for (int k = 0; k < 3; ++k) {
+          const float off = by * float(random.symmetric());
+          if (pair.sheet(s).w(j, i) <= 0) continue;
+          const float home[3] = {float(i) / (kPoints - 1) + 0.2f * float(s), 0.02f * float(s),
+                                 float(j) / (kPoints - 1) + 0.1f * float(s)};
+          const float x = pair.sheet(s).x.at(k, j, i);
+          const float to = std::clamp(x + off, home[k] - kAbout, home[k] + kAbout);
+          pair.sheet(s).v.at(k, j, i) = (to - x) / float(kDt);
+          pair.sheet(s).x.at(k, j, i) = to;
+        }
+}
+
+// Pairs that sleep would change nothing: the same bits where none sleeps, since every interval begins anew.
+TEST_P(SurfaceLists, WhatSleepsHasNothingToTouch) {
+  for (const double thickness : {0.003, 0.02, 0.08})
+    for (const float faster : {0.0f, 0.02f, 1.0f, 4.0f})  // 0: shaken
+      for (const int count : {1, 2}) {
+        const Scene scene = two_sheets(thickness);
+        Pair sleeps(scene, GetParam()), awake(scene, GetParam());
+        Threads threads(count);
+        Random random(5, 1), same(5, 1);
+        std::int64_t contacts = 0;
+        sleeps.contact->begin(threads);
+        for (int step = 0; step < 80; ++step) {
+          awake.contact->begin(threads);
+          if (faster > 0) {
+            sleeps.move(step, faster);
+            awake.move(step, faster);
+          } else {
+            shake(sleeps, step, random);
+            shake(awake, step, same);
+          }
+          sleeps.contact->run({kDt, 1, 0}, threads);
+          awake.contact->run({kDt, 1, 0}, threads);
+          ASSERT_EQ(sleeps.contact->record().contacts, awake.contact->record().contacts)
+              << thickness << ' ' << faster << ' ' << step;
+          contacts = sleeps.contact->record().contacts;
+          for (std::size_t s = 0; s < 2; ++s)
+            for (int j = 0; j < kPoints; ++j)
+              for (int i = 0; i < kPoints; ++i)
+                for (int k = 0; k < 3; ++k)
+                  ASSERT_EQ(sleeps.sheet(s).x.at(k, j, i), awake.sheet(s).x.at(k, j, i))
+                      << thickness << ' ' << faster << ' ' << step << ": " << s << ' ' << j << ' '
+                      << i;
+        }
+        if (faster == 0.0f || thickness > 0.05) {
+          EXPECT_GT(contacts, 100) << thickness << ' ' << faster;
+        }
+      }
 }
 
 // A corner turned over the diagonal of its square comes to lie on the other half of it, and is not

@@ -213,9 +213,11 @@ struct ContactKernels {
 
 struct SquaresWithin;  // kernels/surface.h
 struct SquaresApart;
+struct SquaresAwake;
+struct SquareGaps;
 struct SurfacePairs;
 
-// block_bounds: how a block lies and moves; block_edges: and its edges. near_boxes, meeting_pairs, squares_within:
+// block_bounds: how a block lies and moves; block_edges: and its edges. near_boxes, meeting_pairs, squares_…:
 // return how many are. near_pairs: who is in range of whom. surface_pairs: returns how many contacts there are.
 #define WEFT_SHEET_KERNELS(KERNEL)                        \
   KERNEL(void, block_bounds, (const BlockRows&))          \
@@ -228,6 +230,8 @@ struct SurfacePairs;
   KERNEL(int, meeting_pairs, (const MeetingPairs&))       \
   KERNEL(int, squares_within, (const SquaresWithin&))     \
   KERNEL(int, squares_not_apart, (const SquaresApart&))   \
+  KERNEL(int, squares_awake, (const SquaresAwake&))       \
+  KERNEL(void, square_gaps, (const SquareGaps&))          \
   KERNEL(int, surface_pairs, (const SurfacePairs&))
 
 // Of contact between sheets.

@@ -1,4 +1,5 @@
 // Which pairs of squares may come near each other in an interval (surface.h).
+#include "physics/kernels/gather.h"
 #include "physics/kernels/records.h"
 #include "physics/kernels/row_kernels.h"
 #include "physics/kernels/surface.h"
@@ -8,6 +9,7 @@ namespace weft::WEFT_KERNELS {
 namespace {
 
 using physics::SquaresApart;
+using physics::SquaresAwake;
 using physics::SquaresWithin;
 
 constexpr float kTiny = 1e-20f;  // m²
@@ -58,11 +60,23 @@ int squares_not_apart(const SquaresApart& given) {
     const Corners p = corners_of(s, s.owner + k), q = corners_of(s, s.neighbour + k);
     const WideInt apart = kept_apart(p, q, s.range) | kept_apart(q, p, s.range);
     const unsigned near = bits(~apart & lanes_below(s.pairs - k));
-    const WideInt neighbours = lanes_at(s.neighbour + k);
-    store_lanes(s.near_owner + count, near, lanes_at(s.owner + k));
+    const WideInt neighbours = lanes_at(s.neighbour + k), owners = lanes_at(s.owner + k);
+    store_lanes(s.near_number + count, near, lanes_at(s.number + k));
+    store_lanes(s.near_owner + count, near, owners);
     count += store_lanes(s.near_neighbour + count, near, neighbours);
   }
   for (int l = 0; l < kLanes; ++l) s.near_owner[count + l] = s.near_neighbour[count + l] = 0;
+  return count;
+}
+
+int squares_awake(const SquaresAwake& given) {
+  const SquaresAwake s = given;
+  int count = 0;
+  for (int k = 0; k < s.pairs; k += kLanes) {
+    const Wide ways = gathered(s.way, s.owner + k) + gathered(s.way, s.neighbour + k);
+    const WideInt awake = (ways >= load(s.until + k)) & lanes_below(s.pairs - k);
+    count += store_lanes(s.awake + count, bits(awake), lane_numbers() + k);
+  }
   return count;
 }
 

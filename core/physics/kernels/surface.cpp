@@ -20,6 +20,7 @@ namespace {
 
 using physics::kKindsOfPair;
 using physics::Square;
+using physics::SquareGaps;
 using physics::SurfaceContact;
 using physics::SurfacePairs;
 using physics::SurfaceSearch;
@@ -29,6 +30,9 @@ constexpr float kTiny = 1e-20f, kOutOfReach = 1e18f;  // m²
 // squared) two edges have no normal of their own, and the sides of a triangle make none.
 constexpr float kBeside = 0.02f, kParallel = 1e-3f, kFlat = 1e-5f;
 constexpr float kLeastLeft = 0.1f;  // of a distance, when something may pass
+// Of the longest edge, that a vertex beside a triangle may be farther from it than above its plane (kBeside, along
+// two sides), and rounding.
+constexpr float kFartherBeside = 3 * kBeside;
 
 constexpr int kEdges[3][2] = {{0, 1}, {0, 2}, {1, 2}}, kFaces[2][3] = {{0, 1, 2}, {1, 3, 2}};
 constexpr int kRecord = 4;  // floats
@@ -308,6 +312,50 @@ class Pairs {
   Wide half_held_[2], thickness_, far_squared_;
 };
 
+// The least distance of kLanes pairs of squares, of what they have not in common.
+WEFT_INLINE Wide gap(const SquareGaps& given, int at) {
+  Shape shape[2];
+  WideInt corner[2][4];
+  const std::int32_t* const number[2] = {given.owner + at, given.neighbour + at};
+  for (int n = 0; n < 2; ++n) {
+    const Wide4 four = records_at((const float*)given.squares->corner, kRecord, number[n]);
+    corner[n][0] = (WideInt)four.xyz.x, corner[n][1] = (WideInt)four.xyz.y;
+    corner[n][2] = (WideInt)four.xyz.z, corner[n][3] = (WideInt)four.last;
+    for (int c = 0; c < 4; ++c)
+      shape[n].x[c] = records_at(given.place->x, kRecord, (const std::int32_t*)&corner[n][c]).xyz;
+  }
+  const Wide3 origin = shape[0].x[0];
+  Wide longest{}, least = wide(kOutOfReach);
+  for (int n = 0; n < 2; ++n) {
+    for (Wide3& x : shape[n].x) x = x - origin;
+    fill_shape(shape[n]);
+    for (const Face& face : shape[n].face)
+      for (const Edge& side : face.side) longest = max(longest, side.square);
+  }
+  const auto add = [&](Wide square, WideInt joined) {
+    least = min(least, select(joined, wide(kOutOfReach), square));
+  };
+  for (int own = 0; own < 2; ++own)
+    for (int n = 0; n < 2; ++n) {
+      const auto [i, j, k] = kFaces[n];
+      const WideInt vertex = corner[own][0];
+      const WideInt* const other = corner[1 - own];
+      Wide share[3];
+      add(vertex_face(shape[own].x[0], shape[1 - own].face[n], share),
+          (vertex == other[i]) | (vertex == other[j]) | (vertex == other[k]));
+    }
+  for (int n = 0; n < 3; ++n)
+    for (int m = 0; m < 3; ++m) {
+      const auto [i, j] = kEdges[n];
+      const auto [k, l] = kEdges[m];
+      Wide s, t;
+      add(edge_edge(shape[0].x[i], shape[0].edge[n], shape[1].x[k], shape[1].edge[m], s, t),
+          (corner[0][i] == corner[1][k]) | (corner[0][i] == corner[1][l]) |
+              (corner[0][j] == corner[1][k]) | (corner[0][j] == corner[1][l]));
+    }
+  return sqrt(least) - kFartherBeside * sqrt(longest);
+}
+
 template <SurfaceSearch kSearch>
 WEFT_INLINE int search(const SurfacePairs& given) {
   SurfaceContact* found = given.found;
@@ -326,6 +374,10 @@ WEFT_INLINE int search(const SurfacePairs& given) {
 int surface_pairs(const SurfacePairs& given) {
   return given.search == SurfaceSearch::contacts ? search<SurfaceSearch::contacts>(given)
                                                  : search<SurfaceSearch::passing>(given);
+}
+
+void square_gaps(const SquareGaps& given) {
+  for (int k = 0; k < given.pairs; k += kLanes) store(given.gap + k, gap(given, k));
 }
 
 }  // namespace weft::WEFT_KERNELS

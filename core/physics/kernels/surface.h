@@ -35,6 +35,25 @@ struct SquaresWithin {
   std::int32_t *within_owner, *within_neighbour;
 };
 
+// Pairs of squares, and where the places of those of them go whose ways together are no less than `until`
+// (contact/self/square_ways.h).
+struct SquaresAwake {
+  int pairs;
+  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
+  const float* until;                     // m, of every pair, and 16 lanes
+  const float* way;                       // m, of every square
+  std::int32_t* awake;                    // out, and 16 lanes of padding: places in the list
+};
+
+// How far two squares are from each other at least, without what they have in common.
+struct SquareGaps {
+  const Place* place;
+  const Square* squares;
+  int pairs;
+  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
+  float* gap;                             // out, and 16 lanes of padding [m]
+};
+
 // Pairs of squares, and where those of them go that no plane along one of the two keeps more than a range
 // apart all through an interval: the others come nowhere nearer.
 struct SquaresApart {
@@ -43,9 +62,10 @@ struct SquaresApart {
   const Square* squares;
   int pairs;
   const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
+  const std::int32_t* number;             // of every pair, and 16 lanes: goes along
   float range;                            // m
-  std::int32_t *near_owner,
-      *near_neighbour;  // out, and 16 lanes of padding; may be the same as above
+  // Out, and 16 lanes of padding; may be the same as above.
+  std::int32_t *near_owner, *near_neighbour, *near_number;
 };
 
 // A vertex and a triangle, or two edges, of a pair of squares: bodies and their shares, positive where

@@ -157,6 +157,7 @@ void SelfContact::scatter(ContactSolver<N>& solver, const ContactInterval& inter
     History* const history = sheet.model->history();
     const bool goes_on = history && history->goes_on(l, row, column);
     double before = 0, after = 0;
+    float way = 0;
     for (int k = 0; k < 3; ++k) {
       float& x = l.x.at(k, row, column);
       float& v = l.v.at(k, row, column);
@@ -166,8 +167,10 @@ void SelfContact::scatter(ContactSolver<N>& solver, const ContactInterval& inter
       after += double(v) * v;
       x += dx;
       now_[std::size_t(n)].x[k] = x;
+      way += dx * dx;
       if (goes_on) history->shift(l, k, row, column, dx - dv * float(dt), dv);
     }
+    if (N == 4) near_->shift(n, std::sqrt(way));
     taken += (before - after) / (2 * double(w));
   }
   record_.energy_taken += taken;

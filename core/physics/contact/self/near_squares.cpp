@@ -12,7 +12,7 @@
 namespace weft::physics {
 namespace {
 
-constexpr float kBeyond = 0.4f;      // spacings that listed pairs may be farther apart than is held
+constexpr float kBeyond = 0.8f;      // spacings that listed pairs may be farther apart than is held
 constexpr float kOverstretched = 3;  // half-diagonals at rest: larger squares are torn and left out
 
 void widen(Spread& spread, int k, float value) {
@@ -41,6 +41,7 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<Nam
       kernels_(kernels),
       squares_(rest.size()),
       seams_(sheets, named, rest.size()),
+      ways_(squares_, rest.size()),
       beside_(sheets, named, squares_),
       search_(count_squares(sheets_), {}, kernels) {
   const std::size_t bodies = rest.size();
@@ -56,6 +57,7 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<Nam
   stride_.resize(bodies);
   make_squares();
   make_parts(rest);
+  ways_.forget();
   asked_.resize(squares_.size());
   boxes_.resize(squares_.size());
   begin_.resize(squares_.size() + 1);
@@ -152,7 +154,7 @@ void NearSquares::update(bool all, const Place* now, Threads& threads) {
   now_ = now;
   joined_.clear();
   if (all) {
-    beside_.forget();
+    wake();
   } else {
     look_how_far();
     look_who_joined();
@@ -198,8 +200,11 @@ void NearSquares::look_who_joined() {
 // before, so much less is left of what pairs that are not listed are apart (left()).
 void NearSquares::list(bool all, Threads& threads) {
   std::size_t asked = all ? all_squares_ : choose(false);
+  before_.count = 0;
   if (asked > all_squares_ / 2) {
     asked = choose(true);
+    std::swap(listed_, before_);
+    std::swap(until_, before_until_);
     listed_.count = 0;
   }
   squares_listed_ += double(asked);
@@ -215,6 +220,7 @@ void NearSquares::list(bool all, Threads& threads) {
   threads.share(search_.chunks(), search_.few(), [&](std::size_t k) { find_in(k); });
   take_found();
   sort_listed();
+  sleep_as_before();
 }
 
 // Vertices that start anew, and the squares that they are corners of; returns how many these are.
@@ -321,47 +327,10 @@ void NearSquares::find_in(std::size_t chunk) {
   found.count = kept;
 }
 
-// In place of all listed pairs of the squares asked for.
-void NearSquares::take_found() {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < listed_.count; ++i) {
-    if (asked_[std::size_t(listed_.owner[i])] || asked_[std::size_t(listed_.neighbour[i])])
-      continue;
-    listed_.owner[kept] = listed_.owner[i];
-    listed_.neighbour[kept++] = listed_.neighbour[i];
-  }
-  for (std::size_t k = 0; k < search_.chunks(); ++k) {
-    const SquarePairs& found = found_[k];
-    listed_.reserve(kept + found.count);
-    std::copy_n(found.owner.data(), found.count, listed_.owner.data() + kept);
-    std::copy_n(found.neighbour.data(), found.count, listed_.neighbour.data() + kept);
-    kept += found.count;
-  }
-  listed_.count = kept;
-  listed_.pad();
-}
-
-// By their owners, and those of one owner by their neighbours.
-void NearSquares::sort_listed() {
-  std::fill(begin_.begin(), begin_.end(), 0);
-  for (std::size_t i = 0; i < listed_.count; ++i) ++begin_[std::size_t(listed_.owner[i]) + 1];
-  for (std::size_t n = 1; n < begin_.size(); ++n) begin_[n] += begin_[n - 1];
-  within_.reserve(listed_.count);
-  for (std::size_t i = 0; i < listed_.count; ++i) {
-    const auto at = std::size_t(begin_[std::size_t(listed_.owner[i])]++);
-    within_.owner[at] = listed_.owner[i];
-    within_.neighbour[at] = listed_.neighbour[i];
-  }
-  for (std::size_t i = 0; i < listed_.count;) {
-    std::size_t end = i;
-    while (end < listed_.count && within_.owner[end] == within_.owner[i]) ++end;
-    std::sort(within_.neighbour.begin() + std::ptrdiff_t(i),
-              within_.neighbour.begin() + std::ptrdiff_t(end));
-    i = end;
-  }
-  within_.count = listed_.count;
-  within_.pad();
-  std::swap(listed_, within_);
+void NearSquares::wake() {
+  ways_.forget();
+  beside_.wake();
+  std::fill(until_.begin(), until_.end(), SquareWays::kAtOnce);
 }
 
 double NearSquares::listed() const {
@@ -374,7 +343,9 @@ std::size_t NearSquares::bytes() const {
   bytes += origins_.size() * (sizeof(Origin) + 6);
   for (const auto& part : parts_) bytes += part->beside.bytes();
   bytes += all_squares_ * (sizeof(LeftOut) + 8) + 4 * begin_.size();
-  bytes += listed_.bytes() + within_.bytes() + still_.bytes();
+  bytes += listed_.bytes() + within_.bytes() + still_.bytes() + before_.bytes();
+  bytes += 12 * until_.capacity();
+  bytes += ways_.bytes();
   for (const SquarePairs& p : found_) bytes += p.bytes();
   return bytes + beside_.bytes() + seams_.bytes();
 }

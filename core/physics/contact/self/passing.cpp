@@ -17,6 +17,10 @@ namespace {
 constexpr int kRounds = 12;
 // Nearer than that two may pass through each other [of the distance held].
 constexpr float kNear = 2 * kLeastApart;
+// Of the distance held: where nothing is changed by more, neither pairs that contact has found to be farther apart
+// than it, nor those that sleep, may pass: d > r + 1.2 m (square_ways.h), and passing takes m + 2 c > 0.9 d.
+constexpr float kMostChange = 0.45f;
+static_assert(2 * kMostChange < 1 - kNear && 2 * kMostChange < 0.9f * kReach);
 
 }  // namespace
 
@@ -82,7 +86,7 @@ void SelfContact::move_zones(const std::vector<std::int32_t>& members) {
 // What may pass in the interval: of what was found for contacts, unless those have moved things so far that
 // others may have come near.
 const SquarePairs& SelfContact::near_passing(Threads& threads) {
-  const float held = kHeld * thickness_, most = 0.5f * (1 - kNear) * held;
+  const float held = kHeld * thickness_, most = kMostChange * held;
   float farthest = 0;
   for (const std::int32_t body : surfaces_->touched()) {
     const Displacement &change = surfaces_->change(body), &lift = surfaces_->lift(body);
@@ -95,7 +99,7 @@ const SquarePairs& SelfContact::near_passing(Threads& threads) {
   }
   return farthest < most * most
              ? near_->still_within(kNear * held, place_.data(), moved_.data(), threads)
-             : near_->within(kNear * held, place_.data(), moved_.data(), threads);
+             : near_->all_within(kNear * held, place_.data(), moved_.data(), threads);
 }
 
 // (From here on `moved_` is what bodies do move, not what they would.)

@@ -199,6 +199,7 @@ void SelfContact::begin(Threads& threads) {
   gather(threads);
   std::swap(place_, now_);
   blocks_.begin(threads);
+  if (near_) near_->wake();
   begun_ = true;
 }
 

@@ -9,6 +9,7 @@ void SquarePairs::reserve(std::size_t pairs) {
   if (owner.size() >= pairs + kPadding) return;
   owner.resize(2 * pairs + kPadding);
   neighbour.resize(owner.size());
+  number.resize(owner.size(), kNone);
 }
 
 void SquarePairs::pad() {
@@ -23,13 +24,14 @@ void SquarePairs::add(const std::vector<SquarePairs>& pieces, std::size_t how_ma
     reserve(count + found.count);
     std::copy_n(found.owner.data(), found.count, owner.data() + count);
     std::copy_n(found.neighbour.data(), found.count, neighbour.data() + count);
+    std::copy_n(found.number.data(), found.count, number.data() + count);
     count += found.count;
   }
   pad();
 }
 
 std::size_t SquarePairs::bytes() const {
-  return owner.capacity() * 2 * sizeof(std::int32_t);
+  return owner.capacity() * 3 * sizeof(std::int32_t);
 }
 
 }  // namespace weft::physics

@@ -12,9 +12,17 @@ namespace weft::physics {
 struct SquarePairs {
   static constexpr std::size_t kPadding = 32;
   std::vector<std::int32_t> owner, neighbour;
+  std::vector<std::int32_t> number;  // of each where its bound is kept, kNone: nowhere
   std::size_t count = 0;
+  static constexpr std::int32_t kNone = -1;
   void reserve(std::size_t pairs);
   void pad();
+  // One more, for which there is room.
+  void put(std::int32_t a, std::int32_t b, std::int32_t at) {
+    owner[count] = a;
+    neighbour[count] = b;
+    number[count++] = at;
+  }
   // The pairs of so many pieces, piece after piece.
   void add(const std::vector<SquarePairs>& pieces, std::size_t how_many);
   std::size_t bytes() const;
