@@ -297,6 +297,19 @@ TEST(Membrane, HasTheSameBitsEverywhereWhileItTears) {
   }
 }
 
+// Springs on a grid have no damping of bending, which is no silence.
+TEST(Membrane, AloneHasDampingOfBendingOnAGrid) {
+  Scene scene = sheet(5, 5, {1, 0, 0}, {0, 0, 1}, {});
+  scene.cloths[0].bending = 1e-5;
+  scene.cloths[0].bending.damping = 0.5;
+  const std::vector<Fault> faults = validate(scene);
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_EQ(faults[0].place, "/cloths/0/bending/damping");
+  EXPECT_EQ(faults[0].allowed, "0 s, on a grid of springs");
+  scene.cloths[0].membrane = {2000, 1500, 300, 60, 0};
+  EXPECT_TRUE(validate(scene).empty());
+}
+
 // Below a cut from side to side nothing holds the sheet.
 TEST(Membrane, FallsFreelyBelowACut) {
   Scene scene = sheet(16, 16, {0.3, 0, 0}, {0, -0.3, 0}, {1000, 1000, 200, 100, 0});

@@ -357,7 +357,6 @@ TEST(Validate, NamesWhatAMembraneDoesNotFit) {
   cloth.level = 1;
   cloth.grid.v = {0.1, 0, 1};
   cloth.bending.twist = 1e-5;
-  cloth.bending.damping = 0.5;
   scene.solver.method = weft::Method::positional;
   EXPECT_EQ(
       told(weft::validate(scene)),
@@ -370,10 +369,6 @@ TEST(Validate, NamesWhatAMembraneDoesNotFit) {
       "two)\n"
       "/cloths/0/membrane: a membrane is given (not with method positional)\n"
       "/cloths/0/membrane: a membrane is given beside a level (level 0)");
-  scene.cloths[0].membrane = {};
-  scene.cloths[0].level = 0;
-  EXPECT_EQ(told(weft::validate(scene)),
-            "/cloths/0/bending/damping: damping is 0.5 (0 s, on a grid of springs)");
   scene.cloths[0] = {};
   scene.cloths[0].membrane = {4, 9, 0, 0, 0};
   scene.solver.method = weft::Method::spring;
