@@ -184,8 +184,8 @@ Scene draped(const Shape& shape, const Motion& motion) {
   return scene;
 }
 
-// Cloth over bodies that turn does not sink in, and comes to the same bits by any threads and instructions, and
-// wherever far away.
+// Cloth over bodies that turn does not sink in, and comes to the same bits by any threads and instructions; far away
+// to the same place, but for how its start is rounded there.
 TEST(ContactTurning, ClothStaysOutsideWithTheSameBits) {
   for (const Shape& shape : shapes()) {
     const Motion motion = motions()[1];
@@ -202,7 +202,8 @@ TEST(ContactTurning, ClothStaysOutsideWithTheSameBits) {
     EXPECT_LT(deepest, 1e-3) << kShapeNames[shape.index()];
     const std::vector<double> x = far.positions(), y = farther.positions();
     for (std::size_t p = 0; p < x.size() / 3; ++p)
-      EXPECT_EQ(plus(at(x, p), {-4000, 64, 2500}), at(y, p)) << kShapeNames[shape.index()];
+      EXPECT_LT(distance(plus(at(x, p), {-4000, 64, 2500}), at(y, p)), 1e-3)
+          << kShapeNames[shape.index()];
   }
 }
 
