@@ -266,9 +266,15 @@ TEST(MembraneLines, SayWhatTheyLeaveOut) {
   EXPECT_FALSE(told("springs of the membrane"));
   EXPECT_FALSE(told("damping"));
   scene.cloths[0].membrane.damping = 1e-4;
-  EXPECT_TRUE(told("line sweeps leave out the membrane's damping"));
+  EXPECT_TRUE(told("line sweeps leave out the damping of the membrane"));
+  scene.cloths[0].bending = 1e-4;
+  scene.cloths[0].bending.damping = 1e-3;
+  EXPECT_TRUE(told("line sweeps leave out the damping of the membrane and of bending"));
+  scene.cloths[0].membrane.damping = 0;
+  EXPECT_TRUE(told("line sweeps leave out the damping of bending"));
   scene.solver.sweep = Sweep::gauss_seidel;
   EXPECT_TRUE(told("springs of the membrane"));
+  EXPECT_TRUE(told("that of bending"));
 }
 
 // A sheet that turns and falls on a ball, by few substeps and by many, of a membrane and of springs: where it

@@ -98,10 +98,6 @@ void choose(LoadedScene& loaded, const Tolerance& tolerance, const Options& opti
   try {
     Choice choice = weft::choose(loaded.scene, tolerance, options);
     std::cout << to_text(choice, tolerance);
-    if (choice.best < 0 && choice.notes.empty())
-      throw Failure{
-          kBadCommandLine,
-          {{"--tolerance", "no method keeps this error", "see above what each comes to"}}};
     if (choice.best >= 0) {
       const Trial& best = choice.trials[std::size_t(choice.best)];
       loaded.notes.push_back("--tolerance: " + best.method + ", " + to_text(best));
