@@ -43,6 +43,14 @@ class Grids {
           {rounded(own_[c].u, units_[c].u, scale), rounded(own_[c].v, units_[c].v, scale)});
     return all;
   }
+  // Others so many times as fine as grids of these.
+  std::vector<Intervals> refined(std::vector<Intervals> from, double times) const {
+    for (std::size_t c = 0; c < from.size(); ++c) {
+      from[c].u = rounded(from[c].u, units_[c].u, times);
+      from[c].v = rounded(from[c].v, units_[c].v, times);
+    }
+    return from;
+  }
   double coarsest() const { return double(kFirst) / longest_; }
   bool allowed(double scale) const { return scale * longest_ <= kMostIntervals; }
 
@@ -137,7 +145,7 @@ class GridSearch {
       const Ladder rungs = ladder(o.way, first, in_time.substeps);
       const std::optional<double> times = rungs.needed((asked_.error - in_time.error) / kSafety);
       search.falls = rungs.falls();
-      t.intervals = times ? grids_.at(fine * *times) : rungs.finest().grids;
+      t.intervals = grids_.refined(rungs.finest().grids, times.value_or(1));
       t.error = rungs.error(times.value_or(1)) + in_time.error, t.order = rungs.order();
       t.substeps = rungs.finest().substeps;
       t.kept = times.has_value();
