@@ -104,6 +104,8 @@ void choose(LoadedScene& loaded, const Tolerance& tolerance, const Options& opti
     }
     loaded.scene = std::move(choice.scene);
     for (const std::string& note : choice.notes) loaded.notes.push_back("--tolerance: " + note);
+  } catch (const SceneError& error) {
+    throw Failure{kBadScene, error.faults};
   } catch (const std::invalid_argument& refused) {
     throw Failure{
         kBadCommandLine,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 
 #include "scene/json_text.h"
 
@@ -158,6 +159,10 @@ Intervals intervals_of_pins(const Cloth& cloth) {
 }
 
 RegriddedCloth with_intervals(const Cloth& cloth, const Intervals& intervals) {
+  constexpr int kMost = 4095;
+  if (cloth.mesh.given() || std::min(intervals.u, intervals.v) < 1 ||
+      std::max(intervals.u, intervals.v) > kMost)
+    throw std::invalid_argument("not a grid, or not 1 to 4095 intervals");
   RegriddedCloth result{cloth, {}};
   Cloth& to = result.cloth;
   to.grid.nx = intervals.u + 1, to.grid.ny = intervals.v + 1;

@@ -6,21 +6,24 @@
 
 #include "scene/json_text.h"
 #include "tolerance/search.h"
+#include "weft/estimate.h"
 
 namespace weft::tolerance {
 namespace {
 
 constexpr int kFirst = 4;  // intervals along the longest side of the coarsest grid that is tried
-constexpr int kLeast = 2;  // along any side
 constexpr int kMostIntervals = 4095;
+constexpr double kBytes = 1000;  // that a particle takes, with what is kept of its places
 // Of a ladder: two orders are seen, and all four take a sixth of the work of what is twice as fine as the last.
 constexpr int kRungs = 4;
 // Of distances between grids. With 1 a fourth of random sheets were up to a tenth beyond what was promised
 // (bench/tolerance --grids).
 constexpr double kSafety = 1.25;
-constexpr int kTries = 6;  // ladders
+constexpr int kTries = 6;           // ladders
+constexpr double kMostWork = 1e11;  // of a rung, Trial::work; about two minutes on one thread
 
-// All grids of a scene at once. Sides keep their ratios, and what is held its places, as far as coarse grids can.
+// All grids of a scene at once. Cells keep their shape, for springs are another material in cells of another, and what
+// is held its places, as far as coarse grids can.
 class Grids {
  public:
   explicit Grids(const Scene& scene) : scene_(scene) {
@@ -35,24 +38,23 @@ class Grids {
     }
   }
 
-  // So many times as fine as the scene's.
+  // About so many times as fine as the scene's, or finer where coarser cells would have another shape.
   std::vector<Intervals> at(double scale) const {
     std::vector<Intervals> all;
-    for (std::size_t c = 0; c < own_.size(); ++c)
-      all.push_back(
-          {rounded(own_[c].u, units_[c].u, scale), rounded(own_[c].v, units_[c].v, scale)});
+    for (std::size_t c = 0; c < own_.size(); ++c) all.push_back(at(scale, own_[c], units_[c]));
     return all;
   }
-  // Others so many times as fine as grids of these.
-  std::vector<Intervals> refined(std::vector<Intervals> from, double times) const {
-    for (std::size_t c = 0; c < from.size(); ++c) {
-      from[c].u = rounded(from[c].u, units_[c].u, times);
-      from[c].v = rounded(from[c].v, units_[c].v, times);
-    }
-    return from;
-  }
   double coarsest() const { return double(kFirst) / longest_; }
-  bool allowed(double scale) const { return scale * longest_ <= kMostIntervals; }
+  // Whether grids so many times as fine as these have no more points than a grid can have, and no more particles than
+  // memory has room for.
+  static bool allowed(const std::vector<Intervals>& from, int times) {
+    double particles = 0;
+    for (const Intervals& i : from) {
+      if (std::max(i.u, i.v) > kMostIntervals / times) return false;
+      particles += (double(i.u) * times + 1) * (double(i.v) * times + 1);
+    }
+    return particles * kBytes < free_memory();
+  }
 
   Scene scene(const std::vector<Intervals>& intervals,
               std::vector<std::string>* notes = nullptr) const {
@@ -68,9 +70,17 @@ class Grids {
   }
 
  private:
-  static int rounded(int own, int unit, double scale) {
-    const int least = std::min(own, (kLeast + unit - 1) / unit * unit);
-    return std::clamp(unit * int(std::lround(scale * own / unit)), least, kMostIntervals);
+  static Intervals at(double scale, const Intervals& own, const Intervals& unit) {
+    constexpr double kShape =
+        0.02;  // by so much sides of cells may differ; springs along them differ as much
+    const double shape = double(own.v) / own.u;
+    int u = unit.u * std::max(1, int(std::lround(scale * own.u / unit.u)));
+    for (; u < own.u; u += unit.u) {
+      const int v = unit.v * std::max(1, int(std::lround(u * shape / unit.v)));
+      if (std::abs(v / (u * shape) - 1) <= kShape) return {u, v};
+    }
+    const int times = std::max(1, int(std::lround(scale)));
+    return {own.u * times, own.v * times};
   }
   const Scene& scene_;
   std::vector<Intervals> own_, units_;
@@ -82,26 +92,16 @@ std::vector<Intervals> finer(std::vector<Intervals> intervals, int times) {
   return intervals;
 }
 
+constexpr const char* kTooFine = "needs finer grids than there can be";
+
 // What a way comes to on coarse grids, and what follows from that.
 struct Outlook {
   Way way;
   double scale = 1;  // of the grids that keep the error, of the scene's
   double work = kAnyWork;
-  bool more_work = false;  // than another way's, which `work` then is: nothing else is known
-  // Of the finest grids that were tried.
-  int substeps = 0;
-  std::vector<Intervals> intervals;
-  bool falls = true;
-  double error = std::numeric_limits<double>::infinity(), order = 0;
+  Search seen;  // of the finest grids that were tried
+  double tried_work = 0;
 };
-
-Search as_seen(const Outlook& o) {
-  Search s{trial_of(o.way)};
-  s.trial.substeps = o.substeps, s.trial.intervals = o.intervals;
-  s.trial.error = o.error, s.trial.order = o.order, s.trial.work = o.work;
-  s.falls = o.falls;
-  return s;
-}
 
 class GridSearch {
  public:
@@ -110,22 +110,28 @@ class GridSearch {
 
   // `best`: of another way.
   Outlook outlook(const Way& way, const Outlook* best) {
-    Outlook o;
-    o.way = way;
+    Outlook o{way, 1, kAnyWork, {trial_of(way)}, 0};
+    Trial& t = o.seen.trial;
     const double first = grids_.coarsest();
-    const double most_work = best ? best->work * std::pow(2 * first / best->scale, 3) : kAnyWork;
-    const InTime in_time = substeps(way, first, most_work);
-    if (!in_time.kept) {
-      o.more_work = best != nullptr;
-      if (best) o.work = best->work;
+    const std::vector<Intervals> grids = grids_.at(first);
+    if (!Grids::allowed(grids, kFinest)) {
+      t.why = kTooFine;
       return o;
     }
-    const Ladder rungs = ladder(way, first, in_time.substeps);
-    o.error = rungs.error(), o.order = rungs.order();
-    o.substeps = rungs.finest().substeps, o.intervals = rungs.finest().grids,
-    o.falls = rungs.falls();
-    if (!std::isfinite(o.error)) return o;
-    const double times = fineness(o.error, o.order);
+    const double most_work = best ? best->work * std::pow(2 * first / best->scale, 3) : kAnyWork;
+    const InTime in_time = substeps(way, grids, most_work);
+    if (!in_time.kept) {
+      t.why = in_time.why;
+      return o;
+    }
+    const Ladder rungs = ladder(way, grids, in_time.substeps);
+    if (!std::isfinite(rungs.error())) return o;
+    t.why.clear();
+    t.error = rungs.error(), t.order = rungs.order();
+    t.substeps = rungs.finest().substeps, t.intervals = rungs.finest().grids;
+    o.seen.falls = rungs.falls();
+    const double times = std::max(fineness(t.error, t.order), 1.0 / kFinest);
+    o.tried_work = rungs.finest().work;
     o.scale = first * kFinest * times;
     o.work = rungs.finest().work * std::pow(times, 3);
     return o;
@@ -133,24 +139,35 @@ class GridSearch {
 
   // Ladders to about half as fine as the outlook, each nearer to what is asked, until one tells what keeps it.
   Search find(const Outlook& o) {
-    Search search = as_seen(o);
+    Search search = o.seen;
     Trial& t = search.trial;
-    double scale = o.scale, tried = grids_.coarsest() * kFinest;
-    for (int n = 0; n < kTries && search.falls && grids_.allowed(scale); ++n) {
+    double scale = o.scale, tried = grids_.coarsest() * kFinest, work = o.tried_work;
+    for (int n = 0; n < kTries && (n == 0 || search.falls); ++n) {
       // No more than twice as fine as the last ladder: orders of coarse grids are low, and tell of too fine ones.
       const double fine = std::clamp(scale / 2, grids_.coarsest() * kFinest, 2 * tried);
-      const double first = fine / kFinest;
-      const InTime in_time = substeps(o.way, first, kAnyWork);
+      const std::vector<Intervals> grids = grids_.at(fine / kFinest);
+      if (!Grids::allowed(grids, 2 * kFinest)) {
+        t.why = kTooFine;
+        return search;
+      }
+      if (work * std::pow(fine / tried, 3) > kMostWork) {
+        t.why = "would take too long to find out";
+        return search;
+      }
+      const InTime in_time = substeps(o.way, grids, kAnyWork);
       if (!in_time.kept) return search;
-      const Ladder rungs = ladder(o.way, first, in_time.substeps);
+      const Ladder rungs = ladder(o.way, grids, in_time.substeps);
       const std::optional<double> times = rungs.needed((asked_.error - in_time.error) / kSafety);
       search.falls = rungs.falls();
-      t.intervals = grids_.refined(rungs.finest().grids, times.value_or(1));
-      t.error = rungs.error(times.value_or(1)) + in_time.error, t.order = rungs.order();
+      // On the way that the rungs go, for cells of one shape.
+      const int finer_than_first = times ? int(std::ceil(kFinest * *times)) : kFinest;
+      const double really = double(finer_than_first) / kFinest;
+      t.intervals = finer(grids, finer_than_first);
+      t.error = rungs.error(really) + in_time.error, t.order = rungs.order();
       t.substeps = rungs.finest().substeps;
       t.kept = times.has_value();
-      if (times) return finished(search, o.way, *times);
-      tried = fine;
+      if (times) return finished(search, o.way, really);
+      tried = fine, work = rungs.finest().work;
       scale =
           std::isfinite(t.error) ? std::max(fine * fineness(t.error, t.order), 3 * fine) : 4 * fine;
     }
@@ -168,7 +185,8 @@ class GridSearch {
   struct InTime {
     bool kept = true;
     int substeps = kAutoSubsteps;
-    double error = 0;  // m
+    double error = 0;   // m
+    std::string why{};  // it is not kept
   };
 
   double fineness(double error, double order) const {
@@ -176,9 +194,8 @@ class GridSearch {
     return std::pow(kMargin * error / asked_.error, 1 / std::max(order, 0.5));
   }
 
-  Ladder ladder(const Way& way, double scale, int substeps) {
+  Ladder ladder(const Way& way, const std::vector<Intervals>& first, int substeps) {
     Ladder ladder(2);
-    const std::vector<Intervals> first = grids_.at(scale);
     for (int rung = 0; rung < kRungs; ++rung) {
       ladder.add(
           motion_of(grids_.scene(finer(first, 1 << rung)), way, substeps << rung, asked_.runs));
@@ -189,25 +206,25 @@ class GridSearch {
 
   // The error in time of what is implicit goes with dt/h, by what sweeps leave, and with dt: halving both hardly
   // changes it, and no ladder of both shows it. So it is asked for by itself, on the second rung of a ladder.
-  InTime substeps(const Way& way, double scale, double most_work) {
+  InTime substeps(const Way& way, const std::vector<Intervals>& grids, double most_work) {
     constexpr double kShare =
         1 / 3.0;  // cheapest where work is the square of one fineness times the other
     if (way.is_explicit()) return {};
-    const Scene scene = grids_.scene(finer(grids_.at(scale), 2));
+    const Scene scene = grids_.scene(finer(grids, 2));
     const Asked in_time{scene, kShare * asked_.error, asked_.runs};
     const Way& first = ways_.front();
-    Search s;
+    Search s{trial_of(way)};
     if (first_substeps(scene, first, asked_.runs.options) <= kMostOfTruth) {
       Truth truth;
-      const Search of_truth = find_explicit(in_time, first, truth);
-      choice_.trial_work += of_truth.work;
-      if (!of_truth.trial.kept) return {false};
+      choice_.trial_work += find_explicit(in_time, first, truth).work;
       s = find_against(in_time, way, truth, most_work);
     } else {
       s = find_implicit(in_time, way, most_work);
     }
     choice_.trial_work += s.work;
-    return {s.trial.kept, (s.trial.substeps + 1) / 2, s.trial.error};
+    const std::string& why = s.trial.why;
+    return {s.trial.kept, (s.trial.substeps + 1) / 2, s.trial.error,
+            why.empty() ? "would take more work" : why};
   }
 
   Search finished(Search search, const Way& way, double times) const {
@@ -249,30 +266,38 @@ Choice choose_grids(const Asked& asked) {
   }
   std::ranges::stable_sort(outlooks, {}, &Outlook::work);
   double least = kAnyWork;
-  std::optional<Search> failed;  // the first
+  Search failed = outlooks.front().seen;
   for (const Outlook& o : outlooks) {
-    Search s = as_seen(o);
-    if (std::isfinite(o.work) && o.work < least && !o.more_work) {
+    Search s = o.seen;
+    if (o.work < least) {
       s = searches.find(o);
-      if (!s.trial.kept && !failed) failed = s;
+      if (&o == &outlooks.front()) failed = s;
+    } else if (s.trial.why.empty()) {
+      s.trial.why = "would take more work";
     }
     choice.trials.push_back(s.trial);
     if (!s.trial.kept || s.trial.work >= least) continue;
     least = s.trial.work;
     choice.best = int(choice.trials.size()) - 1;
   }
-  if (choice.best >= 0) {
-    for (std::size_t c = 0; c < asked.scene.cloths.size(); ++c)
-      if (!asked.scene.cloths[c].bending.given())
-        choice.notes.push_back(
-            "cloth " + std::to_string(c) +
-            " has no bending: where it is pushed together it wrinkles as finely as its grid can, "
-            "finer grids have finer wrinkles, and no error is promised");
-    choice.promised = choice.notes.empty();
-    take(choice, searches.grids(), choice.trials[std::size_t(choice.best)]);
-  } else if (failed) {
-    choice.notes.push_back(not_promised(asked, *failed, "grids and substeps"));
+  if (choice.best < 0) {
+    choice.notes.push_back(not_promised(asked, failed, "grids and substeps"));
+    return choice;
   }
+  choice.promised = true;
+  for (std::size_t c = 0; c < asked.scene.cloths.size(); ++c) {
+    const Cloth& cloth = asked.scene.cloths[c];
+    const std::string name = "cloth " + std::to_string(c);
+    if (cloth.grid.jitter > 0)
+      choice.notes.push_back(name + ": its jitter is another on every grid");
+    if (cloth.bending.given()) continue;
+    choice.promised = false;
+    choice.notes.push_back(
+        name +
+        " has no bending: where it is pushed together it wrinkles as finely as its grid "
+        "can, finer grids have finer wrinkles, and no error is promised");
+  }
+  take(choice, searches.grids(), choice.trials[std::size_t(choice.best)]);
   return choice;
 }
 

@@ -29,7 +29,8 @@ Choice choose_substeps(const Asked& asked) {
     if (all.back().trial.kept) least = std::min(least, all.back().trial.work);
   }
   const auto kept = [](const Search& s) { return s.trial.kept; };
-  if (!measured && std::ranges::none_of(all, kept))
+  const auto is_first = [&](const Search& s) { return s.trial.method == first.name; };
+  if (std::ranges::none_of(all, is_first) && std::ranges::none_of(all, kept))
     all.push_back(find_explicit(asked, first, truth));
 
   for (const Search& s : all) {
@@ -44,7 +45,9 @@ Choice choose_substeps(const Asked& asked) {
     choice.scene.solver = best.solver;
     choice.scene.time.substeps = best.substeps;
   } else {
-    choice.notes.push_back(not_promised(asked, chaotic ? all.front() : all.back(), "substeps"));
+    const auto error = [](const Search& s) { return s.trial.error; };
+    choice.notes.push_back(
+        not_promised(asked, *std::ranges::min_element(all, {}, error), "substeps"));
   }
   return choice;
 }

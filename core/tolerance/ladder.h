@@ -2,6 +2,7 @@
 // errors. With e(h) = C h^p two successive ones are e(h) - e(h/2) = (2^p - 1) e(h/2) apart.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "tolerance/trial_run.h"
@@ -21,8 +22,10 @@ class Ladder {
   // The lesser of the last two orders seen, as far as there are so many: where fast motion is smoothed away an error
   // may hardly fall for a while after it has fallen fast. With two rungs none is seen, and a low one is taken.
   double order() const;
-  // Not so: what the next rung adds may be as much as what the last did.
-  bool falls() const { return rungs_ < 3 || order() > least_; }
+  // Not so where neither of the last two orders is one: what the next rung adds may be as much as what the last did.
+  bool falls() const {
+    return rungs_ < 3 || std::max(order_, rungs_ < 4 ? order_ : order_before_) > least_;
+  }
   // m; of something so many times as fine as the finest rung.
   double error(double times = 1) const;
   // How many times as fine as the finest rung something has to be that has this error: from 1/2, the rung before, to

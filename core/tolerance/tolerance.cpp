@@ -34,7 +34,11 @@ Choice choose(const Scene& scene, const Tolerance& tolerance, const Options& opt
           "method positional converges to no motion of springs");
   Options quiet = options;
   quiet.profile = quiet.follow_strain = false;
-  const int frames = std::max(1, int(std::lround(tolerance.seconds / scene.time.frame)));
+  constexpr double kMostFrames = 1e7;
+  const double count = tolerance.seconds / scene.time.frame;
+  require(tolerance.error > 0 && std::isfinite(tolerance.error), "the error is not above 0 m");
+  require(count >= 0 && count <= kMostFrames, "the run has more than ten million frames");
+  const int frames = std::max(1, int(std::lround(count)));
   const tolerance::Asked asked{scene, tolerance.error, {frames, quiet, tolerance.on_run}};
   if (!tolerance.grids) return tolerance::choose_substeps(asked);
   for (const Cloth& cloth : scene.cloths) {
@@ -59,16 +63,15 @@ std::string to_text(const Choice& choice, const Tolerance& tolerance) {
   std::string text = line;
   for (std::size_t n = 0; n < choice.trials.size(); ++n) {
     const Trial& t = choice.trials[n];
-    const bool seen = t.substeps > 0 && t.error < kFar;
-    const bool dear = t.substeps == 0 && std::isfinite(t.work);
+    const bool seen = t.why.empty() && t.error < kFar;
     std::snprintf(line, sizeof line, "%c %-24s  %s", int(n) == choice.best ? '*' : ' ',
                   t.method.c_str(),
-                  seen   ? to_text(t).c_str()
-                  : dear ? "would take more work"
-                         : "not stable as asked");
+                  seen            ? to_text(t).c_str()
+                  : t.why.empty() ? "not stable as asked"
+                                  : t.why.c_str());
     text += line;
     std::snprintf(line, sizeof line, ", work %.2g", t.work);
-    text += (seen && t.work > 0 ? line : "") + std::string("\n");
+    text += (t.kept ? line : "") + std::string("\n");
   }
   const double run = choice.best < 0 ? 0 : choice.trials[std::size_t(choice.best)].work;
   if (run > 0) {

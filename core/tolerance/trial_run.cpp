@@ -15,25 +15,30 @@ int ratio(int fine, int coarse) {
   return coarse > 0 ? fine / coarse : 1;
 }
 
+// Of the cloth that is farthest off.
 double root_mean_square(const std::vector<double>& a, const std::vector<double>& b,
                         const Motion& coarse, const Motion& fine) {
-  double sum = 0;
-  std::size_t count = 0, first_of_fine = 0;
+  double greatest = 0;
+  std::size_t first = 0, first_of_fine = 0;
   for (std::size_t c = 0; c < coarse.grids.size(); ++c) {
     const Intervals grid = coarse.grids[c], finer = fine.grids[c];
     const int every_u = ratio(finer.u, grid.u), every_v = ratio(finer.v, grid.v);
+    double sum = 0;
+    std::size_t count = 0;
     for (int j = 0; j <= grid.v; ++j)
       for (int i = 0; i <= grid.u; ++i, ++count) {
         const std::size_t p = first_of_fine + std::size_t(j * every_v) * std::size_t(finer.u + 1) +
                               std::size_t(i * every_u);
         for (std::size_t k = 0; k < 3; ++k) {
-          const double apart = a[3 * count + k] - b[3 * p + k];
+          const double apart = a[3 * (first + count) + k] - b[3 * p + k];
           sum += apart * apart;
         }
       }
+    greatest = std::max(greatest, std::sqrt(sum / double(count)));
+    first += count;
     first_of_fine += std::size_t(finer.u + 1) * std::size_t(finer.v + 1);
   }
-  return std::sqrt(sum / double(count));
+  return greatest;
 }
 
 }  // namespace
@@ -43,7 +48,10 @@ Motion motion_of(const Scene& scene, const Way& way, int substeps, const Runs& r
   Scene tried = scene;
   tried.solver = way.solver;
   tried.time.substeps = substeps;
-  if (!validate(tried).empty()) return motion;
+  if (!validate(tried).empty()) {
+    motion.refused = true;
+    return motion;
+  }
   Simulation simulation(tried, runs.options);
   double particles = 0;
   for (const Cloth& cloth : scene.cloths) {

@@ -13,6 +13,7 @@ namespace weft::tolerance {
 
 // Places at a few instants spread over a run; none where the way does not run the scene as asked.
 struct Motion {
+  bool refused = false;                     // by validate(), with this way
   int substeps = 0;                         // a frame
   double work = 0;                          // Trial::work
   std::vector<Intervals> grids;             // of every cloth; a mesh is one row
@@ -29,8 +30,8 @@ struct Runs {
 // `substeps`: a frame, or kAutoSubsteps.
 Motion motion_of(const Scene& scene, const Way& way, int substeps, const Runs& runs);
 
-// How far two runs of equal length are apart at the particles of the first [m]: the root mean square, at the instant
-// where it is greatest. The second's grids have all particles of the first's. Infinite where one was not run.
+// How far two runs of equal length are apart at the particles of the first [m]: the root mean square over a cloth, of
+// the cloth and at the instant where it is greatest. The second's grids have all particles of the first's. Infinite where one was not run.
 double distance(const Motion& coarse, const Motion& fine);
 
 }  // namespace weft::tolerance

@@ -1,4 +1,4 @@
-// Ways to solve a scene that converge to the same motion.
+// Ways to solve a scene that converge to its motion, or to that without its damping.
 #pragma once
 
 #include <string>
@@ -13,6 +13,8 @@ struct Way {
   Solver solver;
   int order;    // in the substep
   double work;  // of a particle and substep, of that of springs
+  bool
+      damps;  // as the scene asks; else it is a way only where it can be measured against one that does
   bool is_explicit() const { return solver.method != Method::compliant; }
 };
 

@@ -18,7 +18,9 @@ struct Intervals {
 // multiples of these. Held corners allow any, {1, 1}. The grid's own where no coarser one has them all.
 Intervals intervals_of_pins(const Cloth& cloth);
 
-// The cloth, a grid, with so many intervals, 1 … 4095 each: the same sheet, in the same place, of the same mass.
+// The cloth, a grid, with so many intervals, 1 … 4095 each: the same sheet, in the same place, of the same mass; of
+// springs only where cells keep their shape, for in others they are another material. Throws std::invalid_argument for
+// other intervals, and for a mesh.
 // - What is held keeps its place on the sheet, to the nearest particle: single particles, the lines between held
 //   neighbours, and what lies between four of them. Paths of neighbours with keys at equal times are those between
 //   them; other neighbours are held one by one.

@@ -15,9 +15,9 @@
 namespace weft {
 
 struct Tolerance {
-  double error =
-      0.001;  // m; of positions, root mean square over particles, at its greatest over the run
-  double seconds = 0;  // s; of the run
+  // m, above 0; of positions, root mean square over the particles of a cloth, at its greatest over cloths and the run.
+  double error = 0.001;
+  double seconds = 0;  // s, 0 or more; of the run, of up to ten million frames
   // Also picks the grids of all cloths, which are no meshes; the error is then that against the sheet behind them.
   bool grids = false;
   // Called before every run of the trials: "spring, 1089 particles, 44 substeps a frame". Or none.
@@ -31,6 +31,7 @@ struct Trial {
   int substeps = 0;                  // a frame
   std::vector<Intervals> intervals;  // of every cloth's grid, where grids are picked
   bool kept = false;                 // the error, by an estimate that can be trusted
+  std::string why;                   // there are no figures; else empty
   double error = 0;                  // m; estimated
   double order = 0;                  // by which it falls with finer substeps or grids, as seen
   double work = 0;  // particles times substeps of springs that cost as much, over the run
@@ -38,8 +39,8 @@ struct Trial {
 
 struct Choice {
   std::vector<Trial> trials;
-  int best =
-      -1;  // of those, the one that `scene` is run by; -1: none is stable, `scene` is as asked
+  // Of those, the one that `scene` is run by; -1: none keeps the error, and `scene` is as asked.
+  int best = -1;
   bool promised = false;  // over the whole run
   double tried = 0;  // s; what the trials went over: all of the run where the choice is promised
   double trial_work = 0;           // of all trials, counted as Trial::work is
@@ -47,8 +48,9 @@ struct Choice {
   std::vector<std::string> notes;  // what is not promised and why; what is not quite as asked
 };
 
-// `options`: as the scene is to be run. Throws SceneError where the scene has faults; std::invalid_argument where no
-// method converges to its motion: method positional, or grids are asked for and a cloth is a mesh, or has a level.
+// `options`: as the scene is to be run. Throws SceneError where the scene has faults; std::invalid_argument where the
+// tolerance is out of range, and where no method converges to the scene's motion: method positional, or grids are
+// asked for and a cloth is a mesh, or has a level.
 Choice choose(const Scene& scene, const Tolerance& tolerance, const Options& options);
 
 // "33 x 33 points, 44 substeps a frame: error 1.4e-03 m"; of grids that were not picked without points.
