@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "physics/contact/body/body_surface.h"
+#include "physics/model/load.h"
 #include "physics/model/path.h"
 #include "weft/mesh.h"
 
@@ -164,10 +165,29 @@ void MovingCollider::place(ColliderRow& r, const Substep& s) const {
                turned(collider_.shape, now.turn, {}));
 }
 
+namespace {
+
+// What a load, a gas, gives to a particle of the cloth as it starts, at the time when that is most [m/s²].
+double greatest_acceleration(const ClothParts& parts) {
+  const Load* const load = parts.model.load();
+  if (!load) return 0;
+  double greatest = 0;
+  const auto look = [&](double time) {
+    std::vector<Vec3> a(std::size_t(particle_count(parts.cloth)));
+    load->add_accelerations(time, a);
+    for (const Vec3& one : a) greatest = std::max(greatest, length(one));
+  };
+  look(0);
+  for (const auto& key : parts.cloth.pressure.keys) look(key.time);
+  return greatest;
+}
+
+}  // namespace
+
 SpeculativeCulling::SpeculativeCulling(const ClothParts& parts, double collider_speed)
     : rows_(parts.particles.rows), acceleration_(1), collider_speed_(collider_speed) {
   acceleration_ += parts.model.pull().acceleration * kStrain;
-  acceleration_ += 2 * greatest_gravity(parts.scene);
+  acceleration_ += 2 * (greatest_gravity(parts.scene) + greatest_acceleration(parts));
 }
 
 void SpeculativeCulling::restart(double collider_speed) {

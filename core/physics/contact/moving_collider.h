@@ -106,7 +106,7 @@ class MovingCollider {
 
 // Rows that cannot touch a collider before a time. A particle at distance c, of speed s towards the
 // collider, gets there no sooner than after τ with 2 s τ + a τ²/2 = c, where a is more than springs
-// at a strain of 20 % and gravity give it; speeds may double besides by contact. Should one be
+// at a strain of 20 %, gravity and a gas give it; speeds may double besides by contact. Should one be
 // faster yet it is found inside later, and lifted out then.
 class SpeculativeCulling {
  public:
