@@ -106,9 +106,12 @@ void Parameters::collider_path(const std::string& pointer, const Json& value) {
     if (!draw_path("turn", pointer, keys, now.time, {0}, kAngles)) return;
     // One that begins to turn does so about itself.
     const Collider& body = workspace_->document().scene().colliders[number];
+    const std::string about = pointer.substr(0, pointer.rfind('/')) + "/about";
     if (value.empty() && body.rotate.about == Vec3{})
-      change(pointer.substr(0, pointer.rfind('/')) + "/about", Json(place_of(body.shape)));
-    return change(pointer, keys);
+      workspace_->edit({{about, Json(place_of(body.shape))}, {pointer, keys}});
+    else
+      change(pointer, keys);
+    return;
   }
   if (draw_path("path", pointer, keys, now.time, {place.begin(), place.end()}, kPlaces))
     change(pointer, keys);

@@ -32,6 +32,7 @@ constexpr double kTileNanoseconds = 800, kCachedByte = 0.03, kMemoryByte = 0.1;
 constexpr std::size_t kThirdLevelBytes = std::size_t(32) << 20;
 // Rows of a tile where several threads share the sheet.
 constexpr int kSharedHeights[] = {2, 3, 4, 6, 8, 12, 16};
+constexpr std::size_t kMostTiles = std::size_t{1} << 21;  // of a run: each has a place in memory
 
 constexpr int kNone = -1;  // no tile
 
@@ -102,14 +103,15 @@ void Wavefront::choose_shared_tiles(int count, int threads) {
 
 Wavefront::Shape Wavefront::best_shape(int count, int threads) {
   double least = std::numeric_limits<double>::infinity();
-  Shape best;
   const int most = std::clamp(count / threads, 1, kMostSubsteps);
+  Shape best{most, rows_, false};
   for (int substeps = 1; substeps <= most; ++substeps)
     for (const int height : kSharedHeights)
       for (const bool rising : {false, true}) {
         if (rising && substeps == 1) continue;
         const Shape shape{substeps, std::min(height, rows_), rising};
         choose_chunks(count, threads, shape);
+        if (chunks_.size() * std::size_t(most_tiles_) > kMostTiles) continue;
         const double ns = estimate(threads);
         if (ns < least) least = ns, best = shape;
       }

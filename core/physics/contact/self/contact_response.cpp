@@ -165,9 +165,10 @@ void SelfContact::scatter(ContactSolver<N>& solver, const ContactInterval& inter
       before += double(v) * v;
       v += dv;
       after += double(v) * v;
+      const float was = x;
       x += dx;
       now_[std::size_t(n)].x[k] = x;
-      way += dx * dx;
+      way += (x - was) * (x - was);
       if (goes_on) history->shift(l, k, row, column, dx - dv * float(dt), dv);
     }
     if (N == 4) near_->shift(n, std::sqrt(way));

@@ -8,7 +8,7 @@
 namespace weft::physics {
 namespace {
 
-constexpr std::size_t kSample = 8;  // every so many bodies tell what is common to all
+constexpr std::size_t kSample = 8;  // every so many squares tell what is common to all
 
 }  // namespace
 
@@ -27,9 +27,9 @@ void SquareWays::forget() {
 void SquareWays::begin(const Displacement* moved) {
   double sum[3] = {};
   std::size_t count = 0;
-  for (std::size_t n = 0; n < shift_.size(); n += kSample, ++count)
-    for (int k = 0; k < 3; ++k) sum[k] += double(moved[n].u[k]);
-  for (int k = 0; k < 3; ++k) common_[k] = float(sum[k] / double(count));
+  for (std::size_t n = 0; n < squares_.size(); n += kSample, ++count)
+    for (int k = 0; k < 3; ++k) sum[k] += double(moved[squares_[n].corner[0]].u[k]);
+  for (int k = 0; k < 3; ++k) common_[k] = float(sum[k] / double(std::max<std::size_t>(count, 1)));
 }
 
 // Whole records, four floats at once; the last of them is no displacement.
