@@ -207,7 +207,10 @@ void print_needed(const std::vector<bench::Trial>& trials) {
         if (t.rms <= error && (least == 0 || t.run_ms < least)) least = t.run_ms;
         if (nearest == 0 || t.rms < nearest) nearest = t.rms;
       }
-      least > 0 ? std::printf(" %.2f |", least) : std::printf(" (%.1e m) |", nearest);
+      if (least > 0)
+        std::printf(" %.2f |", least);
+      else
+        nearest > 0 ? std::printf(" (%.1e m) |", nearest) : std::printf(" none ran |");
     }
     std::printf("\n");
   }

@@ -26,9 +26,10 @@ bool plan_says(const weft::Plan& plan, const std::string& word) {
 std::string missing(const weft::Simulation& simulation, const Setting& setting) {
   const weft::Plan& plan = simulation.plan();
   const weft::Solver& s = setting.solver;
-  if (s.method == weft::Method::spring && !plan_says(plan, "spring"))
-    return "substeps beyond the stability limit";
-  if (s.method == weft::Method::spring) return "";
+  if (s.method == weft::Method::spring)
+    return plan_says(plan, "spring") || plan_says(plan, "membrane")
+               ? ""
+               : "substeps beyond the stability limit";
   if (s.sweep == weft::Sweep::line && !plan_says(plan, "line")) return "no line sweeps in the plan";
   if (s.tethers && !plan_says(plan, "tether")) return "no tethers in the plan";
   if (s.order == 2 && !plan_says(plan, "second") && !plan_says(plan, "order 2") &&
