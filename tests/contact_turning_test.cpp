@@ -126,6 +126,52 @@ TEST(ContactTurning, ParticlesGoAsInDoublePrecision) {
       }
 }
 
+// The line about which a body is the same however it is turned.
+Motion about_its_axis(const Shape& shape, double rate) {
+  return std::visit(
+      [&](const auto& s) -> Motion {
+        if constexpr (requires { s.normal; })
+          return {s.normal, plus(s.point, {0.7, 3, 0.1}), {}, rate};
+        else if constexpr (requires { s.a; })
+          return {minus(s.b, s.a), s.a, {}, rate};
+        else if constexpr (requires { s.center; })
+          return {{0.3, 1, -0.5}, s.center, {}, rate};
+        else
+          return {{}, {}, {}, 0};
+      },
+      shape);
+}
+
+// Without friction nobody can tell whether a body of revolution turns about its axis: not from cloth that falls on
+// it, slides down and off, in few substeps or many.
+TEST(ContactTurning, AboutItsAxisWithoutFrictionIsLikeStandingStill) {
+  for (const Shape& shape : shapes())
+    for (const Method method : {Method::spring, Method::positional, Method::compliant})
+      for (const double rate : {2.0, -9.0}) {
+        const Motion motion = about_its_axis(shape, rate);
+        if (motion.rate == 0 || std::holds_alternative<Box>(shape)) continue;
+        Scene scene;
+        scene.gravity = {0, -kGravity, 0};
+        scene.solver.method = method;
+        scene.time.substeps = rate > 0 ? 10 : 40;
+        for (const double x : {-0.1, 0.0, 0.1, 0.2})
+          scene.cloths.push_back(flat_sheet(2, 0.02, {x, 0.42, 0.06 + 0.4 * x}));
+        for (Cloth& cloth : scene.cloths) cloth.stiffness = {300, 150, 0}, cloth.drag = 1;
+        scene.colliders.push_back(collider_of(shape, 0));
+        scene.colliders[0].offset = 0.005;
+        Scene turning = scene;
+        motion.give(turning.colliders[0], 1);
+        Simulation still(scene), turned(turning);
+        for (Simulation* s : {&still, &turned}) advance(*s, 0.34);
+        const std::vector<double> x = still.positions(), y = turned.positions();
+        double off = 0;
+        for (std::size_t p = 0; p < x.size() / 3; ++p)
+          off = std::max(off, distance(at(x, p), at(y, p)));
+        EXPECT_LT(off, 2e-5) << kShapeNames[shape.index()] << " " << name_of(method) << ", rate "
+                             << rate;
+      }
+}
+
 Vec3 twist(const Vec3& p) {
   return turned_point(p, {0.2, 0.1, -0.3}, {1, 2, -0.5}, 1.1);
 }

@@ -79,26 +79,30 @@ WEFT_INLINE Wide3 own_velocity(const Shape& shape, int i) {
 }
 
 // How touching particles are pushed onto the surface: by `depth` along the unit `normal`. `across` is
-// normal to the way on, and as long as its part along `normal` is 1.
+// normal to the way on, and as long as its part along `normal` is 1. `slides`: who goes along a chord.
 struct Push {
   Wide depth;
   Wide3 normal, across;
+  WideInt slides;
 };
 
 constexpr float kSlides = 0.01f;       // of its path: what began no farther from the surface slides
 constexpr float kSharpestTurn = 0.5f;  // cosine of the angle between its normals, at least
 
 // Of those that are pushed `straight` at the end of their paths, the ones that slide are pushed as is said
-// above. `before`: the surface at the start of their paths.
-WEFT_INLINE Push along_chords(const CollideRow& r, const Surface& before, Wide3 path,
+// above. `before`: the surface at the start of their paths; `way`: the square of how far they went past the collider's
+// place, for who slides must not depend on how fast a body turns beneath.
+WEFT_INLINE Push along_chords(const CollideRow& r, const Surface& before, Wide way,
                               const Push& straight) {
-  const Wide turn = dot(before.normal, straight.normal);
+  // A body that turns pushed that way, whose path is seen from the body as it stands at the end.
+  const Wide3 normal = turned_back(r, before.normal);
+  const Wide turn = dot(normal, straight.normal);
   const Wide left = max(before.distance - r.offset, Wide{});
-  const WideInt slides =
-      (turn > kSharpestTurn) & (left * left <= dot(path, path) * (kSlides * kSlides));
-  const Wide3 middle = (before.normal + straight.normal) * (1.0f / (1.0f + turn));
-  return {straight.depth / select(slides, turn, wide(1)),
-          select(slides, before.normal, straight.normal), select(slides, middle, straight.across)};
+  const WideInt slides = (turn > kSharpestTurn) & (left * left <= way * (kSlides * kSlides));
+  const Wide3 both = before.normal + straight.normal;
+  const Wide3 middle = both * (1.0f / (r.turns ? dot(both, normal) : 1.0f + turn));
+  return {straight.depth / select(slides, turn, wide(1)), select(slides, normal, straight.normal),
+          select(slides, middle, straight.across), slides};
 }
 
 WEFT_INLINE void rub(const CollideRow& r, int i, Wide3 u, WideInt touching, const Push& push) {
@@ -179,7 +183,7 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
     fastest = max(fastest, select(free, past_place(r, v), Wide{}));
     const WideInt below = free & (left < 0.0f);
     WideInt touching = below;
-    Push push{-left, s.normal, s.normal};
+    Push push{-left, s.normal, s.normal, WideInt{}};
     if constexpr (!Shape::kFlat && !Found<Shape>) {
       // Only a particle that moves away from the surface nearest to it can have come through, and
       // only on a path that is long against the shape.
@@ -190,7 +194,7 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
         const Entry e = entry(r, shape, p, relative * wide(r.dt), leaving);
         touching = touching | e.caught;
         push = {select(e.caught, e.depth, push.depth), select(e.caught, e.normal, push.normal),
-                select(e.caught, e.normal, push.across)};
+                select(e.caught, e.normal, push.across), push.slides};
       }
     }
     if (!any(touching)) continue;
@@ -198,9 +202,16 @@ WEFT_INLINE RowReach collide_row(const CollideRow& r) {
       course_correct(r, i, touching, load3(r.x, i) + push.normal * push.depth);
     } else {
       const Wide3 own = own_velocity(shape, i), path = (relative - own) * wide(r.dt);
-      if (!Shape::kFlat && r.resolved)
-        push = along_chords(r, surface_before(shape, p - path, i), path, push);
-      rub(r, i, u + own, touching, push);
+      Wide3 surface = u + own;
+      if (!Shape::kFlat && r.resolved) {
+        const Wide3 past = r.turns ? (v - place_velocity(r) - own) * wide(r.dt) : path;
+        push = along_chords(r, surface_before(shape, p - path, i), dot(past, past), push);
+      }
+      if (r.turns) {
+        const Wide out = dot(faster_at_end(r, p, u), push.normal);
+        surface = surface + push.normal * select(push.slides, Wide{}, out);
+      }
+      rub(r, i, surface, touching, push);
     }
   }
   return {least(clearance), __builtin_sqrtf(greatest(fastest)) + r.rim};
