@@ -51,6 +51,12 @@ TEST(MeshLimits, APinThatStartsFarAwayIsToldOf) {
   EXPECT_TRUE(has_note(Simulation(scene).plan(), "1 pin starts 2."));
   scene.cloths[0].pins[0].keys[0].position = placed_vertices(scene.cloths[0].mesh)[40];
   EXPECT_FALSE(has_note(Simulation(scene).plan(), "pin starts"));
+  // One that turns starts where it is, or turned by its first angle.
+  scene.cloths[0].pins[0] = {40, 0, {}};
+  scene.cloths[0].pins[0].rotate = {{0, 0, 1}, {0, -2, 0}, {{0, 0}, {1, 90}}};
+  EXPECT_FALSE(has_note(Simulation(scene).plan(), "pin starts"));
+  scene.cloths[0].pins[0].rotate.keys[0].degrees = 180;
+  EXPECT_TRUE(has_note(Simulation(scene).plan(), "1 pin starts"));
 }
 
 // Whatever becomes of a membrane that is torn away from its pins at the start, the last state is finite.

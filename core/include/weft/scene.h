@@ -257,8 +257,9 @@ std::vector<Fault> validate(const Scene& scene);
 // How many particles a cloth has; 0 where its mesh is not read yet.
 int particle_count(const Cloth& cloth);
 
-// Where the vertices of a mesh, which is read, start [m].
+// Where the vertices of a mesh, which is read, start [m], and where one of them does.
 std::vector<Vec3> placed_vertices(const MeshSource& mesh);
+Vec3 placed_vertex(const MeshSource& mesh, int vertex);
 
 // Spacing of the grid along u and v [m].
 double spacing_u(const Grid& grid);

@@ -21,12 +21,10 @@ struct FarPins {
 };
 FarPins far_pins(const Cloth& cloth, double distance) {
   FarPins far;
-  const bool mesh = cloth.mesh.given();
-  const std::vector<Vec3> vertices = mesh ? placed_vertices(cloth.mesh) : std::vector<Vec3>();
   for (const Pin& pin : cloth.pins) {
     if (!pin.moves()) continue;
-    const Vec3 off = minus(pin_alone_at(cloth, pin, 0), mesh ? vertices[std::size_t(pin.i)]
-                                                             : place_on(cloth.grid, pin.i, pin.j));
+    const Vec3 place = start_of(cloth, pin);
+    const Vec3 off = minus(pin_alone_at(pin, place, 0), place);
     const double length = std::sqrt(dot(off, off));
     if (length <= distance) continue;
     ++far.count;

@@ -87,8 +87,12 @@ inline Vec3 pin_alone_at(const Pin& pin, const Vec3& place, double time) {
   const Vec3 base = pin.keys.empty() ? place : position_at(pin.keys, time);
   return pin.rotate.keys.empty() ? base : turned(pin.rotate, base, time);
 }
+// Where the particle of a pin of one starts.
+inline Vec3 start_of(const Cloth& cloth, const Pin& pin) {
+  return cloth.mesh.given() ? placed_vertex(cloth.mesh, pin.i) : place_on(cloth.grid, pin.i, pin.j);
+}
 inline Vec3 pin_alone_at(const Cloth& cloth, const Pin& pin, double time) {
-  return pin_alone_at(pin, place_on(cloth.grid, pin.i, pin.j), time);
+  return pin_alone_at(pin, start_of(cloth, pin), time);
 }
 
 }  // namespace weft::physics

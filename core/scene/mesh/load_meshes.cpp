@@ -94,6 +94,12 @@ std::vector<Vec3> placed_vertices(const MeshSource& mesh) {
   return placed;
 }
 
+Vec3 placed_vertex(const MeshSource& mesh, int vertex) {
+  std::vector<Vec3> placed{mesh.shape->vertices[std::size_t(vertex)]};
+  text::put(mesh, placed);
+  return placed.front();
+}
+
 double text::mean_edge_at(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
   double sum = 0;
   for (const auto& t : mesh.triangles)
