@@ -6,6 +6,15 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)  # programs at an address that the syste
 
 option(WEFT_HARDENING "Build with what keeps a fault in memory from becoming worse than a stop" ON)
 
+# Headers that most sources include, compiled once for each target with many. With a compiler cache each source for
+# itself is faster, and shows that it includes what it needs.
+if(CMAKE_CXX_COMPILER_LAUNCHER)
+  set(precompiled OFF)
+else()
+  set(precompiled ON)
+endif()
+option(WEFT_PRECOMPILED "Precompile the headers that most sources include" ${precompiled})
+
 add_library(weft_hardening INTERFACE)
 add_library(weft_options INTERFACE)
 target_link_libraries(weft_options INTERFACE weft_hardening)

@@ -21,6 +21,20 @@ foreach(simd scalar sse2 avx2 avx512)
   target_link_libraries(weft_kernels_${simd} PRIVATE weft_options)
   target_sources(weft_core PRIVATE $<TARGET_OBJECTS:weft_kernels_${simd}>)
 endforeach()
+# With sanitizers kernels would take most of the build. Multiply-adds that no instruction does are calls, and so are the
+# checks of memory in large functions. Pointers that overflow, or leave their object, are seen by the address sanitizer
+# where something is read or written there.
+add_library(weft_kernel_checks INTERFACE)
+if(WEFT_SANITIZE)
+  target_compile_definitions(weft_kernel_checks INTERFACE WEFT_FMA_IS_CALLED)
+  target_compile_options(weft_kernel_checks INTERFACE -fno-sanitize=pointer-overflow,object-size)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    target_compile_options(weft_kernel_checks INTERFACE "SHELL:--param asan-instrumentation-with-call-threshold=200")
+  endif()
+endif()
+foreach(simd scalar sse2 avx2 avx512)
+  target_link_libraries(weft_kernels_${simd} PRIVATE weft_kernel_checks)
+endforeach()
 # Multiply-adds of SSE2 are worked out lane by lane in double precision: with checks for undefined behaviour
 # or races they take longer to compile than all the rest. The other sets have them for the same sources.
 if(WEFT_SANITIZE)

@@ -146,19 +146,29 @@ TEST(ContactShapes, KernelsLiftParticlesOutTheShortestWay) {
   for (const Shape& shape : shapes()) expect_lifted_out(shape, random_points(23 * 23, 0.6), 1e-6);
 }
 
-// On the axis of a cylinder no side is nearer than others; what rounding leaves across it is no direction.
-TEST(ContactShapes, TheAxisOfACylinderLeadsOutStraight) {
+// On the axis of a round shape no side is nearer than others; what rounding leaves across it is no direction.
+// `lean`: of the side's normals along the axis, a sine.
+template <class Rod>
+void expect_straight_out(const Rod& rod, double lean) {
+  const Vec3 e = minus(rod.b, rod.a), axis = times(e, 1 / length(e));
+  std::vector<Vec3> points;
+  for (int n = 0; n < 23 * 23; ++n) {
+    const Vec3 along = times(e, 0.1 + 0.8 * n / (23 * 23));
+    EXPECT_NEAR(dot(nearest_of(rod, along).normal, axis), lean, 1e-9);
+    points.push_back(plus(rod.a, along));
+  }
+  expect_lifted_out(rod, points, 1e-5);
+}
+
+TEST(ContactShapes, TheAxisOfARoundShapeLeadsOutStraight) {
   for (const Vec3& way : random_points(20, 1)) {
     const Vec3 axis = times(way, 1 / length(way));
-    const Vec3 a{-0.3, 0, 0.1}, e = times(axis, 0.6);
-    const Cylinder rod{a, plus(a, e), 0.02, 0.001};
-    std::vector<Vec3> points;
-    for (int n = 0; n < 23 * 23; ++n) {
-      const Vec3 along = times(e, 0.1 + 0.8 * n / (23 * 23));
-      EXPECT_NEAR(dot(nearest_of(rod, along).normal, axis), 0, 1e-9);
-      points.push_back(plus(a, along));
-    }
-    expect_lifted_out(rod, points, 1e-5);
+    const Vec3 a{-0.3, 0, 0.1}, b = plus(a, times(axis, 0.6));
+    const Cylinder rod{a, b, 0.02, 0.001};
+    expect_straight_out(rod, 0);
+    expect_straight_out(Capsule{a, b, 0.02}, 0);
+    expect_straight_out(TaperedCapsule{a, b, 0.02, 0.08}, -0.1);
+    expect_straight_out(TaperedCapsule{a, b, 0.05, 0.02}, 0.05);
     for (const double end : {0.0, 1.0}) {
       const Vec3 furthest = physics::support_of(rod, times(axis, 2 * end - 1));
       EXPECT_NEAR(nearest_of(rod, furthest).distance, -rod.rounding, 1e-12);

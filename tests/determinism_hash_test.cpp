@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "machines.h"
 #include "weft/read_scene.h"
 #include "weft/simulation.h"
 
@@ -34,16 +35,11 @@ Options threads(int count) {
 }
 
 void expect_one_result(const Scene& scene) {
-  const std::uint64_t expected = hash_of(scene, threads(1));
-  EXPECT_EQ(hash_of(scene, threads(1)), expected) << "second run";
-  for (const int count : {2, 3, 4, 8})
-    EXPECT_EQ(hash_of(scene, threads(count)), expected) << count << " threads";
-  for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
-    if (!simd_available(simd)) continue;
-    Options options;
-    options.simd = simd;
-    options.threads = simd == Simd::sse2 ? 3 : 1;
-    EXPECT_EQ(hash_of(scene, options), expected) << simd_name(simd);
+  std::uint64_t expected = 0;
+  for (const Options& options : machines()) {
+    const std::uint64_t hash = hash_of(scene, options);
+    if (expected == 0) expected = hash;
+    EXPECT_EQ(hash, expected) << simd_name(options.simd) << ", " << options.threads << " threads";
   }
 }
 

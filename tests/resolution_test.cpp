@@ -87,6 +87,41 @@ TEST(Resolution, PathsBetweenHeldNeighboursAreThoseBetweenThem) {
             (Particles{{0, 0}, {1, 0}, {2, 0}, {4, 0}, {6, 0}, {7, 0}, {8, 0}}));
 }
 
+// Several on one particle of a coarser grid: it goes along one path, and a note counts the others, but for those that
+// it shares or that neighbours say.
+TEST(Resolution, PathsThatAreLeftOutAreTold) {
+  const auto notes = [](const std::vector<std::vector<double>>& heights, int intervals,
+                        double second_time = 1) {
+    Cloth cloth = sheet(17, 5);
+    for (std::size_t n = 0; n < heights.size(); ++n) {
+      const int i = int(heights[n][0]);
+      const Vec3 start = place_on(cloth.grid, i, 0);
+      cloth.pins.push_back({i, 0, {{0, start}, {1, plus(start, {0, heights[n][1], 0})}}});
+      if (n == 1) cloth.pins.back().keys[1].time = second_time;
+    }
+    const RegriddedCloth other = with_intervals(cloth, {intervals, 4});
+    std::string said;
+    for (const std::string& note : other.notes)
+      if (note.find("left out") != note.npos) said += note;
+    return said;
+  };
+  const auto left_out = [](int count) {
+    return "the paths of " + std::to_string(count) +
+           " held particles are left out: others hold the same particles of its grid";
+  };
+  const std::vector<std::vector<double>> apart{{3, 0.1}, {5, -0.1}};
+  EXPECT_EQ(notes(apart, 4), left_out(1));
+  EXPECT_EQ(notes(apart, 2), "");  // one each
+  EXPECT_EQ(notes(apart, 16), "");
+  EXPECT_EQ(notes(apart, 32), "");
+  EXPECT_EQ(notes({{3, 0.1}, {5, 0.1}}, 4), "");
+  EXPECT_EQ(notes({{3, 0.1}, {5, 0.1}}, 4, 2), left_out(1));  // later
+  // Along a line: straight ones are sampled; a peak between two particles of the coarser grid is lost.
+  EXPECT_EQ(notes({{0, 0}, {1, 0.1}, {2, 0.2}, {3, 0.3}, {4, 0.4}}, 4), "");
+  EXPECT_EQ(notes({{0, 0}, {1, 0}, {2, 0.5}, {3, 0}, {4, 0}}, 4), left_out(1));
+  EXPECT_EQ(notes({{0, 0}, {1, 0}, {2, 0.5}, {3, 0}, {4, 0}}, 16), "");
+}
+
 double mass_of(const Cloth& cloth) {
   double sum = 0;
   for (int j = 0; j < cloth.grid.ny; ++j)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -28,6 +29,15 @@ std::optional<Pin> between(const Pin& a, const Pin& b, double share) {
   return pin;
 }
 
+// How far two paths are apart at most [m].
+double apart(const Pin& a, const Pin& b) {
+  if (!between(a, b, 0)) return std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (std::size_t n = 0; n < a.keys.size(); ++n)
+    most = std::max(most, distance(a.keys[n].position, b.keys[n].position));
+  return most;
+}
+
 // The held particles of one grid, and what they hold on another.
 class HeldOnAnother {
  public:
@@ -40,7 +50,8 @@ class HeldOnAnother {
         nv_(to.grid.ny - 1),
         pins_(single_pins(from)),
         at_(std::size_t(particle_count(from)), nullptr),
-        taken_(std::size_t(particle_count(to))) {
+        taken_(std::size_t(particle_count(to))),
+        spacing_(std::min(spacing_u(to.grid), spacing_v(to.grid))) {
     for (const Pin& pin : pins_) at_[index(from_, pin.i, pin.j)] = &pin;
     to_.pins.clear();
   }
@@ -53,7 +64,9 @@ class HeldOnAnother {
       if (const Pin* below = at(pin.i, pin.j + 1)) line(pin, *below);
     }
     for (const Pin& pin : pins_) {
-      put(column(pin.i), row(pin.j), pin, pin.i, pin.j);
+      const Pin& by = put(column(pin.i), row(pin.j), pin, pin.i, pin.j);
+      const Pin wanted = moved(by.i, by.j, pin, pin.i, pin.j);
+      if (apart(by, wanted) > kNear * spacing_ && !as_neighbours(pin)) ++dropped_;
       // Within a line others stand for it.
       if (!at(pin.i - 1, pin.j) || !at(pin.i + 1, pin.j))
         off(place(pin.i, mu_, nu_) - column(pin.i));
@@ -63,6 +76,10 @@ class HeldOnAnother {
 
   // The farthest that something held lies from where it was, in the new grid's spacings.
   double farthest() const { return farthest_; }
+  // How many paths nothing on the new grid has, to 0.005 of its spacings.
+  int dropped() const { return dropped_; }
+
+  static constexpr double kNear = 0.005;  // of a spacing: what is less far off is in its place
 
  private:
   static std::size_t index(const Cloth& cloth, int i, int j) {
@@ -77,15 +94,32 @@ class HeldOnAnother {
   void off(double spacings) { farthest_ = std::max(farthest_, std::abs(spacings)); }
 
   // Paths are of places; the particle starts elsewhere than (i, j) of the old grid by as much as the grids differ.
-  void put(int column, int row, Pin pin, double i, double j) {
-    std::uint8_t& taken = taken_[index(to_, column, row)];
-    if (taken) return;
-    taken = 1;
+  Pin moved(int column, int row, Pin pin, double i, double j) const {
     const double du = place(column, nu_, mu_) - i, dv = place(row, nv_, mv_) - j;
     const Vec3 by = plus(times(from_.grid.u, du / mu_), times(from_.grid.v, dv / mv_));
     for (Key& key : pin.keys) key.position = plus(key.position, by);
     pin.i = column, pin.j = row;
-    to_.pins.push_back(std::move(pin));
+    return pin;
+  }
+
+  // What holds the particle: this pin, unless another was first.
+  const Pin& put(int column, int row, const Pin& pin, double i, double j) {
+    std::size_t& taken = taken_[index(to_, column, row)];
+    if (taken == 0) {
+      to_.pins.push_back(moved(column, row, pin, i, j));
+      taken = to_.pins.size();
+    }
+    return to_.pins[taken - 1];
+  }
+
+  // Whether its neighbours on a line say what its path is.
+  bool as_neighbours(const Pin& pin) const {
+    const auto middle = [&](const Pin* a, const Pin* b) {
+      const std::optional<Pin> path = a && b ? between(*a, *b, 0.5) : std::nullopt;
+      return path && apart(*path, pin) <= kNear * spacing_;
+    };
+    return middle(at(pin.i - 1, pin.j), at(pin.i + 1, pin.j)) ||
+           middle(at(pin.i, pin.j - 1), at(pin.i, pin.j + 1));
   }
 
   // The first of the new grid's columns or rows that is no less than n of the old one's.
@@ -124,9 +158,12 @@ class HeldOnAnother {
   Cloth& to_;
   int mu_, mv_, nu_, nv_;  // intervals
   std::vector<Pin> pins_;
-  std::vector<const Pin*> at_;       // of every particle of the old grid; null: free
-  std::vector<std::uint8_t> taken_;  // of every particle of the new one
+  std::vector<const Pin*> at_;  // of every particle of the old grid; null: free
+  std::vector<std::size_t>
+      taken_;       // of every particle of the new one: its pin's number from 1, or 0
+  double spacing_;  // the least of the new grid [m]
   double farthest_ = 0;
+  int dropped_ = 0;
 };
 
 // Masses between those of the old grid's particles, of the same sum.
@@ -176,10 +213,14 @@ RegriddedCloth with_intervals(const Cloth& cloth, const Intervals& intervals) {
                point[1] * intervals.v / (cloth.grid.ny - 1)};
   HeldOnAnother held(cloth, to);
   held.put();
-  if (held.farthest() > 0.005)
+  if (held.farthest() > HeldOnAnother::kNear)
     result.notes.push_back("what is held lies up to " +
                            text::number_words(std::round(100 * held.farthest()) / 100) +
                            " spacings of its grid from its place");
+  if (held.dropped() > 0)
+    result.notes.push_back(
+        "the paths of " + std::to_string(held.dropped()) +
+        " held particles are left out: others hold the same particles of its grid");
   return result;
 }
 

@@ -31,25 +31,30 @@ struct Fineness {
   double mass, stiffness;      // kg, N/m
 };
 
+// m²; of a mesh, as its file has it.
+double area_of(const TriangleMesh& mesh) {
+  const std::vector<Vec3>& x = mesh.vertices;
+  double twice = 0;
+  for (const auto& [p, q, r] : mesh.triangles)
+    twice += length(normal_of(x[std::size_t(p)], x[std::size_t(q)], x[std::size_t(r)]));
+  return twice / 2;
+}
+
 Fineness fineness_of(const Cloth& c, const Solver& solver) {
   if (!c.mesh.given())
     return {std::max(c.grid.nx / spacing_u(c.grid), c.grid.ny / spacing_v(c.grid)),
             lightest_mass(c), spring_repeats(solver) * greatest_stiffness(c)};
   // As if its triangles were halves of squares of their mean area.
   const std::vector<Vec3>& x = c.mesh.shape->vertices;
-  double area = 0, longest = 0;
-  for (const auto& [p, q, r] : c.mesh.shape->triangles) {
-    const Vec3 n = cross(minus(x[std::size_t(q)], x[std::size_t(p)]),
-                         minus(x[std::size_t(r)], x[std::size_t(p)]));
-    area += length(n) / 2;
-  }
+  double longest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto [low, high] = std::minmax_element(
         x.begin(), x.end(), [&](const Vec3& a, const Vec3& b) { return a[k] < b[k]; });
     longest = std::max(longest, (*high)[k] - (*low)[k]);
   }
   const double scale = c.mesh.scale;
-  const double square = scale * scale * 2 * area / double(c.mesh.shape->triangles.size());
+  const double square =
+      scale * scale * 2 * area_of(*c.mesh.shape) / double(c.mesh.shape->triangles.size());
   const Membrane& m = c.membrane;
   const double stiffness = m.given() ? std::max({m.warp, m.weft, m.shear}) : c.stiffness.structural;
   return {scale * longest / square, c.density * square, stiffness};
@@ -60,6 +65,15 @@ double push_of_gas(const Cloth& c) {
   if (!c.pressure.given()) return 0;
   const GasLaw law(c.pressure, 1);
   return std::abs(law.over(law.greatest_share(), 1)) / c.density;
+}
+
+// 1/s²; a/dt² of gas_shortfall(), with the gas as it starts, at its most.
+double softening_of_gas(const Cloth& c) {
+  if (c.pressure.inflate == 0) return 0;
+  const double volume = std::abs(enclosed_volume(c));
+  const GasLaw law(c.pressure, volume);
+  const double area = c.mesh.scale * c.mesh.scale * area_of(*c.mesh.shape);
+  return law.stiffness(law.greatest_share(), volume) * area / c.density;
 }
 
 // What k dt² may be for each sweep, of m, if sheets drawn out between two sides are to tear at 0.8 to 1.2 of the
@@ -92,6 +106,15 @@ double projection_substep(const Scene& scene) {
     dt = std::min(dt, needed);
   }
   return dt;
+}
+
+double gas_shortfall(const Cloth& cloth, double dt) {
+  const double a = dt * dt * softening_of_gas(cloth);
+  return a / (1 + a);
+}
+
+double substep_of_shortfall(const Cloth& cloth, double shortfall) {
+  return std::sqrt(shortfall / (1 - shortfall) / softening_of_gas(cloth));
 }
 
 double tearing_substep(const Scene& scene, const Cloth& cloth, Method method) {

@@ -17,6 +17,14 @@ inline constexpr double kLongestProjection = 1.0 / 960;
 // sweep do all that the material's own stiffness asks for, k dt² = m; at most kLongestProjection.
 double projection_substep(const Scene& scene);
 
+// How much less a gas pushes than its volume says, a share of its pressure over that of the air: methods that project
+// solve for the volume as if the cloth went where the gas pushes it, and what sweeps and bodies put back makes it
+// smaller again. A pressure p within a surface A of mass density ρ about a volume V falls short by a/(1 + a),
+// a = dt² p A/(ρ V). 0 of a constant pressure.
+double gas_shortfall(const Cloth& cloth, double dt);
+// s; in which that is so much, below 1; infinite of what has none.
+double substep_of_shortfall(const Cloth& cloth, double shortfall);
+
 // The longest substep in which sweeps that project spread strain as the material does, so that the cloth tears where
 // its tear_strain says, to a fifth or nearer. 0: none, for constraints are rigid. Infinite: it cannot tear, or tears
 // as seed 000 does; or it is held by springs that are solved one by one, which are measured in the midst of their sweep

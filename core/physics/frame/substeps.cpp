@@ -35,6 +35,19 @@ void note_projection(const Scene& scene, int count, std::vector<std::string>& no
                     number(dt) + " s it stretches the cloth more than it should");
 }
 
+// Twice what the lengths may be off by (projection_substep()).
+void note_gas(const Scene& scene, int count, std::vector<std::string>& notes) {
+  constexpr double kShortfall = 0.04;
+  const double dt = scene.time.frame / count;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    if (const double less = gas_shortfall(scene.cloths[c], dt); less > kShortfall)
+      notes.push_back("cloth " + std::to_string(c) + ": in substeps of " + number(dt) +
+                      " s its gas pushes what holds it " + number(100 * less) +
+                      " % less than its volume says; in those of " +
+                      number(substep_of_shortfall(scene.cloths[c], kShortfall)) + " s, " +
+                      number(100 * kShortfall) + " %");
+}
+
 void note_tearing(const Scene& scene, Method method, int count, std::vector<std::string>& notes) {
   const double dt = scene.time.frame / count;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
@@ -94,6 +107,7 @@ void Simulation::State::choose_method_and_substeps() {
   if (!is_explicit(time_step.method)) {
     count = projection_substeps(scene);
     note_projection(scene, count, notes);
+    note_gas(scene, count, notes);
     note_tearing(scene, time_step.method, count, notes);
   }
   note_rounding(cloths, scene.time.frame / count, notes);

@@ -41,13 +41,24 @@ struct Surface {
   Wide3 normal;
 };
 
-// `radius` from the point that d comes from; at the very point no direction is better than another: up.
-WEFT_INLINE Surface around(Wide3 d, Wide radius) {
+// `radius` from the point that d comes from; where its square is no more than `least`, along `otherwise`.
+WEFT_INLINE Surface around(Wide3 d, Wide radius, Wide least, Wide3 otherwise) {
   const Wide squared = dot(d, d);
-  const WideInt apart = squared > kTinySquare;
+  const WideInt apart = squared > least;
   const Wide reciprocal = reciprocal_root(select(apart, squared, wide(1)));
   return {select(apart, squared * reciprocal, Wide{}) - radius,
-          select(apart, d * reciprocal, wide3(0, 1, 0))};
+          select(apart, d * reciprocal, otherwise)};
+}
+
+// At the very point no direction is better than another: up.
+WEFT_INLINE Surface around(Wide3 d, Wide radius) {
+  return around(d, radius, wide(kTinySquare), wide3(0, 1, 0));
+}
+
+// The square of what rounding leaves across an axis, 1e-5 of the way p from its end: single precision leaves a
+// hundredth of that.
+WEFT_INLINE Wide rounding_across(Wide3 p) {
+  return max(dot(p, p) * 1e-10f, wide(kTinySquare));
 }
 
 template <class Shape>

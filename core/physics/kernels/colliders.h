@@ -35,7 +35,7 @@ struct ShapeConstants {
     std::memcpy(&values, own, sizeof(Own));
     return values;
   }
-  float own[12] = {};
+  float own[13] = {};
 };
 
 // One collider and one row: particles below the surface are put onto it, with friction.

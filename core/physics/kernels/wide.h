@@ -94,6 +94,13 @@ Double sum_to_odd(Double a, Double b) {
   return (Double)((Long)sum + ((up | down) & even & farther));
 }
 
+// kernels.cmake says where it is a call.
+#ifdef WEFT_FMA_IS_CALLED
+#define WEFT_FMA [[gnu::noinline]] inline
+#else
+#define WEFT_FMA WEFT_INLINE
+#endif
+
 #if WEFT_LANES == 4
 
 WEFT_INLINE __m128d lower(Wide v) {
@@ -114,7 +121,7 @@ WEFT_INLINE Wide single(__m128d low, __m128d high) {
   return single(sum(lower(a), lower(b), lower(c)), sum(upper(a), upper(b), upper(c)));
 }
 
-WEFT_INLINE Wide fma(Wide a, Wide b, Wide c) {
+WEFT_FMA Wide fma(Wide a, Wide b, Wide c) {
   const __m128d sum[] = {lower(a) * lower(b) + lower(c), upper(a) * upper(b) + upper(c)};
   const __m128 halves[] = {_mm_castpd_ps(sum[0]), _mm_castpd_ps(sum[1])};
   const WideInt low = (WideInt)_mm_shuffle_ps(halves[0], halves[1], 0x88) & 0x1fffffff;
@@ -134,7 +141,7 @@ typedef std::int64_t OneLong __attribute__((vector_size(8)));
   return float(sum_to_odd<One, OneLong>(One{double(a) * double(b)}, One{double(c)})[0]);
 }
 
-WEFT_INLINE Wide fma(Wide a, Wide b, Wide c) {
+WEFT_FMA Wide fma(Wide a, Wide b, Wide c) {
   const One sum = One{double(a[0]) * double(b[0])} + One{double(c[0])};
   const std::int64_t bits = ((OneLong)sum)[0], size = bits >> 32 & 0x7fffffff;
   if ((bits & 0x1fffffff) == 0x10000000 || (size > 0 && size < 0x38100000)) [[unlikely]]

@@ -1,5 +1,6 @@
 // Collider capsule: all points within `radius` of the segment from a to b.
 //   q = e clamp(p·e/|e|², 0, 1),  d(p) = |p - q| - r,  n = (p - q)/|p - q|,  e = b - a
+// On the segment itself, to rounding, n is one direction across it.
 #include "physics/kernels/colliders.h"
 
 namespace weft::physics {
@@ -8,6 +9,7 @@ namespace {
 struct CapsuleNumbers {
   float axis[3];         // from a to b [m]
   float inverse_square;  // 1/|axis|² [1/m²]
+  float aside[3];        // a unit vector across
 };
 
 }  // namespace
@@ -26,13 +28,14 @@ struct CapsuleSurface {
     const auto own = c.get<physics::CapsuleNumbers>();
     inverse_square = wide(own.inverse_square);
     axis = wide3(own.axis[0], own.axis[1], own.axis[2]);
+    aside = wide3(own.aside[0], own.aside[1], own.aside[2]);
   }
   WEFT_INLINE Surface at(Wide3 p) const {
     const Wide t = min(max(dot(p, axis) * inverse_square, Wide{}), wide(1));
-    return around(fnma(axis, t, p), radius);
+    return around(fnma(axis, t, p), radius, rounding_across(p), aside);
   }
   Wide radius, inverse_square;
-  Wide3 axis;
+  Wide3 axis, aside;
 };
 
 }  // namespace
@@ -47,13 +50,23 @@ WEFT_COLLIDER(kCapsule, CapsuleSurface)
 #include "physics/contact/colliders/least_overlap.h"
 
 namespace weft::physics {
+namespace {
+
+// A unit vector across e.
+Vec3 aside_of(const Vec3& e) {
+  return across(times(e, 1 / std::sqrt(dot(e, e))))[0];
+}
+
+}  // namespace
 
 ShapeConstants constants_of(const Capsule& capsule) {
-  const Vec3 e = minus(capsule.b, capsule.a);
+  const Vec3 e = minus(capsule.b, capsule.a), aside = aside_of(e);
   ShapeConstants c;
   c.radius = float(capsule.radius);
   c.thin = float(capsule.half_thickness());
-  c.set(CapsuleNumbers{{float(e[0]), float(e[1]), float(e[2])}, float(1 / dot(e, e))});
+  c.set(CapsuleNumbers{{float(e[0]), float(e[1]), float(e[2])},
+                       float(1 / dot(e, e)),
+                       {float(aside[0]), float(aside[1]), float(aside[2])}});
   return c;
 }
 
@@ -64,8 +77,9 @@ Core core_of(const Capsule& capsule, const Vec3& p) {
 
 Nearest nearest_of(const Capsule& capsule, const Vec3& p) {
   const Vec3 d = minus(p, core_of(capsule, p).nearest);
+  if (is_rounding(d, p)) return {-capsule.radius, aside_of(minus(capsule.b, capsule.a))};
   const double length = std::hypot(d[0], d[1], d[2]);
-  return {length - capsule.radius, length > 0 ? times(d, 1 / length) : Vec3{0, 1, 0}};
+  return {length - capsule.radius, times(d, 1 / length)};
 }
 
 Vec3 support_of(const Capsule& capsule, const Vec3& way) {

@@ -25,7 +25,6 @@ namespace {
 
 struct CylinderSurface {
   static constexpr bool kFlat = false;
-  static constexpr float kRounding = 1e-10f;  // of a squared length
   explicit CylinderSurface(const physics::ShapeConstants& c) : radius(wide(c.radius)) {
     const auto own = c.get<physics::CylinderNumbers>();
     across = wide(own.across);
@@ -39,7 +38,7 @@ struct CylinderSurface {
     const Wide z = dot(local, axis);
     const Wide3 radial = fnma(axis, z, local);
     const Wide square = dot(radial, radial);
-    const WideInt off_axis = square > kRounding * dot(local, local);
+    const WideInt off_axis = square > rounding_across(local);
     const Wide inverse = reciprocal_root(select(off_axis, square, wide(1)));
     const Wide3 side = select(off_axis, radial * inverse, aside);
     const Wide q1 = select(off_axis, square * inverse, Wide{}) - across, q2 = abs(z) - along;
@@ -96,11 +95,10 @@ struct Polar {
   Vec3 side;
 };
 Polar polar_of(const Frame& f, const Vec3& v) {
-  constexpr double kRounding = 1e-24;  // of its square
   const double z = dot(v, f.axis);
   const Vec3 radial = minus(v, times(f.axis, z));
-  const double square = dot(radial, radial), distance = std::sqrt(square);
-  return {z, distance, square > kRounding * dot(v, v) ? times(radial, 1 / distance) : f.aside};
+  const double distance = std::sqrt(dot(radial, radial));
+  return {z, distance, is_rounding(radial, v) ? f.aside : times(radial, 1 / distance)};
 }
 
 // Of the core.

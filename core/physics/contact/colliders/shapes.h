@@ -77,6 +77,12 @@ Nearest nearest_at(const Shape& shape, double time, const Vec3& p);
 // Infinite of a plane, but 0 where the plane goes through itself as it turns.
 double lever_of(const Collider& collider, const Vec3& about);
 
+// Whether what is left across an axis, of a way v from a point of it, is rounding alone: no direction.
+inline bool is_rounding(const Vec3& across, const Vec3& v) {
+  constexpr double kRounding = 1e-24;  // of its square
+  return !(dot(across, across) > kRounding * dot(v, v));
+}
+
 // Two unit vectors across a unit one; after it they are right-handed.
 inline std::array<Vec3, 2> across(const Vec3& axis) {
   const Vec3 other = std::abs(axis[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};

@@ -3,6 +3,7 @@
 // is
 //   t = clamp((p·e - k/√(1-k²) |e| |p - e p·e/|e|²|)/|e|², 0, 1),  e = b - a
 //   d(p) = |p - t e| - (R + t g),  n = (p - t e)/|p - t e|
+// On the segment itself, to rounding, n is one normal of the side.
 #include "physics/kernels/colliders.h"
 
 namespace weft::physics {
@@ -13,6 +14,7 @@ struct TaperedNumbers {
   float inverse_square;    // 1/|axis|² [1/m²]
   float lean;              // k/(√(1-k²) |e|) [1/m]
   float radius, growth;    // R, g [m]
+  float aside[3];          // a unit normal of the side
 };
 
 }  // namespace
@@ -35,15 +37,16 @@ struct TaperedSurface {
     lean = wide(own.lean);
     radius = wide(own.radius);
     growth = wide(own.growth);
+    aside = wide3(own.aside[0], own.aside[1], own.aside[2]);
   }
   WEFT_INLINE Surface at(Wide3 p) const {
     const Wide3 d = p - from;
     const Wide along = dot(d, axis) * inverse_square;
     const Wide3 radial = fnma(axis, along, d);
     const Wide t = min(max(fnma(sqrt(dot(radial, radial)), lean, along), Wide{}), wide(1));
-    return around(fnma(axis, t, d), fma(growth, t, radius));
+    return around(fnma(axis, t, d), fma(growth, t, radius), rounding_across(d), aside);
   }
-  Wide3 from, axis;
+  Wide3 from, axis, aside;
   Wide inverse_square, lean, radius, growth;
 };
 
@@ -67,7 +70,8 @@ struct Hull {
   Vec3 from{}, axis{};
   double radius, growth = 0;
   double inverse_square = 0, lean = 0;
-  double rise = 0;  // of the side's normal above the plane across the axis [rad]
+  double rise = 0;      // of the side's normal above the plane across the axis [rad]
+  Vec3 aside{0, 1, 0};  // one such normal
 
   explicit Hull(const TaperedCapsule& c) : radius(std::max(c.radius_a, c.radius_b)) {
     const Vec3 e = minus(c.b, c.a);
@@ -82,6 +86,8 @@ struct Hull {
     inverse_square = 1 / square;
     rise = std::asin(-change / length);
     lean = std::tan(rise) / length;
+    const Vec3 along = times(e, 1 / length);
+    aside = plus(times(across(along)[0], std::cos(rise)), times(along, std::sin(rise)));
   }
   double least() const { return std::min(radius, radius + growth); }
 };
@@ -98,8 +104,9 @@ Core ball_near(const Hull& hull, const Vec3& p) {
 Nearest nearest_of(const Hull& hull, const Vec3& p) {
   const Core ball = ball_near(hull, p);
   const Vec3 d = minus(p, ball.nearest);
+  if (is_rounding(d, minus(p, hull.from))) return {-ball.radius, hull.aside};
   const double length = std::hypot(d[0], d[1], d[2]);
-  return {length - ball.radius, length > 0 ? times(d, 1 / length) : Vec3{0, 1, 0}};
+  return {length - ball.radius, times(d, 1 / length)};
 }
 
 // The point of the core that lies furthest along `way`.
@@ -126,6 +133,7 @@ ShapeConstants constants_of(const TaperedCapsule& capsule) {
   for (int k = 0; k < 3; ++k) {
     own.from[k] = float(hull.from[k]);
     own.axis[k] = float(hull.axis[k]);
+    own.aside[k] = float(hull.aside[k]);
   }
   c.set(own);
   return c;
