@@ -115,11 +115,24 @@ TEST_F(Window, ValuesHaveOtherFormsAndListsAreTyped) {
   become("/cloths/0/bending", "warp, weft, twist, damping", "/cloths/0/bending/twist");
   become("/colliders/0/friction", "static, dynamic, damping, bias", "/colliders/0/friction/bias");
   become("/gravity", "over time", "/gravity/keys");
+  show("/colliders/0/color");
+  enter(screen, "/colliders/0/color", "#20c040");
+  EXPECT_EQ(screen.now()["undo"], "sphere color");
+  show("/cloths/0/color");
+  enter(screen, "/cloths/0/color/back", "#0a0B0c");
+  EXPECT_TRUE(screen.now()["controls"].contains("/cloths/0/color/front swatch"));
+  EXPECT_TRUE(screen.now()["news"].empty()) << screen.now()["news"];
+  enter(screen, "/cloths/0/color/front", "green");
+  screen.wait("its fault", [](const json& now) {
+    return now["news"].dump().find("rrggbb") != std::string::npos;
+  });
+  EXPECT_EQ(screen.now()["undo"], "cloth color back");
   show("/cloths/0/pins");
   enter(screen, "/cloths/0/pins text", "[[0, 0], {\"vertices\": [5, 6]}]");
   screen.wait_for("held", 3);
   enter(screen, "/cloths/0/pins text", "[[0, 0], {\"vertices\": [5, 99]}]");
-  screen.wait("a message", [](const json& now) { return !now["news"].empty(); });
+  screen.wait("a message",
+              [](const json& now) { return now["news"].dump().find("99") != std::string::npos; });
   EXPECT_EQ(screen.now()["held"], 3);
   screen.key("ctrl+s");
   screen.wait_for("edited", false);
@@ -129,6 +142,8 @@ TEST_F(Window, ValuesHaveOtherFormsAndListsAreTyped) {
   EXPECT_EQ(saved["gravity"], json::parse(R"({"keys": [[0, 0, -2, 0]]})"));
   EXPECT_EQ(saved["cloths"][0]["bending"], 1e-5) << "alike in all directions";
   EXPECT_EQ(saved["colliders"][0]["friction"], 0.5);
+  EXPECT_EQ(saved["colliders"][0]["color"], "#20c040");
+  EXPECT_EQ(saved["cloths"][0]["color"], json::parse(R"({"back": "#0a0B0c"})"));
   EXPECT_EQ(saved["cloths"][0]["pins"].size(), 2u);
 }
 

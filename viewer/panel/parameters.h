@@ -33,6 +33,7 @@ class Parameters {
   void substeps(const std::string& pointer, const std::string& label, const Json& schema,
                 const Json& value);
   void word(const std::string& pointer, const std::string& label, const Json& value);
+  void color(const std::string& pointer, const std::string& label, const Json& value);
   bool plain(const std::string& pointer, const std::string& label, const Json& schema,
              const Json& value);
   void form(const std::string& pointer, const Json& forms, const Json& value, const Json& chosen);

@@ -4,7 +4,6 @@
 #include <array>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "picture/linear.h"
 
@@ -56,12 +55,9 @@ enum class Quality { automatic, quick, standard, fine };
 // The two sides of a cloth; linear.
 struct ClothColors {
   Vec3f front{0.56f, 0.07f, 0.06f}, back{0.50f, 0.20f, 0.12f};
-  friend bool operator==(const ClothColors&, const ClothColors&) = default;
 };
 
 struct LookSettings {
-  ClothColors colors;                     // of the first cloth
-  std::vector<ClothColors> other_colors;  // of those after it, as far as they were chosen
   float roughness = 0.55f;
   float metallic = 0;
   bool maps = true;  // look pbr: base colour, metallic, roughness and normals from maps
@@ -92,9 +88,14 @@ struct LookSettings {
   friend bool operator==(const LookSettings&, const LookSettings&) = default;
 };
 
-// Where none were chosen, the first cloth's with another hue, so that cloths are told apart.
-ClothColors colors_of(const LookSettings& settings, std::size_t cloth);
-void choose_colors(LookSettings& settings, std::size_t cloth, const ClothColors& colors);
+// Of the scene's cloth with this number. Where none are given, the standard ones with another hue for each, so
+// that cloths are told apart.
+ClothColors colors_of(const Cloth& cloth, std::size_t number);
+inline constexpr Vec3f kBodyColor{0.28f, 0.30f, 0.33f};
+// Of a body, or the standard one.
+Vec3f color_of(const Collider& body);
+// The colour that is drawn for a place of the scene, "/cloths/0/color/back" or "/colliders/0/color": "#rrggbb".
+std::string drawn_color(const Scene& scene, const std::string& place);
 
 inline constexpr Vec3f kStructuralColor{0.02f, 0.05f, 0.25f};
 inline constexpr Vec3f kShearColor{0.75f, 0.20f, 0.02f};

@@ -15,7 +15,6 @@ namespace {
 
 const Vec3f kLight = normalized({-0.42f, 0.80f, 0.50f});
 constexpr Vec3f kLightColor{1.05f, 0.98f, 0.88f};
-constexpr Vec3f kBodyColor{0.28f, 0.30f, 0.33f};
 
 // As common.glsl's block Frame.
 struct FrameBlock {
@@ -267,8 +266,6 @@ void Renderer::upload_frame(const Setting& setting, const LookSettings& settings
 
 void Renderer::set_material(const Shader& shader, const LookSettings& settings, bool cloth) {
   shader.use();
-  shader.set("u_color", kBodyColor);
-  shader.set("u_back_color", kBodyColor);
   shader.set("u_roughness", settings.roughness);
   shader.set("u_metallic", settings.metallic);
   shader.set("u_maps", settings.maps ? 1.0f : 0.0f);
@@ -308,6 +305,8 @@ void Renderer::draw_bodies(const Look& look, const LookSettings& settings, const
     const Plane* plane = std::get_if<Plane>(&body.collider.shape);
     if (plane && !in_front_of(*plane, camera.eye())) continue;
     const bool closed = !plane && !std::holds_alternative<MeshBody>(body.shape);
+    material.set("u_color", color_of(body.collider));
+    material.set("u_back_color", color_of(body.collider));
     if (closed) glEnable(GL_CULL_FACE);
     body.draw(material);
     glDisable(GL_CULL_FACE);
@@ -339,7 +338,7 @@ void Renderer::draw_cloths(const FrameData& frame_data, const Look& look,
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     const ClothMesh& cloth = cloths_[c];
     const auto [along_u, along_v] = sides_of(frame_data.scene->cloths[c]);
-    const ClothColors colors = colors_of(settings, c);
+    const ClothColors colors = colors_of(frame_data.scene->cloths[c], c);
     material.set("u_color", colors.front);
     material.set("u_back_color", colors.back);
     material.set("u_threads", settings.threads * along_u, settings.threads * along_v);

@@ -92,6 +92,13 @@ void Player::open(Scene scene) {
 
 void Player::change(Scene scene) {
   attempt([&] {
+    if (moves_alike(scene, scene_)) {
+      simulation_->draw_as(scene);
+      scene_ = std::move(scene);
+      show_scene();
+      ++serial_;
+      return;
+    }
     leave_past();
     if (simulation_->frame() == 0 && !outputs_.recording()) {
       start(std::move(scene));
