@@ -158,7 +158,7 @@ TEST(Color, IsInExports) {
     return gltf["materials"].at(number);
   };
   EXPECT_EQ(material(0), json::parse(R"({"doubleSided": true})"));
-  const json& surface = material(1)["pbrMetallicRoughness"];
+  const json surface = material(1)["pbrMetallicRoughness"];
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_EQ(surface["baseColorFactor"][k].get<double>(), (*color)[k]);
   EXPECT_EQ(surface["baseColorFactor"][3], 1);
