@@ -173,8 +173,9 @@ void draw_looks(Workspace& workspace) {
     s.quality = static_cast<Quality>(quality);
   mark("quality");
   tooltip(
-      "fine: ambient occlusion and softer shadows; quick: less at rest, too; automatic: fine where "
-      "there is a graphics card");
+      "fine: ambient occlusion, softer shadows, and the cloth's thickness at its border; quick: "
+      "less "
+      "at rest, too; automatic: fine where there is a graphics card");
   switches({{"shadow", s.shadows}, {"floor", s.ground}});
   slider("roundness of bodies", s.tessellation, 16, 128);
   slider("smoothness", s.refinement, 0, 6, s.refinement == 0 ? "auto" : "%d");

@@ -253,8 +253,7 @@ void Parameters::area_density(const std::string& pointer) {
   const std::size_t number = std::stoul(pointer.substr(std::string("/cloths/").size()));
   const Cloth& cloth = workspace_->document().scene().cloths[number];
   if (cloth.mesh.given()) return;
-  const double density = particle_mass(cloth, cloth.grid.nx / 2, cloth.grid.ny / 2) /
-                         (spacing_u(cloth.grid) * spacing_v(cloth.grid));
+  const double density = weft::area_density(cloth);
   ImGui::TextColored(kQuiet, "a particle's square: %.4g kg/m² = %.4g g/cm²", density, density / 10);
 }
 

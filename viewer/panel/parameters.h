@@ -15,6 +15,8 @@ class Parameters {
   void draw(Workspace& workspace);
   // Whether a word is looked for: then nothing else is shown.
   bool searching() const { return !filter_.empty(); }
+  // Whether a control of that name is shown, in view of what is looked for.
+  bool shows(const std::string& name) const { return !searching() || named("", name); }
 
  private:
   using Json = text::Json;

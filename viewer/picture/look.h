@@ -49,7 +49,7 @@ inline const Look* find_look(std::string_view name) {
 enum class Weave { plain, twill, satin, leather };
 
 // How much is done for a picture: `automatic`, what is quick on this machine; `quick`, coarse while things move,
-// and no more than needed at rest; `fine`, with ambient occlusion and softer shadows.
+// and no more than needed at rest; `fine`, with ambient occlusion, softer shadows and the cloth's thickness.
 enum class Quality { automatic, quick, standard, fine };
 
 // The two sides of a cloth; linear.
@@ -69,7 +69,8 @@ struct LookSettings {
   float sheen = 0.3f;          // of fibres
   float translucency = 0.22f;  // share of light that shines through
   Quality quality = Quality::automatic;
-  bool occlusion = false;      // ambient, of the picture that is drawn
+  bool fine =
+      false;  // the picture that is drawn: ambient occlusion, and the cloth's thickness at its border
   float height_scale = 0.01f;  // m
   float texture_repeats = 3;   // over the cloth
   float height_repeats = 1;
