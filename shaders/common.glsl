@@ -25,6 +25,7 @@ uniform float u_shininess;
 uniform float u_normal_scale;
 uniform vec3 u_place;           // m, where the surface's origin stands
 uniform float u_raise;          // m, along the normal, of what is highest
+uniform float u_half_thickness;  // m, of the cloth, along the normal of the face that is drawn
 uniform vec2 u_texture_scale;   // repeats over the surface
 uniform float u_force_scale;    // 1/N: maps forces to colours
 uniform float u_strain_range;   // strain at the end of the colour scale
@@ -63,10 +64,10 @@ out vec2 v_uv;
 out vec3 v_force;
 out float v_strain;
 
-// Hands the surface on, lifted along its normal by `height` [m].
+// Hands the face on, lifted along the surface's normal by `height` [m] above where the cloth's thickness has it.
 void surface_vertex(float height) {
   v_normal = normalize(vec3(a_nx, a_ny, a_nz));
-  v_position = u_place + vec3(a_x, a_y, a_z) + height * v_normal;
+  v_position = u_place + vec3(a_x, a_y, a_z) + (height + u_half_thickness) * v_normal;
   v_uv = a_uv;
   v_force = vec3(a_fx, a_fy, a_fz);
   v_strain = a_strain;
@@ -108,7 +109,8 @@ vec3 base_color(Surface s) { return s.back ? u_back_color : u_color; }
 float lit(vec3 position, vec3 normal) {
   if (u_light_color.w < 0.5) return 1.0;
   float side = dot(normal, u_light.xyz) < 0.0 ? -1.0 : 1.0;
-  vec3 p = position + (side * normal + u_light.xyz) * u_light.w;
+  float through = side < 0.0 ? abs(u_half_thickness) : 0.0;  // to the middle of the cloth, which the map has
+  vec3 p = position + side * normal * (u_light.w + through) + u_light.xyz * u_light.w;
   vec3 at = (u_shadow_matrix * vec4(p, 1.0)).xyz;
   if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
   int n = int(u_light_color.w);

@@ -117,10 +117,16 @@ const std::map<std::string, Key> kKeys = {
     {"/cloths/0/pressure/ambient", {"1000", kInflated}},
     {"/cloths/0/pressure/keys", {"[[0, 1], [1, 2]]", kInflated}},
 };
-// Words for people, how long a run is, and from where it is seen.
-const std::set<std::string> kNotOfTheCloth = {
-    "/weft",       "/name", "/about", "/time/seconds", "/camera/azimuth", "/camera/elevation",
-    "/camera/zoom"};
+// Words for people, how long a run is, from where it is seen, and in which colours.
+const std::set<std::string> kNotOfTheCloth = {"/weft",
+                                              "/name",
+                                              "/about",
+                                              "/time/seconds",
+                                              "/camera/azimuth",
+                                              "/camera/elevation",
+                                              "/camera/zoom",
+                                              "/cloths/0/color/front",
+                                              "/cloths/0/color/back"};
 
 // The places of all keys below an object of the schema.
 void collect(const Json& schema, const Json& object, const std::string& place,

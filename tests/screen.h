@@ -111,6 +111,16 @@ class Screen {
     }
     type("click 1");
   }
+  // Into a control of a number, by Ctrl + click.
+  void type_number(const std::string& control, const std::string& value) const {
+    const nlohmann::json at = place(control);
+    type("mousemove " + at[0].dump() + " " + at[1].dump() +
+         " sleep 0.5 keydown ctrl sleep 0.3 click 1 sleep 0.3 keyup ctrl");
+    wait_for("typing", true);
+    type("key ctrl+a type -- " + value);
+    key("Return");
+    wait_for("typing", false);
+  }
   // Once the eye stands still.
   nlohmann::json settled() const {
     nlohmann::json before, state = now();
@@ -231,6 +241,11 @@ class Screen {
   pid_t server_ = 0, viewer_ = 0;
   std::string display_;
 };
+
+// Whether a message in the window has the text.
+inline bool tells(const nlohmann::json& now, const std::string& text) {
+  return now["news"].dump().find(text) != std::string::npos;
+}
 
 // A test with a folder and a screen of its own.
 class Window : public testing::Test {

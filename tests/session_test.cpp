@@ -52,7 +52,7 @@ class Person {
     Scene scene = before;
     Cloth& cloth = scene.cloths[static_cast<std::size_t>(one_of(int(scene.cloths.size())))];
     const auto point = [&] { return near(cloth.grid.origin, 1); };
-    switch (one_of(9)) {
+    switch (one_of(10)) {
       case 0:
         cloth.stiffness.structural *= between(0.5, 2);
         break;
@@ -81,6 +81,9 @@ class Person {
         break;
       case 8:
         cloth.grid.nx += one_of(3) - 1;
+        break;
+      case 9:
+        cloth.color.back = std::array{"", "#ff8000", "#0080ff"}[one_of(3)];
         break;
     }
     return validate(scene).empty() ? scene : before;
@@ -219,6 +222,40 @@ TEST_P(Sessions, RecordingsReplay) {
 
 void advance(Player& player, int frames) {
   for (int n = 0; n < frames; ++n) player.advance();
+}
+
+// It lets go of nothing, begins nothing anew, and forgets no state.
+TEST(Players, AColourIsShownAndTheRunGoesOn) {
+  Scene scene = read_scene("two_sheets").scene;
+  for (Cloth& cloth : scene.cloths) cloth.grid.nx = cloth.grid.ny = 12;
+  Scene painted = scene;
+  painted.cloths[1].color.front = "#ff0000";
+  painted.colliders[0].color = "#00ff00";
+  Player plain(scene, {}, true), other(scene, {}, true);
+  Input grab{.kind = Input::Kind::grab};
+  grab.a = {0, 1, 0};
+  grab.amount = 500;
+  for (Player* player : {&plain, &other}) {
+    player->hand(grab);
+    advance(*player, 5);
+  }
+  other.change(painted);
+  Shown one, two;
+  advance(plain, 5);
+  advance(other, 5);
+  plain.show(one);
+  other.show(two);
+  EXPECT_EQ(two.telemetry.hash, one.telemetry.hash);
+  EXPECT_EQ(two.frame_data.frame, 10);
+  EXPECT_EQ(two.telemetry.kept, one.telemetry.kept);
+  EXPECT_EQ(two.frame_data.scene->cloths[1].color.front, "#ff0000");
+  EXPECT_EQ(two.frame_data.bodies[0].color, "#00ff00");
+  EXPECT_NE(two.frame_data.scene_serial, one.frame_data.scene_serial);
+  painted.cloths[0].color.front = "red";
+  other.change(painted);
+  other.show(two);
+  EXPECT_NE(two.telemetry.problem.find("front is \"red\""), std::string::npos)
+      << two.telemetry.problem;
 }
 
 TEST(Players, ACutTakenBackLaysTheClothBackOrTellsThatItCannot) {

@@ -1,5 +1,5 @@
 // Files that come into the window and go out of it: scenes and pictures dropped onto it, pictures,
-// films and point caches saved from it, and what it says where nothing can be written.
+// and films saved from it, and what it says where nothing can be written. (viewer_export_test.cpp has exports.)
 #include <stb_image.h>
 #include <stb_image_write.h>
 
@@ -56,10 +56,6 @@ void expect_cloth(const Image& image) {
   EXPECT_LT(image.share(is_red), 0.6);
 }
 
-bool tells(const Json& now, const std::string& text) {
-  return now["news"].dump().find(text) != std::string::npos;
-}
-
 class WindowFiles : public Window {
  protected:
   void write_green(const std::string& name) const {
@@ -75,19 +71,6 @@ class WindowFiles : public Window {
     return found;
   }
 };
-
-// Into a control, by Ctrl + click.
-void type_number(const Screen& screen, const std::string& control, const std::string& value) {
-  const Json at = screen.wait(control, [&](const Json& now) {
-    return now["controls"].contains(control);
-  })["controls"][control];
-  screen.type("mousemove " + at[0].dump() + " " + at[1].dump() +
-              " sleep 0.5 keydown ctrl sleep 0.3 click 1 sleep 0.3 keyup ctrl");
-  screen.wait_for("typing", true);
-  screen.type("key ctrl+a type " + value);
-  screen.key("Return");
-  screen.wait_for("typing", false);
-}
 
 #ifdef WEFT_DROP_PROGRAM
 
@@ -203,10 +186,10 @@ TEST_F(WindowFiles, FilmsHaveTheSizeAndTheFramesAskedFor) {
     return now["controls"].contains("picture width");
   });
   screen.click("film endless");
-  type_number(screen, "picture width", "640");
-  type_number(screen, "picture height", "360");
-  type_number(screen, "first frame", "3");
-  type_number(screen, "last frame", "8");
+  screen.type_number("picture width", "640");
+  screen.type_number("picture height", "360");
+  screen.type_number("first frame", "3");
+  screen.type_number("last frame", "8");
   screen.click("Start film");
   screen.wait("the film saved", [](const Json& now) { return tells(now, "Film saved"); });
   ASSERT_EQ(run("ffprobe -v error -count_frames -select_streams v:0 -of csv=p=0 -show_entries "
@@ -267,73 +250,6 @@ TEST_F(WindowFiles, AFilmThatFfmpegGivesUpLeavesNothing) {
   screen.key("n");
   screen.wait_for("frame", 1);
   EXPECT_EQ(screen.quit(), 0) << screen.said();
-}
-
-TEST_F(WindowFiles, AnExportIsThatOfWeftRun) {
-  Screen screen(folder);
-  screen.open("pinned2 --paused");
-  screen.click("Export");
-  screen.click("Start export");
-  screen.wait("the export to begin", [](const Json& now) { return tells(now, "pinned2.pc2"); });
-  screen.step_to(5);
-  EXPECT_FALSE(folder.has("pinned2.pc2"));
-  screen.click("Export");
-  screen.wait("the export to end", [](const Json& now) { return tells(now, "Written"); });
-  EXPECT_EQ(screen.quit(), 0) << screen.said();
-
-  const std::string exported = folder.read("pinned2.pc2");
-  ASSERT_EQ(exported.size(), 32u + 6 * 50 * 50 * 12);
-  EXPECT_EQ(exported.substr(0, 11), "POINTCACHE2");
-  ASSERT_EQ(weft("run pinned2 --frames 5 --export run.pc2"), 0) << folder.read("weft.out");
-  EXPECT_TRUE(exported == folder.read("run.pc2"));
-}
-
-// The same bytes as of weft run, whatever the format; a scene that is past the first frame starts anew.
-TEST_F(WindowFiles, ExportsHaveEveryFormatAndTheFramesAskedFor) {
-  folder.write("wave.json",
-               R"({"weft": 1, "time": {"seconds": 0.2, "frame": 0.02}, "cloths": [{"pins": [[0, 0]],
-               "grid": {"points": [9, 9], "u": [1, 0, 0], "v": [0, 0, 1]}}]})");
-  std::filesystem::create_directory(folder / "run");
-  Screen screen(folder);
-  screen.open("wave.json");
-  const auto exported = [&](const std::string& format, const std::string& file) {
-    screen.click("Export");
-    const auto offered = [&](const Json& now) {
-      for (const auto& [name, at] : now["controls"].items())
-        if (name.starts_with("export to ") && name.ends_with(format)) return true;
-      return false;
-    };
-    for (int tries = 0; tries < 5 && !offered(screen.now()); ++tries) {
-      screen.click("export " + format);
-      screen.type("sleep 1");
-    }
-    screen.wait("the format", offered);
-    screen.click("Start export");
-    screen.wait(format, [&](const Json& now) { return tells(now, "Written: " + file); });
-  };
-  screen.wait("some frames", [](const Json& now) { return now["frame"] > 15; });
-  screen.click("Export");
-  screen.click("export endless");
-  screen.key("Escape");
-  for (const std::string format : {".pc2", ".mdd", ".obj", ".gltf", ".glb"}) {
-    exported(format, (folder / "wave") + (format == ".obj" ? "_0000.obj" : format));
-    ASSERT_EQ(weft("run wave.json --frames 10 --export run/wave" + format), 0)
-        << folder.read("weft.out");
-    for (const auto& entry : std::filesystem::directory_iterator(folder / "run")) {
-      const std::string name = entry.path().filename();
-      EXPECT_TRUE(folder.has(name) && folder.read(name) == folder.read("run/" + name)) << name;
-    }
-  }
-  screen.click("Export");
-  type_number(screen, "first frame", "3");
-  type_number(screen, "last frame", "7");
-  screen.key("Escape");
-  exported(".pc2", folder / "wave-2.pc2");
-  EXPECT_EQ(screen.quit(), 0) << screen.said();
-  constexpr std::size_t kHeader = 32, kFrame = 12 * 9 * 9;
-  const std::string all = folder.read("wave.pc2"), some = folder.read("wave-2.pc2");
-  ASSERT_EQ(some.size(), kHeader + 5 * kFrame);
-  EXPECT_TRUE(some.substr(kHeader) == all.substr(kHeader + 3 * kFrame, 5 * kFrame));
 }
 
 TEST_F(WindowFiles, PicturesHaveTheSizeAskedFor) {

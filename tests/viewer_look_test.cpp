@@ -173,11 +173,13 @@ TEST_F(Window, MapsAreReplacedByFiles) {
   EXPECT_EQ(screen.quit(), 0) << screen.said();
 }
 
-// Cloths are told apart; a colour that is chosen is that cloth's alone.
+// Cloths are told apart; a colour that is chosen is that cloth's alone, is saved with the scene and can be undone,
+// and changes no bit.
 TEST_F(Window, EachClothHasColoursOfItsOwn) {
   Screen screen(folder);
   screen.open("two_sheets --paused");
   end_hints(screen);
+  screen.step_to(3);
   screen.wait_for("coarse", false);
   // Pixels beside the panel in which one part of a colour is far above the others.
   const auto count = [](const std::string& rgb, std::size_t part) {
@@ -209,7 +211,21 @@ TEST_F(Window, EachClothHasColoursOfItsOwn) {
   screen.wait_picture("another second cloth", [&](const std::string& now) {
     return count(now, 1) < green / 2 && count(now, 0) > red - red / 10;
   });
+  EXPECT_EQ(screen.now()["frame"], 3);
+  EXPECT_EQ(screen.now()["undo"], "cloth 1 color back");
+  screen.key("ctrl+s");
+  screen.wait_for("edited", false);
+  screen.step_to(6);
+  EXPECT_EQ(weft("run two_sheets --frames 6 --threads 1"), 0);
+  EXPECT_NE(folder.read("weft.out").find(screen.now()["hash"].get<std::string>()),
+            std::string::npos);
+  screen.key("ctrl+z");
+  screen.wait_picture("the standard colour",
+                      [&](const std::string& now) { return count(now, 1) > green - green / 10; });
   EXPECT_EQ(screen.quit(), 0) << screen.said();
+  const Json saved = Json::parse(folder.read("two_sheets-edited.json"))["cloths"];
+  EXPECT_EQ(saved[1]["color"]["back"].get<std::string>().size(), 7u) << saved[1];
+  EXPECT_FALSE(saved[0].contains("color")) << saved[0];
 }
 
 }  // namespace

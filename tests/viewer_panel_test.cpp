@@ -115,11 +115,24 @@ TEST_F(Window, ValuesHaveOtherFormsAndListsAreTyped) {
   become("/cloths/0/bending", "warp, weft, twist, damping", "/cloths/0/bending/twist");
   become("/colliders/0/friction", "static, dynamic, damping, bias", "/colliders/0/friction/bias");
   become("/gravity", "over time", "/gravity/keys");
+  show("/colliders/0/color");
+  enter(screen, "/colliders/0/color", "#20c040");
+  EXPECT_EQ(screen.now()["undo"], "sphere color");
+  show("/cloths/0/color");
+  enter(screen, "/cloths/0/color/back", "#0a0B0c");
+  EXPECT_TRUE(screen.now()["controls"].contains("/cloths/0/color/front swatch"));
+  EXPECT_TRUE(screen.now()["news"].empty()) << screen.now()["news"];
+  enter(screen, "/cloths/0/color/front", "green");
+  screen.wait("its fault", [](const json& now) {
+    return now["news"].dump().find("rrggbb") != std::string::npos;
+  });
+  EXPECT_EQ(screen.now()["undo"], "cloth color back");
   show("/cloths/0/pins");
   enter(screen, "/cloths/0/pins text", "[[0, 0], {\"vertices\": [5, 6]}]");
   screen.wait_for("held", 3);
   enter(screen, "/cloths/0/pins text", "[[0, 0], {\"vertices\": [5, 99]}]");
-  screen.wait("a message", [](const json& now) { return !now["news"].empty(); });
+  screen.wait("a message",
+              [](const json& now) { return now["news"].dump().find("99") != std::string::npos; });
   EXPECT_EQ(screen.now()["held"], 3);
   screen.key("ctrl+s");
   screen.wait_for("edited", false);
@@ -129,7 +142,47 @@ TEST_F(Window, ValuesHaveOtherFormsAndListsAreTyped) {
   EXPECT_EQ(saved["gravity"], json::parse(R"({"keys": [[0, 0, -2, 0]]})"));
   EXPECT_EQ(saved["cloths"][0]["bending"], 1e-5) << "alike in all directions";
   EXPECT_EQ(saved["colliders"][0]["friction"], 0.5);
+  EXPECT_EQ(saved["colliders"][0]["color"], "#20c040");
+  EXPECT_EQ(saved["cloths"][0]["color"], json::parse(R"({"back": "#0a0B0c"})"));
   EXPECT_EQ(saved["cloths"][0]["pins"].size(), 2u);
+}
+
+// A course scene has the course's parameters by its names, which the search finds.
+TEST_F(Window, CourseParametersAreFoundByTheirNames) {
+  Screen screen(folder);
+  screen.open("pinned2 --paused");
+  const auto find = [&](const std::string& word, const std::string& control) {
+    screen.click("filter");
+    screen.wait_for("typing", true);
+    screen.type("key ctrl+a type --delay 20 " + word);
+    screen.key("Return");
+    screen.wait(control, [&](const json& now) {
+      return now["controls"].contains(control) && !now["controls"].contains("silk");
+    });
+  };
+  find("ks", "ks [N/m]");
+  EXPECT_FALSE(screen.now()["controls"].contains("damping [%]"));
+  screen.type_number("ks [N/m]", "800");
+  screen.wait_for("stiffness", 800);
+  EXPECT_EQ(screen.now()["undo"], "ks");
+  find("density", "density [g/cm²]");
+  screen.type_number("density [g/cm²]", "1.5");
+  find("damping", "damping [%]");
+  screen.type_number("damping [%]", "0.9");
+  find("gravity", "gravity [m/s²]");
+  screen.type_number("gravity [m/s²]", "-3");
+  find("bending", "bending springs");
+  screen.click("bending springs");
+  EXPECT_TRUE(screen.now()["news"].empty()) << screen.now()["news"];
+  screen.key("ctrl+s");
+  screen.wait_for("edited", false);
+  EXPECT_EQ(screen.quit(), 0) << screen.said();
+  const json saved = json::parse(folder.read("pinned2-edited.json"));
+  const json& cloth = saved["cloths"][0];
+  EXPECT_EQ(cloth["stiffness"], json::parse(R"({"structural": 800, "shear": 800, "bend": 0})"));
+  EXPECT_NEAR(cloth["particle_mass"].get<double>(), 15 / 2500.0, 1e-12);
+  EXPECT_NEAR(cloth["drag"].get<double>(), 0.9 * 27, 1e-10);
+  EXPECT_EQ(saved["gravity"], json::parse("[0, -3, 0]"));
 }
 
 }  // namespace

@@ -119,6 +119,11 @@ TEST(Pictures, EveryLookIsAsKept) {
   fs::remove(out);
 }
 
+// Warm, in a grey room; `k`: where the pixel's bytes begin.
+bool is_cloth(const Decoded& picture, std::size_t k) {
+  return 10 * picture.rgb[k] > 11 * picture.rgb[k + 2];
+}
+
 // Wherever the plain cloth hides the ball, the raised one does, too.
 TEST(Pictures, RaisedClothHidesWhatLiesBeneath) {
   const fs::path out = fs::temp_directory_path() / "weft_viewer_raised.png";
@@ -131,9 +136,6 @@ TEST(Pictures, RaisedClothHidesWhatLiesBeneath) {
   const Decoded plain = draw("diffuse"), raised = draw("displacement");
   ASSERT_EQ(plain.rgb.size(), 3u * 320 * 240);
   ASSERT_EQ(raised.rgb.size(), plain.rgb.size());
-  const auto is_cloth = [](const Decoded& picture, std::size_t k) {
-    return 10 * picture.rgb[k] > 11 * picture.rgb[k + 2];  // warm, in a grey room
-  };
   double cloth = 0, lost = 0;
   for (std::size_t k = 0; k < plain.rgb.size(); k += 3) {
     cloth += is_cloth(plain, k);
@@ -144,7 +146,8 @@ TEST(Pictures, RaisedClothHidesWhatLiesBeneath) {
   fs::remove(out);
 }
 
-// Ambient occlusion darkens folds and what rests on the floor, brightens nothing, and leaves open ground alone.
+// Ambient occlusion darkens folds and the floor beneath, brightens nothing of the floor, and leaves open ground alone.
+// The cloth itself is thick in fine pictures, and so not the same pixel by pixel.
 TEST(Pictures, FinePicturesHaveAmbientOcclusion) {
   const fs::path out = fs::temp_directory_path() / "weft_viewer_fine.png";
   const auto draw = [&](const char* quality) {
@@ -159,18 +162,93 @@ TEST(Pictures, FinePicturesHaveAmbientOcclusion) {
   fs::remove(out);
   ASSERT_EQ(plain.rgb.size(), 3u * 320 * 240);
   ASSERT_EQ(fine.rgb.size(), plain.rgb.size());
-  double darker = 0, brighter = 0, below = 0, ground = 0;
+  double folds = 0, darker = 0, brighter = 0, below = 0, ground = 0;
   for (std::size_t k = 0; k < plain.rgb.size(); k += 3) {
     const int less = int(plain.rgb[k]) - int(fine.rgb[k]);
-    darker += less > 12;
-    brighter += less < -12;
+    const bool cloth = is_cloth(plain, k) || is_cloth(fine, k);
+    folds += cloth && less > 12;
+    darker += !cloth && less > 12;
+    brighter += !cloth && less < -12;
     const bool lowest = k > 3u * 320 * 220;  // open floor before the cloth
     ground += lowest;
     below += lowest && less > 3;
   }
+  EXPECT_GT(folds, 400);
   EXPECT_GT(darker, 400);
-  EXPECT_LT(brighter, 0.1 * darker);
+  EXPECT_LT(brighter, 0.02 * darker);
   EXPECT_LT(below, 0.02 * ground);
+}
+
+// Two pieces of a sheet that show the eye an edge of a metre each, one above the other: the back one was severed from
+// the front one, by a cut of the scene or a tear, and lifted. `mesh`: in the place of the grid.
+std::string severed_sheet(double thickness, const std::string& how, const std::string& mesh) {
+  const std::string shape = mesh.empty()
+                                ? R"("grid": {"points": [21, 21], "u": [1, 0, 0], "v": [0, 0, 1]})"
+                                : R"("mesh": {"file": ")" + mesh + "\"}";
+  return R"({"weft": 1, "gravity": [0, 0, 0], "camera": {"azimuth": 0, "elevation": 0}, "cloths": [{)" +
+         shape + R"(, "stiffness": {"structural": 100}, )" + how + R"(
+      "self_collision": {"mode": "particles", "thickness": )" +
+         std::to_string(thickness) + R"(},
+      "pins": [{"box": [[-1, -1, 0.54], [2, 1, 2]], "keys": [[0, 0, 0, 0]]},
+               {"box": [[-1, -1, -1], [2, 1, 0.52]], "keys": [[0, 0, 0, 0], [0.2, 0, 0.3, 0]]}]}]})";
+}
+
+// The sheet of severed_sheet(), as a file.
+void write_mesh(const fs::path& path) {
+  std::ofstream file(path);
+  constexpr int kSide = 21;
+  for (int j = 0; j < kSide; ++j)
+    for (int i = 0; i < kSide; ++i) file << "v " << 0.05 * i << " 0 " << 0.05 * j << "\n";
+  for (int j = 0; j + 1 < kSide; ++j)
+    for (int i = 0; i + 1 < kSide; ++i) {
+      const int a = 1 + j * kSide + i, b = a + kSide;
+      file << "f " << a << ' ' << a + 1 << ' ' << b << "\nf " << a + 1 << ' ' << b + 1 << ' ' << b
+           << "\n";
+    }
+}
+
+// Seen along the sheet, a border is as high as the cloth is thick, in the measure of its width, a metre: the front's
+// own border and the one along the cut or tear. By the look of normals, which point to the eye there and nowhere else.
+TEST(Pictures, FinePicturesShowTheThicknessOfBorders) {
+  const fs::path folder = fs::temp_directory_path() / "weft_viewer_rim";
+  fs::create_directories(folder);
+  write_mesh(folder / "sheet.obj");
+  const auto bands = [&](const std::string& scene, const char* quality) {
+    std::ofstream(folder / "scene.json") << scene;
+    EXPECT_EQ(run((folder / "scene.json").string() +
+                  " --headless --frames 20 --size 400x300 --shader normals --quality " + quality +
+                  " --out " + (folder / "a.png").string()),
+              0);
+    const Decoded picture = decode(folder / "a.png");
+    EXPECT_EQ(picture.rgb.size(), 3u * 400 * 300);
+    std::vector<std::array<double, 2>> found;  // pixels, columns: of each half of the picture
+    for (const int from : {0, 150}) {
+      double pixels = 0;
+      std::set<int> columns;
+      for (int y = from; y < from + 150; ++y)
+        for (int x = 0; x < 400; ++x) {
+          const auto* c = &picture.rgb[static_cast<std::size_t>(3 * (400 * y + x))];
+          const bool to_eye = c[2] > 190 && std::abs(c[0] - 128) < 35 && std::abs(c[1] - 128) < 35;
+          pixels += to_eye;
+          if (to_eye) columns.insert(x);
+        }
+      found.push_back({pixels, static_cast<double>(columns.size())});
+    }
+    return found;
+  };
+  const std::string cut = R"("cuts": [[[-1, 10.5], [21, 10.5]]],)", torn = R"("tear_strain": 0.3,)";
+  const std::tuple<const char*, std::string, std::string> kinds[] = {
+      {"cut", cut, ""}, {"torn", torn, ""}, {"torn mesh", torn, "sheet.obj"}};
+  for (const auto& [name, how, mesh] : kinds)
+    for (const double thickness : {0.02, 0.04}) {
+      for (const auto& [pixels, columns] : bands(severed_sheet(thickness, how, mesh), "fine")) {
+        ASSERT_GT(columns, 100) << name << thickness;
+        EXPECT_NEAR(pixels / columns, thickness * columns, 1) << name << thickness;
+      }
+      for (const auto& [pixels, columns] : bands(severed_sheet(thickness, how, mesh), "standard"))
+        EXPECT_EQ(pixels, 0) << name << thickness;
+    }
+  fs::remove_all(folder);
 }
 
 TEST(Pictures, EveryShippedSceneIsShown) {

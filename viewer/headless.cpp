@@ -98,7 +98,7 @@ void render_picture(const Arguments& arguments) {
     if (arguments.strip > 1) bounds.add(setting.room);  // one view for all
     if (k == 0) aim(sight_of(arguments, file.scene), bounds, aspect, 1, camera);
     LookSettings settings = arguments.settings;
-    settings.occlusion = settings.quality == Quality::fine;
+    settings.fine = settings.quality == Quality::fine;
     renderer.draw(frame_data, setting, *find_look(arguments.look), settings, camera, target);
     refuse_problems(renderer);
     paste(target.read(), k, strip);

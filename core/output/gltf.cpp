@@ -92,6 +92,7 @@ class Gltf final : public Animation {
     std::int64_t particles, corners, uv;  // how many; uv: of vertices, or 0
     std::uint64_t version;                // of the topology
     std::vector<std::int64_t> copies;     // the particles of vertices that follow them
+    std::optional<std::array<double, 3>> color;
     std::int64_t vertices() const { return particles + std::int64_t(copies.size()); }
   };
 
@@ -104,7 +105,12 @@ class Gltf final : public Animation {
   // Indices and texture coordinates go to their buffers. A grid that tears is refused with its first sample.
   Shape shape_of(const ClothView& cloth) {
     const Faces faces = faces_of(cloth);
-    Shape shape{particle_count(cloth), 0, 0, cloth.lanes.empty() ? 0 : cloth.topology_version, {}};
+    Shape shape{particle_count(cloth),
+                0,
+                0,
+                cloth.lanes.empty() ? 0 : cloth.topology_version,
+                {},
+                cloth.color};
     const bool mapped = !faces.uv_of.empty();
     std::vector<std::int64_t> uv(std::size_t(shape.particles), -1);  // of vertices
     std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> copies;
@@ -165,14 +171,24 @@ class Gltf final : public Animation {
     bounds_.push_back(bounds);
   }
 
+  // Seen from both sides. The format's factors are in proportion to light, and its standard is a metal.
+  static Json material(const Shape& shape) {
+    Json material{{"doubleSided", true}};
+    if (!shape.color) return material;
+    const auto [red, green, blue] = *shape.color;
+    material["pbrMetallicRoughness"] = {{"baseColorFactor", {red, green, blue, 1}},
+                                        {"metallicFactor", 0}};
+    return material;
+  }
+
   // `uri`: of the buffer, "" where it is in the same file.
   std::string document(std::int64_t size, const std::string& uri) const {
     Json json;
     json["asset"] = {{"version", "2.0"}, {"generator", "weft"}};
     json["scene"] = 0;
-    json["materials"] = Json::array({{{"doubleSided", true}}});
     Json views = Json::array(), accessors = Json::array(), meshes = Json::array();
     Json nodes = Json::array(), roots = Json::array(), channels = Json::array();
+    Json materials = Json::array();
     std::int64_t offset = 0;
     const auto place = [&](std::int64_t bytes, int target) {
       Json view{{"buffer", 0}, {"byteOffset", offset}, {"byteLength", bytes}};
@@ -199,7 +215,10 @@ class Gltf final : public Animation {
     }
     for (std::size_t c = 0; c < shapes_.size(); ++c) {
       const auto position = [&](std::size_t sample) { return shapes_.size() * (1 + sample) + c; };
-      Json primitive{{"attributes", {{"POSITION", position(0)}}}, {"indices", c}, {"material", 0}};
+      Json primitive{{"attributes", {{"POSITION", position(0)}}},
+                     {"indices", c},
+                     {"material", materials.size()}};
+      materials.push_back(material(shapes_[c]));
       if (uv_views[c] >= 0)
         primitive["attributes"]["TEXCOORD_0"] =
             accessor(uv_views[c], kFloat, shapes_[c].uv, "VEC2");
@@ -223,6 +242,7 @@ class Gltf final : public Animation {
           Json::array({{{"samplers", Json::array({{{"input", times}, {"output", weights}}})},
                         {"channels", channels}}});
     }
+    json["materials"] = materials;
     json["scenes"] = Json::array({{{"nodes", roots}}});
     json["nodes"] = nodes;
     json["meshes"] = meshes;

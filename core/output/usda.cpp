@@ -1,6 +1,7 @@
 // USD as text (.usda): a mesh for every cloth with points as time samples, one time code a sample, texture
 // coordinates by corner. Points come prim by prim, and so lie on disk until the end. Numbers are written so that
 // they read back to the same bits.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -49,6 +50,7 @@ class Usda final : public Animation {
       prim.particles = particle_count(cloth);
       prim.version = cloth.lanes.empty() ? 0 : cloth.topology_version;
       append_faces(prim.faces, faces_of(cloth));
+      if (cloth.color) append_color(prim.faces, *cloth.color);
     }
   }
 
@@ -102,6 +104,14 @@ class Usda final : public Animation {
     text += "        int[] primvars:st:indices = ";
     append_list(text, faces.uv_of, number);
     text += '\n';
+  }
+
+  static void append_color(std::string& text, const std::array<double, 3>& color) {
+    text += "        color3f[] primvars:displayColor = [";
+    std::array<float, 3> linear{};
+    std::ranges::transform(color, linear.begin(), [](double c) { return static_cast<float>(c); });
+    append_tuple(text, linear);
+    text += "]\n";
   }
 
   void append_points(const View& view, const ClothView& cloth, Prim& prim) {

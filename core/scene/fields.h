@@ -142,6 +142,12 @@ void fields(Walk& walk, SelfCollision& self) {
 }
 
 template <class Walk>
+void fields(Walk& walk, ClothColor& color) {
+  walk("front", color.front);
+  walk("back", color.back);
+}
+
+template <class Walk>
 void fields(Walk& walk, Cloth& cloth) {
   walk("grid", cloth.grid);
   walk("mesh", cloth.mesh);
@@ -170,6 +176,7 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("sewing", cloth.sewing);
   walk("seams", cloth.seams);
   walk("pressure", cloth.pressure);
+  walk("color", cloth.color);
 }
 
 // Of the shapes of colliders (weft/shapes/value.h).
@@ -195,6 +202,7 @@ void fields(Walk& walk, Collider& collider) {
   walk("rotate", collider.rotate);
   walk("animation", collider.animation);
   walk("cuts", collider.cuts);
+  walk("color", collider.color);
 }
 
 template <class Walk>

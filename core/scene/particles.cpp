@@ -41,6 +41,12 @@ double particle_mass(const Cloth& cloth, int i, int j) {
          border_share(j, grid.ny);
 }
 
+double area_density(const Cloth& cloth) {
+  if (cloth.mesh.given()) return cloth.density;
+  return particle_mass(cloth, cloth.grid.nx / 2, cloth.grid.ny / 2) /
+         (spacing_u(cloth.grid) * spacing_v(cloth.grid));
+}
+
 bool lumps_by_area(const Cloth& cloth) {
   if (cloth.lumping != Lumping::automatic) return cloth.lumping == Lumping::area;
   return cloth.masses.empty() && cloth.particle_mass == 0;

@@ -6,6 +6,7 @@
 #include "scene/assets.h"
 #include "scene/overrides.h"
 #include "weft/printable.h"
+#include "weft/scene.h"
 
 namespace weft::text {
 namespace {
@@ -109,6 +110,8 @@ class Walk {
     } else if (std::any_of(text.begin(), text.end(),
                            [](char c) { return (c >= 0 && c < ' ') || c == 0x7f; })) {
       fault(name_of(place_) + " has control characters", "one line of text");
+    } else if (schema.contains("format") && !text.empty() && !linear_color(text)) {
+      fault(is(value), "#rrggbb in hexadecimal digits, or nothing");
     }
   }
 

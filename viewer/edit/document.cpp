@@ -113,9 +113,11 @@ std::string Document::set(const std::vector<Change>& changes, bool joined,
 
   const std::string& place = changes.front().pointer;
   history_.resize(position_ + 1);
-  const bool join = joined && position_ > 0 && history_.back().place == place;
+  const std::string called = name.empty() ? name_of(place) : name;
+  const bool join =
+      joined && position_ > 0 && history_.back().place == place && history_.back().name == called;
   if (join) history_.pop_back();
-  history_.push_back({next, place, name.empty() ? name_of(place) : name, ++revisions_});
+  history_.push_back({next, place, called, ++revisions_});
   if (history_.size() > kMostStates) history_.erase(history_.begin());
   position_ = history_.size() - 1;
   json_ = std::move(next);

@@ -33,7 +33,7 @@ class Document {
   std::uint64_t revision() const { return revision_; }
 
   // Changes one value by JSON pointer, or several as one step; "" or what is wrong and allowed.
-  // `joined`: part of the same movement as the last change of the same place, undone together. `name`: what
+  // `joined`: part of the same movement as the last change of the same place and name, undone together. `name`: what
   // a person calls the change, "" for the name of its place.
   struct Change {
     std::string pointer;

@@ -3,9 +3,13 @@
 
 namespace weft::viewer {
 
-std::vector<Document::Change> changes_to(const Fabric& fabric, const Scene& scene) {
+std::vector<Document::Change> changes_to(const Fabric& fabric, const ClothColor& color,
+                                         const Scene& scene) {
   Scene made = scene;
-  for (Cloth& cloth : made.cloths) make_of(fabric, scene.solver.method, cloth);
+  for (Cloth& cloth : made.cloths) {
+    make_of(fabric, scene.solver.method, cloth);
+    cloth.color = color;
+  }
   return changes_between(scene, made);
 }
 

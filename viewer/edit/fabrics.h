@@ -8,7 +8,8 @@
 
 namespace weft::viewer {
 
-// The changes that make every cloth of the scene of that fabric.
-std::vector<Document::Change> changes_to(const Fabric& fabric, const Scene& scene);
+// The changes that make every cloth of the scene of that fabric, and of these colours.
+std::vector<Document::Change> changes_to(const Fabric& fabric, const ClothColor& color,
+                                         const Scene& scene);
 
 }  // namespace weft::viewer

@@ -18,29 +18,29 @@ struct FabricLook {
   Weave weave;
   float threads;  // 1/m
   float roughness, sheen, translucency;
-  Vec3f front, back;  // linear
+  const char *front, *back;
 };
 constexpr std::array<FabricLook, 5> kFabricLooks{{
-    {"silk", Weave::satin, 900, .28f, .12f, .4f, {.62f, .50f, .36f}, {.52f, .42f, .31f}},
-    {"cotton", Weave::plain, 450, .75f, .2f, .3f, {.60f, .58f, .53f}, {.56f, .54f, .50f}},
-    {"wool", Weave::twill, 250, .9f, .6f, .12f, {.20f, .21f, .16f}, {.18f, .19f, .15f}},
-    {"denim", Weave::twill, 380, .8f, .15f, .05f, {.03f, .07f, .22f}, {.05f, .10f, .27f}},
-    {"leather", Weave::leather, 500, .45f, .02f, 0, {.16f, .065f, .03f}, {.27f, .17f, .10f}},
+    {"silk", Weave::satin, 900, .28f, .12f, .4f, "#cebca2", "#bfad97"},
+    {"cotton", Weave::plain, 450, .75f, .2f, .3f, "#cbc8c0", "#c5c2bc"},
+    {"wool", Weave::twill, 250, .9f, .6f, .12f, "#7c7e6f", "#76796c"},
+    {"denim", Weave::twill, 380, .8f, .15f, .05f, "#304b81", "#3f598e"},
+    {"leather", Weave::leather, 500, .45f, .02f, 0, "#6f4830", "#8e7359"},
 }};
 
-// Who looks at the plain colour sees the fabric; another look stays.
+// All cloths are of it. Who looks at the plain colour sees the fabric; another look stays.
 void wear(const Fabric& worn, Workspace& workspace) {
   const auto look = std::ranges::find(kFabricLooks, worn.name, &FabricLook::fabric);
   if (look == kFabricLooks.end()) return;
   const FabricLook& fabric = *look;
+  workspace.edit(changes_to(worn, {fabric.front, fabric.back}, workspace.document().scene()), false,
+                 std::string(worn.name));
   LookSettings& s = workspace.settings;
   s.weave = fabric.weave;
   s.threads = fabric.threads;
   s.roughness = fabric.roughness;
   s.sheen = fabric.sheen;
   s.translucency = fabric.translucency;
-  for (std::size_t c = 0; c < workspace.document().scene().cloths.size(); ++c)
-    choose_colors(s, c, {fabric.front, fabric.back});
   if (workspace.look->name == "colour") workspace.look = find_look("fabric");
 }
 
@@ -54,11 +54,7 @@ void draw_fabrics(Workspace& workspace) {
   const float width = (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count;
   for (const Fabric& fabric : all) {
     if (&fabric != all.data()) ImGui::SameLine(0, gap);
-    if (ImGui::Button(std::string(fabric.name).c_str(), {width, 0})) {
-      workspace.edit(changes_to(fabric, workspace.document().scene()), false,
-                     std::string(fabric.name));
-      wear(fabric, workspace);
-    }
+    if (ImGui::Button(std::string(fabric.name).c_str(), {width, 0})) wear(fabric, workspace);
     mark(std::string(fabric.name));
     const Membrane& membrane = fabric.membrane;
     const Bending& bending = fabric.bending;

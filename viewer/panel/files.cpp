@@ -135,12 +135,11 @@ void draw_export_form(Workspace& workspace, FileForms& forms) {
   const bool known = std::filesystem::path(forms.path).extension() == format;
   const bool able = known && !(apart && morphs);
   const char* why = known ? "" : "The file's name ends as the format is called";
-  const std::int64_t now = workspace.frame_data().frame;
   const bool all = button("Start export", able, why);
   ImGui::SameLine();
   const bool still = button("This frame alone", able, *why != 0 ? why : "The cloth as it is seen");
-  if (still) workspace.start_export(forms.path, now, now);
-  if (all && forms.frames.endless) workspace.start_export(forms.path, now, {});
+  if (still) workspace.export_frame(forms.path);
+  if (all && forms.frames.endless) workspace.start_export(forms.path, {}, {});
   if (all && !forms.frames.endless)
     workspace.start_export(forms.path, forms.frames.first, forms.frames.last);
   if (all || still) ImGui::CloseCurrentPopup();

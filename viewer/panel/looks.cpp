@@ -6,6 +6,7 @@
 #include <initializer_list>
 #include <iterator>
 
+#include "panel/colors.h"
 #include "panel/panel.h"
 #include "panel/theme.h"
 
@@ -13,14 +14,11 @@ namespace weft::viewer {
 
 namespace {
 
-bool color(const std::string& label, Vec3f& linear) {
-  const auto encode = [](float c) { return std::pow(c, 1 / 2.2f); };
-  float shown[3] = {encode(linear.x), encode(linear.y), encode(linear.z)};
-  const bool changed = ImGui::ColorEdit3(label.c_str(), shown, ImGuiColorEditFlags_NoInputs);
+// Of one side of a cloth, as the scene has it. What is chosen in a row is one change.
+void color(Workspace& workspace, const std::string& label, const std::string& pointer) {
+  const auto chosen = pick_color(label, drawn_color(workspace.document().scene(), pointer));
   mark(label);
-  const auto decode = [](float c) { return std::pow(c, 2.2f); };
-  if (changed) linear = {decode(shown[0]), decode(shown[1]), decode(shown[2])};
-  return changed;
+  if (chosen) workspace.edit({{pointer, *chosen}}, true);
 }
 
 bool slider(const char* label, float& value, float low, float high, const char* format = "%.3f",
@@ -99,15 +97,15 @@ void draw_list(Workspace& workspace) {
 }
 
 // Of each cloth's two sides.
-void draw_colors(LookSettings& settings, std::size_t cloths) {
+void draw_colors(Workspace& workspace) {
   constexpr std::size_t kMost = 12;  // cloths that the panel has room for
+  const std::size_t cloths = workspace.document().scene().cloths.size();
   for (std::size_t c = 0; c < std::min(cloths, kMost); ++c) {
     const std::string which = c == 0 ? "" : " " + std::to_string(c + 1);
-    ClothColors colors = colors_of(settings, c);
-    const bool front = color("front" + which, colors.front);
+    const std::string place = "/cloths/" + std::to_string(c) + "/color";
+    color(workspace, "front" + which, place + "/front");
     ImGui::SameLine();
-    const bool back = color("back" + which, colors.back);
-    if (front || back) choose_colors(settings, c, colors);
+    color(workspace, "back" + which, place + "/back");
   }
 }
 
@@ -116,7 +114,7 @@ void draw_material(Workspace& workspace) {
   const std::string_view look = workspace.look->name;
   const auto is = [&](std::string_view name) { return look == name; };
   if (is("pbr")) draw_maps(workspace);
-  draw_colors(s, workspace.document().scene().cloths.size());
+  draw_colors(workspace);
   bool plain = false;
   if (is("fabric")) {
     int weave = static_cast<int>(s.weave);
@@ -175,8 +173,9 @@ void draw_looks(Workspace& workspace) {
     s.quality = static_cast<Quality>(quality);
   mark("quality");
   tooltip(
-      "fine: ambient occlusion and softer shadows; quick: less at rest, too; automatic: fine where "
-      "there is a graphics card");
+      "fine: ambient occlusion, softer shadows, and the cloth's thickness at its border; quick: "
+      "less "
+      "at rest, too; automatic: fine where there is a graphics card");
   switches({{"shadow", s.shadows}, {"floor", s.ground}});
   slider("roundness of bodies", s.tessellation, 16, 128);
   slider("smoothness", s.refinement, 0, 6, s.refinement == 0 ? "auto" : "%d");

@@ -69,6 +69,7 @@ void Panel::draw_side(Workspace& workspace, Requests& requests) {
       if (all) draw_fabrics(workspace);
       if (all) draw_parts(workspace, requests);
       if (all) draw_spring_cloth(workspace);
+      draw_course_cloth(workspace, parameters_);
       parameters_.draw(workspace);
       if (all) draw_machine(workspace);
     });

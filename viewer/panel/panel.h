@@ -74,6 +74,8 @@ void draw_files(Workspace& workspace, Requests& requests, FileForms& forms, bool
 void draw_parts(Workspace& workspace, Requests& requests);
 void draw_fabrics(Workspace& workspace);
 void draw_spring_cloth(Workspace& workspace);
+// What of it is looked for.
+void draw_course_cloth(Workspace& workspace, const Parameters& parameters);
 void draw_looks(Workspace& workspace);
 void draw_machine(Workspace& workspace);  // threads, instruction set
 // Keys [t, x, …] of a path, or of an angle over time; a first one is put at `now` [s] and `start`. True when

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "edit/forms.h"
+#include "panel/colors.h"
 #include "panel/panel.h"
 #include "panel/theme.h"
 #include "scene/schema.h"
@@ -188,6 +189,19 @@ void Parameters::word(const std::string& pointer, const std::string& label, cons
     change(pointer, text);
 }
 
+// A swatch, and the text, empty where it is a standard colour.
+void Parameters::color(const std::string& pointer, const std::string& label, const Json& value) {
+  const std::string swatch = pointer + " swatch";
+  const auto chosen =
+      pick_color("##" + swatch, drawn_color(workspace_->document().scene(), pointer));
+  mark(swatch);
+  if (chosen) change(pointer, *chosen);
+  const float width = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(ImGui::CalcItemWidth() - width);
+  word(pointer, label, value);
+}
+
 // The control of a value that is no list of its own kind; false when it is one.
 bool Parameters::plain(const std::string& pointer, const std::string& label, const Json& schema,
                        const Json& value) {
@@ -196,6 +210,8 @@ bool Parameters::plain(const std::string& pointer, const std::string& label, con
     if (ImGui::Checkbox(label.c_str(), &on)) change(pointer, on);
   } else if (schema.contains("enum")) {
     choice(pointer, label, schema, value);
+  } else if (schema.contains("format")) {
+    color(pointer, label, value);
   } else if (value.is_string()) {
     word(pointer, label, value);
   } else if (value.is_number()) {
@@ -237,8 +253,7 @@ void Parameters::area_density(const std::string& pointer) {
   const std::size_t number = std::stoul(pointer.substr(std::string("/cloths/").size()));
   const Cloth& cloth = workspace_->document().scene().cloths[number];
   if (cloth.mesh.given()) return;
-  const double density = particle_mass(cloth, cloth.grid.nx / 2, cloth.grid.ny / 2) /
-                         (spacing_u(cloth.grid) * spacing_v(cloth.grid));
+  const double density = weft::area_density(cloth);
   ImGui::TextColored(kQuiet, "a particle's square: %.4g kg/m² = %.4g g/cm²", density, density / 10);
 }
 

@@ -15,6 +15,8 @@ class Parameters {
   void draw(Workspace& workspace);
   // Whether a word is looked for: then nothing else is shown.
   bool searching() const { return !filter_.empty(); }
+  // Whether a control of that name is shown, in view of what is looked for.
+  bool shows(const std::string& name) const { return !searching() || named("", name); }
 
  private:
   using Json = text::Json;
@@ -33,6 +35,7 @@ class Parameters {
   void substeps(const std::string& pointer, const std::string& label, const Json& schema,
                 const Json& value);
   void word(const std::string& pointer, const std::string& label, const Json& value);
+  void color(const std::string& pointer, const std::string& label, const Json& value);
   bool plain(const std::string& pointer, const std::string& label, const Json& schema,
              const Json& value);
   void form(const std::string& pointer, const Json& forms, const Json& value, const Json& chosen);

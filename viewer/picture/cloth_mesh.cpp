@@ -12,6 +12,13 @@ void append_line(std::vector<std::uint32_t>& indices, int a, int b) {
   indices.push_back(static_cast<std::uint32_t>(b));
 }
 
+void upload(const std::vector<std::uint32_t>& indices, const Buffer& to) {
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, to.id());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
+               static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)), indices.data(),
+               GL_DYNAMIC_DRAW);
+}
+
 // Whether the square to the lower right of particle (i,j) is drawn; six indices each.
 bool has_square(const std::vector<std::uint32_t>& triangles, int columns, int i, int j) {
   const auto at = 6 * (static_cast<std::size_t>(j) * static_cast<std::size_t>(columns - 1) +
@@ -93,16 +100,19 @@ ClothMesh::ClothMesh()
       coordinates_(make_buffer()),
       indices_(make_buffer()),
       tear_indices_(make_buffer()),
+      rim_indices_(make_buffer()),
       line_indices_(make_buffer()) {}
 
 void ClothMesh::update(const ClothCopy& whole, std::uint64_t scene, const Cloth& description,
-                       const Look& look, Sampling sampling) {
+                       const Look& look, Sampling sampling, float thickness) {
   if (look.draw != Look::Draw::surface || whole.mesh)
     sampling = {1, whole.mesh ? 1 : sampling.step};
   const ClothCopy thin = sampling.step > 1 ? thinned(whole, sampling.step) : ClothCopy{};
   const ClothCopy& cloth = sampling.step > 1 ? thin : whole;
   const bool same_size = columns_ == whole.columns && rows_ == whole.rows && sampling_ == sampling;
-  const bool same = same_size && topology_ == whole.topology_version && scene_ == scene;
+  const bool rim = thickness > 0;
+  const bool same =
+      same_size && topology_ == whole.topology_version && scene_ == scene && rim_ == rim;
   size_surface(cloth, sampling.refinement, surface_);
   if (!same) triangulate(cloth, surface_);
   if (cloth.mesh)
@@ -114,6 +124,9 @@ void ClothMesh::update(const ClothCopy& whole, std::uint64_t scene, const Cloth&
   if (look.forces) add_forces(whole, description, sampling.step, surface_);
   if (look.strains) add_strains(whole, description, sampling.step, surface_);
   add_tear_boundary(cloth, surface_);
+  if (!same) surface_.border.clear();
+  if (!same && rim) find_border(surface_);
+  add_rim(thickness, surface_);
   glBindVertexArray(array_.id());
   upload_vertices();
   if (same) return;
@@ -126,6 +139,7 @@ void ClothMesh::update(const ClothCopy& whole, std::uint64_t scene, const Cloth&
   sampling_ = sampling;
   topology_ = whole.topology_version;
   scene_ = scene;
+  rim_ = rim;
 }
 
 void ClothMesh::upload_vertices() {
@@ -154,6 +168,7 @@ void ClothMesh::upload_coordinates(std::vector<float> uv, const ClothCopy& cloth
     const std::size_t v = vertex_of(cloth, surface_, particle);
     uv.insert(uv.end(), {uv[2 * v], uv[2 * v + 1]});
   }
+  for (const std::size_t v : surface_.rim_of) uv.insert(uv.end(), {uv[2 * v], uv[2 * v + 1]});
   glBindBuffer(GL_ARRAY_BUFFER, coordinates_.id());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(uv.size() * sizeof(float)), uv.data(),
                GL_STATIC_DRAW);
@@ -166,9 +181,7 @@ void ClothMesh::upload_triangles() {
   const std::vector<std::uint32_t>& now = surface_.indices;
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
   if (now.size() != uploaded_.size()) {
-    glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-                 static_cast<GLsizeiptr>(now.size() * sizeof(std::uint32_t)), now.data(),
-                 GL_DYNAMIC_DRAW);
+    upload(now, indices_);
   } else {
     const auto first = std::mismatch(now.begin(), now.end(), uploaded_.begin()).first - now.begin();
     const auto after =
@@ -180,10 +193,8 @@ void ClothMesh::upload_triangles() {
                       now.data() + first);
   }
   uploaded_ = now;
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, tear_indices_.id());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-               static_cast<GLsizeiptr>(surface_.tear_indices.size() * sizeof(std::uint32_t)),
-               surface_.tear_indices.data(), GL_DYNAMIC_DRAW);
+  upload(surface_.tear_indices, tear_indices_);
+  upload(surface_.rim_indices, rim_indices_);
 }
 
 void ClothMesh::upload_lines(const ClothCopy& cloth, const Cloth& description) {
@@ -198,20 +209,23 @@ void ClothMesh::upload_lines(const ClothCopy& cloth, const Cloth& description) {
         indices.insert(indices.end(), edge.begin(), edge.end());
     lines_[kind] = {static_cast<GLsizei>(indices.size() - start), start};
   }
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, line_indices_.id());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER,
-               static_cast<GLsizeiptr>(indices.size() * sizeof(std::uint32_t)), indices.data(),
-               GL_DYNAMIC_DRAW);
+  upload(indices, line_indices_);
+}
+
+void ClothMesh::draw_triangles(const Buffer& indices, std::size_t count) const {
+  if (count == 0) return;
+  glBindVertexArray(array_.id());
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices.id());
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count), GL_UNSIGNED_INT, nullptr);
 }
 
 void ClothMesh::draw_surface() const {
-  glBindVertexArray(array_.id());
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_.id());
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(uploaded_.size()), GL_UNSIGNED_INT, nullptr);
-  if (surface_.tear_indices.empty()) return;
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, tear_indices_.id());
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(surface_.tear_indices.size()), GL_UNSIGNED_INT,
-                 nullptr);
+  draw_triangles(indices_, uploaded_.size());
+  draw_triangles(tear_indices_, surface_.tear_indices.size());
+}
+
+void ClothMesh::draw_rim() const {
+  draw_triangles(rim_indices_, surface_.rim_indices.size());
 }
 
 void ClothMesh::draw_lines(Kind kind) const {

@@ -72,6 +72,7 @@ Collider collider_at(const Collider& collider, double time) {
   now.friction = collider.friction;
   now.offset = collider.offset;
   now.cuts = collider.cuts;
+  now.color = collider.color;
   return now;
 }
 

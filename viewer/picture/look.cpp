@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace weft::viewer {
 
@@ -16,23 +17,41 @@ Vec3f turned(Vec3f color, float angle) {
   return {std::max(c.x, 0.0f), std::max(c.y, 0.0f), std::max(c.z, 0.0f)};
 }
 
-}  // namespace
-
-ClothColors colors_of(const LookSettings& settings, std::size_t cloth) {
-  constexpr float kGoldenAngle = 2.399963f;  // no two of a few hues come near each other
-  if (cloth > 0 && cloth <= settings.other_colors.size()) return settings.other_colors[cloth - 1];
-  const float angle = kGoldenAngle * static_cast<float>(cloth);
-  return {turned(settings.colors.front, angle), turned(settings.colors.back, angle)};
+// As scenes have it.
+std::string text_of(Vec3f linear) {
+  const auto encode = [](float c) {
+    const float s = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
+    return static_cast<int>(std::lround(255 * std::clamp(s, 0.0f, 1.0f)));
+  };
+  char text[32];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", encode(linear.x), encode(linear.y),
+                encode(linear.z));
+  return text;
 }
 
-void choose_colors(LookSettings& settings, std::size_t cloth, const ClothColors& colors) {
-  if (cloth == 0) {
-    settings.colors = colors;
-    return;
-  }
-  while (settings.other_colors.size() < cloth)
-    settings.other_colors.push_back(colors_of(settings, settings.other_colors.size() + 1));
-  settings.other_colors[cloth - 1] = colors;
+}  // namespace
+
+ClothColors colors_of(const Cloth& cloth, std::size_t number) {
+  constexpr float kGoldenAngle = 2.399963f;  // no two of a few hues come near each other
+  const float angle = kGoldenAngle * static_cast<float>(number);
+  ClothColors colors;
+  colors = {turned(colors.front, angle), turned(colors.back, angle)};
+  if (const auto front = linear_color(cloth.color.front))
+    colors.front = colors.back = to_float(*front);
+  if (const auto back = linear_color(cloth.color.back)) colors.back = to_float(*back);
+  return colors;
+}
+
+Vec3f color_of(const Collider& body) {
+  const auto given = linear_color(body.color);
+  return given ? to_float(*given) : kBodyColor;
+}
+
+std::string drawn_color(const Scene& scene, const std::string& place) {
+  const std::size_t number = std::stoul(place.substr(place.find('/', 1) + 1));
+  if (place.starts_with("/colliders/")) return text_of(color_of(scene.colliders[number]));
+  const ClothColors colors = colors_of(scene.cloths[number], number);
+  return text_of(place.ends_with("/front") ? colors.front : colors.back);
 }
 
 }  // namespace weft::viewer

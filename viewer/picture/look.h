@@ -4,7 +4,6 @@
 #include <array>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "picture/linear.h"
 
@@ -50,18 +49,15 @@ inline const Look* find_look(std::string_view name) {
 enum class Weave { plain, twill, satin, leather };
 
 // How much is done for a picture: `automatic`, what is quick on this machine; `quick`, coarse while things move,
-// and no more than needed at rest; `fine`, with ambient occlusion and softer shadows.
+// and no more than needed at rest; `fine`, with ambient occlusion, softer shadows and the cloth's thickness.
 enum class Quality { automatic, quick, standard, fine };
 
 // The two sides of a cloth; linear.
 struct ClothColors {
   Vec3f front{0.56f, 0.07f, 0.06f}, back{0.50f, 0.20f, 0.12f};
-  friend bool operator==(const ClothColors&, const ClothColors&) = default;
 };
 
 struct LookSettings {
-  ClothColors colors;                     // of the first cloth
-  std::vector<ClothColors> other_colors;  // of those after it, as far as they were chosen
   float roughness = 0.55f;
   float metallic = 0;
   bool maps = true;  // look pbr: base colour, metallic, roughness and normals from maps
@@ -73,7 +69,8 @@ struct LookSettings {
   float sheen = 0.3f;          // of fibres
   float translucency = 0.22f;  // share of light that shines through
   Quality quality = Quality::automatic;
-  bool occlusion = false;      // ambient, of the picture that is drawn
+  bool fine =
+      false;  // the picture that is drawn: ambient occlusion, and the cloth's thickness at its border
   float height_scale = 0.01f;  // m
   float texture_repeats = 3;   // over the cloth
   float height_repeats = 1;
@@ -92,9 +89,14 @@ struct LookSettings {
   friend bool operator==(const LookSettings&, const LookSettings&) = default;
 };
 
-// Where none were chosen, the first cloth's with another hue, so that cloths are told apart.
-ClothColors colors_of(const LookSettings& settings, std::size_t cloth);
-void choose_colors(LookSettings& settings, std::size_t cloth, const ClothColors& colors);
+// Of the scene's cloth with this number. Where none are given, the standard ones with another hue for each, so
+// that cloths are told apart.
+ClothColors colors_of(const Cloth& cloth, std::size_t number);
+inline constexpr Vec3f kBodyColor{0.28f, 0.30f, 0.33f};
+// Of a body, or the standard one.
+Vec3f color_of(const Collider& body);
+// The colour that is drawn for a place of the scene, "/cloths/0/color/back" or "/colliders/0/color": "#rrggbb".
+std::string drawn_color(const Scene& scene, const std::string& place);
 
 inline constexpr Vec3f kStructuralColor{0.02f, 0.05f, 0.25f};
 inline constexpr Vec3f kShearColor{0.75f, 0.20f, 0.02f};

@@ -18,11 +18,12 @@ class ClothMesh {
   ClothMesh();
 
   // Computes the surface as the look needs it and uploads it; the triangles only when they change.
-  // `scene`: numbers of topology belong to one scene.
+  // `scene`: numbers of topology belong to one scene. `thickness` [m]: of the rim that is drawn; 0: none is.
   void update(const ClothCopy& cloth, std::uint64_t scene, const Cloth& description,
-              const Look& look, Sampling sampling);
+              const Look& look, Sampling sampling, float thickness);
 
   void draw_surface() const;
+  void draw_rim() const;
   // One kind of constraint, as lines between particles; needs refinement 1.
   enum Kind { structural, shear, bend };
   void draw_lines(Kind kind) const;
@@ -36,19 +37,21 @@ class ClothMesh {
     std::size_t offset = 0;  // indices
   };
 
+  void draw_triangles(const Buffer& indices, std::size_t count) const;
   void upload_vertices();
-  // `uv`: of the vertices; points beside tears have those of their particles.
+  // `uv`: of the vertices; points beside tears have those of their particles, a rim those of the border.
   void upload_coordinates(std::vector<float> uv, const ClothCopy& cloth);
   void upload_triangles();
   void upload_lines(const ClothCopy& cloth, const Cloth& description);
 
   ClothSurface surface_;
   VertexArray array_;
-  Buffer vertices_, coordinates_, indices_, tear_indices_, line_indices_;
+  Buffer vertices_, coordinates_, indices_, tear_indices_, rim_indices_, line_indices_;
   std::vector<std::uint32_t> uploaded_;  // triangles that the card has
   Range lines_[3];
   int columns_ = 0, rows_ = 0;
   Sampling sampling_{0, 0};
+  bool rim_ = false;
   std::uint64_t topology_ = ~std::uint64_t{0}, scene_ = ~std::uint64_t{0};
 };
 

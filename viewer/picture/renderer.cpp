@@ -15,7 +15,6 @@ namespace {
 
 const Vec3f kLight = normalized({-0.42f, 0.80f, 0.50f});
 constexpr Vec3f kLightColor{1.05f, 0.98f, 0.88f};
-constexpr Vec3f kBodyColor{0.28f, 0.30f, 0.33f};
 
 // As common.glsl's block Frame.
 struct FrameBlock {
@@ -139,7 +138,7 @@ void Renderer::draw(const FrameData& frame_data, const Setting& setting, const L
   if (settings.ground && setting.has_ground) draw_ground(setting);  // it may be seen through
   target.resolve();
   constexpr float kReach = 0.1f;  // sizes of the scene
-  if (settings.occlusion)
+  if (settings.fine)
     occlusion_.apply(target, shader("occlusion"), shader("occlude"), camera, kReach * setting.size);
 }
 
@@ -147,15 +146,20 @@ void Renderer::update_meshes(const FrameData& frame_data, const Setting& setting
                              const LookSettings& settings) {
   const bool shown = shown_scene_ == frame_data.scene_serial && shown_frame_ == frame_data.frame &&
                      shown_change_ == frame_data.change && shown_look_ == &look &&
-                     shown_refinement_ == settings.refinement && shown_detail_ == settings.detail;
+                     shown_refinement_ == settings.refinement && shown_detail_ == settings.detail &&
+                     shown_fine_ == settings.fine;
   if (shown) return;
   const double start = cpu_ms();
   cloths_.resize(frame_data.cloths.size());
+  thicknesses_.resize(cloths_.size());
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     const ClothCopy& cloth = frame_data.cloths[c];
     const Sampling sampling = settings.refinement > 0 ? Sampling{settings.refinement, 1}
                                                       : sampling_of(cloth, settings.detail);
-    cloths_[c].update(cloth, frame_data.scene_serial, frame_data.scene->cloths[c], look, sampling);
+    const Cloth& description = frame_data.scene->cloths[c];
+    const bool thick = settings.fine && look.draw == Look::Draw::surface;
+    thicknesses_[c] = thick ? thickness_of(description) : 0;
+    cloths_[c].update(cloth, frame_data.scene_serial, description, look, sampling, thicknesses_[c]);
   }
   const Cloth& first = frame_data.scene->cloths.front();
   const double mass = first.mesh.given()
@@ -180,6 +184,7 @@ void Renderer::update_meshes(const FrameData& frame_data, const Setting& setting
   shown_look_ = &look;
   shown_refinement_ = settings.refinement;
   shown_detail_ = settings.detail;
+  shown_fine_ = settings.fine;
   upload_ms_ = cpu_ms() - start;
 }
 
@@ -267,8 +272,6 @@ void Renderer::upload_frame(const Setting& setting, const LookSettings& settings
 
 void Renderer::set_material(const Shader& shader, const LookSettings& settings, bool cloth) {
   shader.use();
-  shader.set("u_color", kBodyColor);
-  shader.set("u_back_color", kBodyColor);
   shader.set("u_roughness", settings.roughness);
   shader.set("u_metallic", settings.metallic);
   shader.set("u_maps", settings.maps ? 1.0f : 0.0f);
@@ -282,6 +285,7 @@ void Renderer::set_material(const Shader& shader, const LookSettings& settings, 
   shader.set("u_normal_scale", settings.normal_scale);
   shader.set("u_place", Vec3f{});
   shader.set("u_raise", 0.0f);
+  shader.set("u_half_thickness", 0.0f);
   const bool heights = shader.name() == "bump" || shader.name() == "displacement";
   const float repeats = heights ? settings.height_repeats : settings.texture_repeats;
   shader.set("u_texture_scale", repeats, repeats);
@@ -308,20 +312,26 @@ void Renderer::draw_bodies(const Look& look, const LookSettings& settings, const
     const Plane* plane = std::get_if<Plane>(&body.collider.shape);
     if (plane && !in_front_of(*plane, camera.eye())) continue;
     const bool closed = !plane && !std::holds_alternative<MeshBody>(body.shape);
+    material.set("u_color", color_of(body.collider));
+    material.set("u_back_color", color_of(body.collider));
     if (closed) glEnable(GL_CULL_FACE);
     body.draw(material);
     glDisable(GL_CULL_FACE);
   }
 }
 
-void Renderer::draw_faces(const ClothMesh& cloth, const Shader& material, float height) {
+void Renderer::draw_faces(const ClothMesh& cloth, const Shader& material, float height,
+                          float thickness) {
   glEnable(GL_CULL_FACE);
-  glCullFace(GL_BACK);
-  material.set("u_raise", height);
-  cloth.draw_surface();
-  glCullFace(GL_FRONT);
-  material.set("u_raise", -height);
-  cloth.draw_surface();
+  for (const auto& [hidden, side] : {std::pair(GL_FRONT, -1.0f), std::pair(GL_BACK, 1.0f)}) {
+    glCullFace(static_cast<GLenum>(hidden));
+    material.set("u_raise", side * height);
+    material.set("u_half_thickness", side * thickness / 2);
+    cloth.draw_surface();
+  }
+  material.set("u_raise", 0.0f);
+  material.set("u_half_thickness", 0.0f);
+  cloth.draw_rim();
   glDisable(GL_CULL_FACE);
 }
 
@@ -339,13 +349,14 @@ void Renderer::draw_cloths(const FrameData& frame_data, const Look& look,
   for (std::size_t c = 0; c < cloths_.size(); ++c) {
     const ClothMesh& cloth = cloths_[c];
     const auto [along_u, along_v] = sides_of(frame_data.scene->cloths[c]);
-    const ClothColors colors = colors_of(settings, c);
+    const ClothColors colors = colors_of(frame_data.scene->cloths[c], c);
     material.set("u_color", colors.front);
     material.set("u_back_color", colors.back);
     material.set("u_threads", settings.threads * along_u, settings.threads * along_v);
-    if (look.draw == Look::Draw::surface && !look.raised) cloth.draw_surface();
-    if (look.draw == Look::Draw::surface && look.raised)
-      draw_faces(cloth, material, settings.height_scale);
+    const bool faces = look.raised || thicknesses_[c] > 0;
+    if (look.draw == Look::Draw::surface && !faces) cloth.draw_surface();
+    if (look.draw == Look::Draw::surface && faces)
+      draw_faces(cloth, material, look.raised ? settings.height_scale : 0, thicknesses_[c]);
     if (look.draw == Look::Draw::points) cloth.draw_points();
     for (int kind = 0; kind < 3 && look.draw == Look::Draw::lines; ++kind) {
       if (!kinds[kind].first) continue;

@@ -53,8 +53,10 @@ class Renderer {
   void set_material(const Shader& shader, const LookSettings& settings, bool cloth);
   void draw_ground(const Setting& setting);
   void draw_bodies(const Look& look, const LookSettings& settings, const Camera& camera);
-  // The two faces of a cloth, each raised to its side.
-  static void draw_faces(const ClothMesh& cloth, const Shader& material, float height);
+  // The two faces of a cloth, each raised to its side by half of the thickness and up to `height` [m] more, and the
+  // rim between them.
+  static void draw_faces(const ClothMesh& cloth, const Shader& material, float height,
+                         float thickness);
   void draw_cloths(const FrameData& frame_data, const Look& look, const LookSettings& settings,
                    const RenderTarget& target, const Setting& setting);
 
@@ -79,6 +81,7 @@ class Renderer {
   VertexArray nothing_;  // for the background's triangle
 
   std::vector<ClothMesh> cloths_;
+  std::vector<float> thicknesses_;  // m, as drawn; 0: a surface
   struct Body {
     Collider collider;  // where it stands
     Shape shape;        // about its place, as the mesh is
@@ -100,6 +103,7 @@ class Renderer {
   std::uint64_t shown_change_ = 0;
   const Look* shown_look_ = nullptr;
   int shown_refinement_ = -1, shown_detail_ = 0;
+  bool shown_fine_ = false;
 };
 
 }  // namespace weft::viewer

@@ -22,6 +22,10 @@ struct ClothSurface {
   std::vector<std::uint32_t> indices;
   // Triangles beside the tears; their vertices come after those of the lattice.
   std::vector<std::uint32_t> tear_indices;
+  // Sides of triangles that no other triangle has, follow find_border(); and the band along them, whose vertices
+  // come last, each with what `rim_of` it has.
+  std::vector<std::array<std::uint32_t, 2>> border;
+  std::vector<std::uint32_t> rim_indices, rim_of;
 };
 
 // How many vertices there are for a square of the grid, or squares for a vertex: a coarse grid is
@@ -51,6 +55,13 @@ void build_torn_surface(const ClothCopy& cloth, ClothSurface& surface);
 
 // Adds the vertices beside the tears to a surface that is complete otherwise.
 void add_tear_boundary(const ClothCopy& cloth, ClothSurface& surface);
+// How thick a cloth is [m]: as far as its layers keep apart, or, where they do not meet, as fabrics of its weight are.
+float thickness_of(const Cloth& cloth);
+// Finds where the cloth ends, by the triangles of a surface that is complete otherwise. Between a triangle beside a
+// tear and its neighbours, which have vertices of their own, the cloth ends, too: bands there are within the cloth.
+void find_border(ClothSurface& surface);
+// Adds the band along the border, from half of the width [m] on one side of the surface to half on the other.
+void add_rim(float width, ClothSurface& surface);
 // The vertex of the lattice for a particle, j*stride + i.
 std::size_t vertex_of(const ClothCopy& cloth, const ClothSurface& surface, std::uint32_t particle);
 

@@ -92,6 +92,13 @@ void Player::open(Scene scene) {
 
 void Player::change(Scene scene) {
   attempt([&] {
+    if (moves_alike(scene, scene_)) {
+      simulation_->draw_as(scene);
+      scene_ = std::move(scene);
+      show_scene();
+      ++serial_;
+      return;
+    }
     leave_past();
     if (simulation_->frame() == 0 && !outputs_.recording()) {
       start(std::move(scene));
@@ -218,11 +225,11 @@ void Player::finish_recording() {
   attempt([&] { tell_written(outputs_.finish_recording()); });
 }
 
-void Player::export_to(const std::string& path, std::int64_t first,
+void Player::export_to(const std::string& path, std::optional<std::int64_t> first,
                        std::optional<std::int64_t> last) {
   attempt([&] {
-    if (simulation_->frame() > first) open(scene_);
-    outputs_.export_to(path, *simulation_, first, last);
+    if (first && simulation_->frame() > *first) open(scene_);
+    outputs_.export_to(path, *simulation_, first.value_or(simulation_->frame()), last);
     if (last && simulation_->frame() >= *last) finish_export();
   });
 }

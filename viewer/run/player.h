@@ -41,7 +41,8 @@ class Player {
 
   // Exports the animation of the frames first … last, or until finish_export(), in a format of weft/output.h.
   // Where it is past the first, the scene starts anew.
-  void export_to(const std::string& path, std::int64_t first, std::optional<std::int64_t> last);
+  void export_to(const std::string& path, std::optional<std::int64_t> first,
+                 std::optional<std::int64_t> last);
   void finish_export();
 
   // No frame begins at or after this time of the simulation [s]: a film waits there for its picture.

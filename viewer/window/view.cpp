@@ -92,8 +92,8 @@ void View::draw(Workspace& workspace, int x, int y, int width, int height) {
       target_.emplace(w, h, quality.samples);
     LookSettings settings = workspace.settings;
     settings.shadow_softness = quality.shadow_softness;
-    settings.occlusion = coarseness == 0 && fine(settings);
-    if (settings.occlusion) settings.shadow_softness = kSoftest;
+    settings.fine = coarseness == 0 && fine(settings);
+    if (settings.fine) settings.shadow_softness = kSoftest;
     settings.shadow_size = quality.shadow_size;
     settings.detail = quality.detail;
     settings.tessellation = std::min(settings.tessellation, quality.tessellation);
@@ -121,8 +121,8 @@ void View::took(double ms) {
 Picture View::picture(const Workspace& workspace, int width, int height, int samples) {
   const RenderTarget target(width, height, samples);
   LookSettings settings = workspace.settings;
-  settings.occlusion = fine(settings);
-  if (settings.occlusion) settings.shadow_softness = kSoftest;
+  settings.fine = fine(settings);
+  if (settings.fine) settings.shadow_softness = kSoftest;
   renderer_.draw(workspace.frame_data(), workspace.setting(), *workspace.look, settings,
                  workspace.camera, target);
   return target.read();

@@ -230,14 +230,18 @@ void Workspace::give(const Input& input) {
   session_->post([input](Player& player) { player.hand(input); });
 }
 
-void Workspace::start_export(const std::string& path, std::int64_t first,
+void Workspace::export_frame(const std::string& path) {
+  start_export(path, {}, 0);  // the last is past: one frame, and the end
+}
+
+void Workspace::start_export(const std::string& path, std::optional<std::int64_t> first,
                              std::optional<std::int64_t> last) {
   if (same_file(path, record_)) {
     messages.warn("Not exported: the recording goes to " + printable(path), now_);
     return;
   }
   const std::string until = last ? " up to frame " + std::to_string(*last) : " until you end it";
-  messages.tell("The animation goes to " + full_path(path) + until, now_);
+  if (first || !last) messages.tell("The animation goes to " + full_path(path) + until, now_);
   session_->post([=](Player& player) { player.export_to(path, first, last); });
 }
 

@@ -54,8 +54,12 @@ class Workspace {
   void give(const Input& input);
 
   // Writes the animation of the frames first … last to a file in a format of weft/output.h; without a last one
-  // until end_export(). Where the scene is past the first, it starts anew.
-  void start_export(const std::string& path, std::int64_t first, std::optional<std::int64_t> last);
+  // until end_export(). Where the scene is past the first, it starts anew; without a first one it goes on from the
+  // frame that it has come to.
+  void start_export(const std::string& path, std::optional<std::int64_t> first,
+                    std::optional<std::int64_t> last);
+  // That frame alone.
+  void export_frame(const std::string& path);
   void end_export();
 
   void next_look(int step);

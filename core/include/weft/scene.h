@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -118,6 +119,16 @@ enum class StrainLimitOrder { colours, course, strict };
 // `area` where density gives the masses, `equal` where they are given per particle.
 enum class Lumping { automatic, area, equal };
 
+// The colours of a cloth's two sides, "#rrggbb" as displays have them (sRGB); "": who draws it chooses. The
+// simulation does not look at them.
+struct ClothColor {
+  std::string front, back;
+  friend bool operator==(const ClothColor&, const ClothColor&) = default;
+};
+
+// Red, green and blue, 0 … 1 in proportion to light, of a colour as ClothColor has it; nothing of any other text.
+std::optional<std::array<double, 3>> linear_color(const std::string& text);
+
 struct Cloth {
   Grid grid;
   ClothMesh mesh;              // given: in place of the grid
@@ -149,6 +160,7 @@ struct Cloth {
   bool sewing = false;      // edges of a mesh file that belong to no face are seams
   std::vector<Seam> seams;  // of a mesh, besides those
   Pressure pressure{};      // of a closed mesh
+  ClothColor color{};
   friend bool operator==(const Cloth&, const Cloth&) = default;
 };
 
@@ -181,6 +193,7 @@ struct Collider {
   std::string animation{};
   // It turns about an axis, where the scene has its shape, and then goes along its keys, axis and all.
   Rotation rotate{};
+  std::string color{};  // as ClothColor has them; "": who draws it chooses
   friend bool operator==(const Collider&, const Collider&) = default;
 };
 
@@ -290,6 +303,16 @@ std::vector<Pin> single_pins(const Cloth& cloth);
 
 // Mass of particle (i,j) of a grid [kg] by the cloth's masses, particle_mass, or density and lumping.
 double particle_mass(const Cloth& cloth, int i, int j);
+
+// What a cloth weighs [kg/m²]: of a mesh its density, of a grid a particle in the middle over its square.
+double area_density(const Cloth& cloth);
+
+// Takes over what the simulation does not look at: name, about, camera, and the colours of cloths and colliders,
+// each from the one with its number.
+void draw_as(const Scene& from, Scene& to);
+
+// Whether two scenes differ at most in what the simulation does not look at.
+bool moves_alike(const Scene& a, Scene b);
 
 // Whether a cloth's border counts half (Lumping::area, be it by Lumping::automatic).
 bool lumps_by_area(const Cloth& cloth);

@@ -136,6 +136,9 @@ class Simulation {
   // Otherwise it starts anew. What is grabbed or carried is let go. Throws as the constructor does,
   // and then nothing has changed.
   void set_scene(Scene scene);
+  // Takes over what the simulation does not look at (weft::draw_as) of another scene: no bit of the run changes.
+  // Throws SceneError for a scene that is not valid.
+  void draw_as(const Scene& scene);
 
   // Everything measured so far (weft/report.h). Evaluates energies and strains now. Without
   // `contacts` penetration and crossings, which cost most, are left out.

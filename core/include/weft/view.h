@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct ClothView {
   std::span<const std::array<std::uint32_t, 3>> tear_triangles;
   std::span<const std::array<float, 3>> tear_points;  // from the view's origin [m]
   std::span<const std::uint32_t> tear_particles;
+  // Red, green and blue of its front, 0 … 1 in proportion to light, where the scene gives a colour.
+  std::optional<std::array<double, 3>> color;
 };
 
 struct View {

@@ -90,6 +90,11 @@ void PlacedScene::set_solver(const Solver& solver) {
   if (given_) given_->solver = solver;
 }
 
+void PlacedScene::draw_as(const Scene& scene) {
+  weft::draw_as(scene, simulated_);
+  if (given_) weft::draw_as(scene, *given_);
+}
+
 std::string PlacedScene::steady() {
   const std::string changed = steady_jacobi(simulated_);
   if (given_) given_->solver = simulated_.solver;

@@ -31,6 +31,8 @@ class PlacedScene {
   // A collider goes another way, by keys where the scene was put.
   void set_path(std::size_t collider, std::vector<Key> keys);
   void set_solver(const Solver& solver);
+  // Takes over what is only drawn (weft::draw_as).
+  void draw_as(const Scene& scene);
   // Puts settings in the place of those that are not stable; returns what to tell, "" where nothing changed.
   std::string steady();
 

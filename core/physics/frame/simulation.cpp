@@ -44,6 +44,11 @@ Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
+void Simulation::draw_as(const Scene& scene) {
+  if (auto faults = validate(scene); !faults.empty()) throw SceneError(std::move(faults));
+  state_->placed.draw_as(scene);
+}
+
 void Simulation::advance_frame() {
   state_->advance_frame();
 }
@@ -98,6 +103,7 @@ View Simulation::view() const {
     c.vy = l.v.component(1);
     c.vz = l.v.component(2);
     c.inverse_mass = state_->masses(n).span();
+    c.color = linear_color(scene().cloths[n].color.front);
     if (const DrawnMesh* drawn = step->model().drawn_mesh()) {
       c.lanes = drawn->lanes;
       c.triangles = drawn->triangles;

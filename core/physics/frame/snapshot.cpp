@@ -197,7 +197,9 @@ void change_cuts(const Torn& before, const Torn& after, Torn& torn) {
 
 void Simulation::set_scene(Scene scene) {
   Simulation next(std::move(scene), state_->options);
-  const Scene &before = this->scene(), after = next.scene();
+  const Scene after = next.scene();
+  Scene before = this->scene();
+  weft::draw_as(after, before);
   bool same = before.cloths.size() == after.cloths.size();
   for (std::size_t n = 0; same && n < after.cloths.size(); ++n)
     same = columns_of(before.cloths[n]) == columns_of(after.cloths[n]) &&
