@@ -1,12 +1,10 @@
 // continuum: whole-run wall time against distance from the sheet that a grid stands for, with resolution, method
 // and substeps all free.
 //
-// The truth is Richardson's limit of two grids in double precision (reference.h), of 129 and 257 points a side;
-// coarser grids, whose points are among those, are compared with it there. For each problem the program prints
-// the settings that no other beats in both time and error, what each method needs for some errors, and how the
-// error falls with the spacing; it writes continuum_NAME.svg (and .png) and continuum.csv into --out.
-#include <unistd.h>
-
+// The sheets and what they tend to are in sheets.h: Richardson's limit of grids in double precision, or a closed
+// form. Grids are compared with it at their own points. For each sheet the program prints the settings that no
+// other beats in both time and error, what each method needs for some errors, and how the error falls with the
+// spacing; it writes continuum_NAME.svg (and .png) and continuum.csv into --out.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -15,101 +13,22 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <functional>
+#include <stdexcept>
 
 #include "machine.h"
 #include "peer.h"
+#include "peer_blender.h"
 #include "plot.h"
+#include "sheets.h"
 #include "trial.h"
 
 namespace {
 
 using bench::Problem;
 using bench::Setting;
-
-constexpr int kFinest = 129;  // points a side of the coarser grid of the truth
-
-struct Sheet {
-  std::string name, about;
-  bool springs;  // or a membrane
-  std::function<void(weft::Cloth&)> fabric;
-};
-
-// A sheet of 1 m, held along one side, falls for half a second.
-const std::vector<Sheet>& sheets() {
-  static const std::vector<Sheet> all{
-      {"curtain", "springs: structural 1000, shear 500 N/m; D = 1e-3 N m", true,
-       [](weft::Cloth& c) {
-         c.stiffness = {1000, 500, 0};
-         c.bending = 1e-3;
-       }},
-      {"curtain_membrane", "membrane: C11 = C22 = 1500, C12 = C66 = 500 N/m; D = 1e-3 N m", false,
-       [](weft::Cloth& c) {
-         c.membrane = {1500, 1500, 500, 500, 0};
-         c.bending = 1e-3;
-       }},
-      {"woven", "membrane: C11 = 3000, C22 = 2000, C12 = 200, C66 = 80 N/m; D = 2e-4 N m", false,
-       [](weft::Cloth& c) {
-         c.membrane = {3000, 2000, 200, 80, 0};
-         c.bending = 2e-4;
-       }},
-  };
-  return all;
-}
-
-Problem problem_of(const Sheet& sheet, int n) {
-  Problem p;
-  p.name = sheet.name;
-  p.about = sheet.about;
-  p.size = n;
-  p.question.seconds = 0.5;
-  p.question.tolerance = 2e-6;
-  p.question.most_halvings = 2;
-  weft::Scene& scene = p.question.scene;
-  scene.gravity = {2, -9, 3};
-  scene.time.seconds = 0.5;
-  weft::Cloth& cloth = scene.cloths.emplace_back();
-  cloth.grid = {n, n, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 0};
-  cloth.density = 0.3;
-  cloth.drag = 1;
-  sheet.fabric(cloth);
-  for (int j = 0; j < n; ++j) cloth.pins.push_back({0, j, {}});
-  return p;
-}
-
-// The points of a grid that a coarser one of n points a side has, too.
-std::vector<double> at_points_of(int n, const std::vector<double>& fine, int finer) {
-  std::vector<double> some;
-  const int step = (finer - 1) / (n - 1);
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i)
-      for (int k = 0; k < 3; ++k)
-        some.push_back(fine[3 * std::size_t(j * step * finer + i * step) + std::size_t(k)]);
-  return some;
-}
-
-struct Truth {
-  std::vector<double> positions;  // of kFinest points a side
-  double error = 0;               // m
-};
-
-// The error is of second order in the spacing: a third of what halving it changes is left in the finer grid. What
-// is left of the limit is less by a factor that the order's own constancy tells; a tenth is far above it.
-Truth truth_of(const Sheet& sheet) {
-  const bench::Reference coarse =
-      reference(problem_of(sheet, kFinest).question, WEFT_REFERENCE_CACHE);
-  const bench::Reference fine =
-      reference(problem_of(sheet, 2 * kFinest - 1).question, WEFT_REFERENCE_CACHE);
-  const std::vector<double> at = at_points_of(kFinest, fine.positions, 2 * kFinest - 1);
-  Truth truth{at, 0};
-  for (std::size_t k = 0; k < at.size(); ++k)
-    truth.positions[k] += (at[k] - coarse.positions[k]) / 3;
-  const double left = bench::distance(at, truth.positions).rms;
-  truth.error = left / 10 + coarse.error + fine.error;
-  std::printf("truth: %d and %d points a side, %.1e m apart from the limit; known to %.1e m\n",
-              kFinest, 2 * kFinest - 1, left, truth.error);
-  return truth;
-}
+using bench::Sheet;
+using bench::Trial;
+using bench::Truth;
 
 Setting setting(const std::string& name, int substeps) {
   Setting s;
@@ -117,32 +36,52 @@ Setting setting(const std::string& name, int substeps) {
   s.substeps = substeps;
   return s;
 }
-Setting lines(int order, int substeps) {
-  Setting s = setting(order == 1 ? "lines" : "lines, order 2", substeps);
+
+Setting compliant(weft::Sweep sweep, int order, int substeps) {
+  const std::string name = sweep == weft::Sweep::line ? "lines" : "Gauss-Seidel";
+  Setting s = setting(order == 1 ? name : name + ", order 2", substeps);
   s.solver.method = weft::Method::compliant;
-  s.solver.sweep = weft::Sweep::line;
+  s.solver.sweep = sweep;
   s.solver.order = order;
   return s;
 }
 
-std::vector<Setting> settings_of(const Sheet& sheet, bool quick) {
-  std::vector<Setting> all{setting(sheet.springs ? "springs" : "membrane", weft::kAutoSubsteps)};
-  if (sheet.springs) all.push_back(setting("springs, all alike", weft::kAutoSubsteps));
-  for (const int substeps : {4, 8, 16, 32, 64, 128})
-    if (!quick || substeps == 16) all.push_back(lines(2, substeps));
-  for (const int substeps : {16, 64})
-    if (!quick) all.push_back(lines(1, substeps));
+constexpr const char* kAlike = ", all alike";  // edges that do not count half
+
+const char* forces_of(const weft::Cloth& cloth) {
+  return cloth.membrane.given() ? "membrane" : "springs";
+}
+
+std::vector<Setting> settings_of(const weft::Cloth& cloth, bool quick) {
+  constexpr weft::Sweep kLine = weft::Sweep::line, kGaussSeidel = weft::Sweep::gauss_seidel;
+  const std::string forces = forces_of(cloth);
+  std::vector<Setting> all{setting(forces, weft::kAutoSubsteps),
+                           setting(forces + kAlike, weft::kAutoSubsteps)};
+  if (quick) {
+    all.push_back(compliant(kLine, 2, 16));
+    all.push_back(compliant(kGaussSeidel, 1, 16));
+    return all;
+  }
+  for (const int substeps : {4, 8, 16, 32, 64, 128}) all.push_back(compliant(kLine, 2, substeps));
+  for (const int substeps : {16, 64}) all.push_back(compliant(kLine, 1, substeps));
+  for (const int substeps : {16, 64, 256}) all.push_back(compliant(kGaussSeidel, 1, substeps));
+  for (const int substeps : {16, 64}) all.push_back(compliant(kGaussSeidel, 2, substeps));
   return all;
 }
 
-// Bullet's soft body, of springs as it knows them, with one solver iteration for each of our substeps.
-bench::Trial bullet(const Problem& p, int substeps, const std::vector<double>& truth) {
-  bench::Trial t;
+Trial trial_of(const Problem& p, const std::string& solver, int substeps, int frames) {
+  Trial t;
   t.problem = p.name;
   t.size = p.size;
-  t.setting = setting("Bullet", substeps);
+  t.setting = setting(solver, substeps);
   t.substeps = substeps;
-  t.frames = 30;
+  t.frames = frames;
+  return t;
+}
+
+// Bullet's soft body, of springs as it knows them, with one solver iteration for each of our substeps.
+Trial bullet(const Problem& p, int substeps, const std::vector<double>& truth) {
+  Trial t = trial_of(p, "Bullet", substeps, int(std::lround(p.question.seconds * 60)));
   for (int repeat = 0; repeat < 3; ++repeat) {
     const auto peer = bench::make_bullet_peer(p.question.scene, substeps);
     if (!peer) {
@@ -154,35 +93,77 @@ bench::Trial bullet(const Problem& p, int substeps, const std::vector<double>& t
     const std::chrono::duration<double, std::milli> ms = std::chrono::steady_clock::now() - start;
     t.run_ms = repeat == 0 ? ms.count() : std::min(t.run_ms, ms.count());
     t.rms = bench::distance(peer->positions(), truth).rms;
+    if (!(t.rms < 10)) t.note = "blew up";
   }
   return t;
 }
 
-std::vector<bench::Trial> run_sheet(const Sheet& sheet, const Truth& truth, bool quick,
-                                    double seconds) {
-  std::vector<bench::Trial> trials;
-  const std::vector<int> sizes = quick ? std::vector{17, 33} : std::vector{9, 17, 33, 65, 129};
-  for (const int n : sizes) {
-    const std::vector<double> at = at_points_of(n, truth.positions, kFinest);
-    for (const Setting& s : settings_of(sheet, quick)) {
-      Problem p = problem_of(sheet, n);
-      if (s.method == "springs, all alike")
-        p.question.scene.cloths[0].lumping = weft::Lumping::equal;
+// Blender's cloth, of springs and angular bending, one run of each setting.
+void add_blender(const Problem& p, const std::vector<bench::BlenderSetting>& settings,
+                 const std::vector<double>& truth, std::vector<Trial>& trials) {
+  std::vector<bench::BlenderRun> runs;
+  try {
+    runs = bench::run_blender(p.question.scene, p.question.seconds, settings);
+  } catch (const std::runtime_error& e) {
+    std::fprintf(stderr, "continuum: %s with %d points is without %s\n", p.name.c_str(), p.size,
+                 e.what());
+  }
+  for (std::size_t n = 0; n < runs.size(); ++n) {
+    Trial t = trial_of(p, "Blender", settings[n].substeps, settings[n].frames);
+    t.substeps = settings[n].substeps * settings[n].frames / settings[0].frames;
+    t.run_ms = runs[n].ms;
+    if (runs[n].positions.size() == truth.size())
+      t.rms = bench::distance(runs[n].positions, truth).rms;
+    else
+      t.note = "blew up";
+    trials.push_back(t);
+  }
+}
+
+// Why a solver that knows springs alone does not take part, "" where it does.
+std::string without_peer(const Sheet& sheet, const std::string& own) {
+  if (!sheet.springs) return "springs of one stiffness do not make this fabric";
+  return own;
+}
+
+void add_peers(const Sheet& sheet, int points, bool quick, const std::vector<double>& truth,
+               std::vector<Trial>& trials) {
+  if (points > 65 || !sheet.springs) return;
+  Problem p = problem_of(sheet, points);
+  weft::Cloth& cloth = p.question.scene.cloths[0];
+  cloth.membrane = {};
+  cloth.stiffness = *sheet.springs;
+  if (sheet.without_bullet.empty())
+    for (const int substeps : {1, 16}) trials.push_back(bullet(p, substeps, truth));
+  if (!bench::without_blender().empty()) return;
+  const int frames = int(std::lround(32 * sheet.seconds));
+  std::vector<bench::BlenderSetting> settings{{frames, 4}, {frames, 16}};
+  if (!quick && points <= 33) settings.insert(settings.end(), {{frames, 64}, {4 * frames, 64}});
+  add_blender(p, settings, truth, trials);
+}
+
+std::vector<Trial> run_sheet(const Sheet& sheet, const Truth& truth, bool quick, double seconds) {
+  std::vector<Trial> trials;
+  for (const int n : quick ? std::vector{17, 33} : sheet.sizes) {
+    const Problem plain = problem_of(sheet, n);
+    const weft::Cloth& cloth = plain.question.scene.cloths[0];
+    const std::vector<double> at = truth.at(cloth.grid);
+    for (const Setting& s : settings_of(cloth, quick)) {
+      Problem p = plain;
+      if (s.method.ends_with(kAlike)) p.question.scene.cloths[0].lumping = weft::Lumping::equal;
       trials.push_back(bench::run_trial(p, s, weft::Simd::best, 1, at, {seconds, 3, 30}));
     }
-    if (sheet.springs && n <= 65)
-      for (const int substeps : {1, 16})
-        trials.push_back(bullet(problem_of(sheet, n), substeps, at));
+    add_peers(sheet, n, quick, at, trials);
   }
   return trials;
 }
 
-void print_front(std::vector<bench::Trial> trials, bool all) {
+void print_front(std::vector<Trial> trials, bool all) {
   std::sort(trials.begin(), trials.end(),
-            [](const bench::Trial& a, const bench::Trial& b) { return a.run_ms < b.run_ms; });
+            [](const Trial& a, const Trial& b) { return a.run_ms < b.run_ms; });
   std::printf("\n| run [ms] | distance [m] | method | points a side | substeps | |\n");
   std::printf("|---:|---:|---|---:|---:|---|\n");
-  for (const bench::Trial& t : trials)
+  for (const Trial& t : trials)
     if (t.ok() && (all || t.on_front))
       std::printf("| %.2f | %.1e | %s | %d | %d | %s |\n", t.run_ms, t.rms,
                   t.setting.method.c_str(), t.size, t.substeps, t.on_front ? "front" : "");
@@ -191,9 +172,9 @@ void print_front(std::vector<bench::Trial> trials, bool all) {
 }
 
 // The fastest run of each method that comes so near.
-void print_needed(const std::vector<bench::Trial>& trials) {
+void print_needed(const std::vector<Trial>& trials) {
   std::vector<std::string> methods;
-  for (const bench::Trial& t : trials)
+  for (const Trial& t : trials)
     if (std::find(methods.begin(), methods.end(), t.setting.method) == methods.end())
       methods.push_back(t.setting.method);
   constexpr double kErrors[] = {1e-2, 1.6e-3, 4.5e-4};
@@ -202,7 +183,7 @@ void print_needed(const std::vector<bench::Trial>& trials) {
     std::printf("| %s |", method.c_str());
     for (const double error : kErrors) {
       double least = 0, nearest = 0;
-      for (const bench::Trial& t : trials) {
+      for (const Trial& t : trials) {
         if (t.setting.method != method || !t.ok()) continue;
         if (t.rms <= error && (least == 0 || t.run_ms < least)) least = t.run_ms;
         if (nearest == 0 || t.rms < nearest) nearest = t.rms;
@@ -217,11 +198,12 @@ void print_needed(const std::vector<bench::Trial>& trials) {
 }
 
 // How the error of automatic substeps falls with the spacing.
-void print_orders(const std::vector<bench::Trial>& trials) {
+void print_orders(const std::vector<Trial>& trials) {
   std::printf("\n| method | points a side: distance [m] (order) |\n|---|---|\n");
-  for (const std::string method : {"springs", "springs, all alike", "membrane"}) {
+  for (const std::string method :
+       {"springs", "springs, all alike", "membrane", "membrane, all alike"}) {
     double before = 0;
-    for (const bench::Trial& t : trials) {
+    for (const Trial& t : trials) {
       if (t.setting.method != method || !t.ok()) continue;
       if (before == 0) std::printf("| %s |", method.c_str());
       std::printf(" %d: %.1e", t.size, t.rms);
@@ -233,15 +215,15 @@ void print_orders(const std::vector<bench::Trial>& trials) {
 }
 
 void write(const std::string& folder, const Sheet& sheet, const Truth& truth,
-           const std::vector<bench::Trial>& trials, std::ofstream& csv) {
+           const std::vector<Trial>& trials, std::ofstream& csv) {
   bench::Plot plot;
-  plot.title = sheet.name + ": half a second on one thread";
+  plot.title = sheet.name + ": the whole run on one thread";
   char known[80];
   std::snprintf(known, sizeof known, "; the limit is known to %.0e m", truth.error);
   plot.subtitle = sheet.about + known;
   plot.x_label = "run [ms]";
   plot.y_label = "RMS distance from the continuum [m]";
-  for (const bench::Trial& t : trials) {
+  for (const Trial& t : trials) {
     if (!t.ok()) continue;
     auto series = std::find_if(plot.series.begin(), plot.series.end(),
                                [&](const auto& s) { return s.name == t.setting.method; });
@@ -256,9 +238,18 @@ void write(const std::string& folder, const Sheet& sheet, const Truth& truth,
   bench::write_plot(folder + "/continuum_" + sheet.name, plot);
 }
 
+void print_truth(const Sheet& sheet, const Truth& truth) {
+  std::printf("%s. The limit: %s; it is known to %.1e m.\n", sheet.about.c_str(), truth.how.c_str(),
+              truth.error);
+  for (const auto& [peer, why] : {std::pair{"Bullet", without_peer(sheet, sheet.without_bullet)},
+                                  {"Blender", without_peer(sheet, bench::without_blender())}})
+    if (!why.empty()) std::printf("Without %s: %s.\n", peer, why.c_str());
+}
+
 struct Command {
+  std::vector<std::string> sheets;
   bool quick = false, all = false;
-  double seconds = 0.5;
+  double seconds = 0.3;
   std::string out = ".";
 };
 
@@ -267,10 +258,14 @@ int run(const Command& c) {
   std::filesystem::create_directories(c.out);
   std::ofstream csv(c.out + "/continuum.csv");
   csv << "problem,method,points,substeps,run_ms,rms\n";
-  for (const Sheet& sheet : sheets()) {
-    std::printf("\n## %s\n\n%s. ", sheet.name.c_str(), sheet.about.c_str());
-    const Truth truth = truth_of(sheet);
-    std::vector<bench::Trial> trials = run_sheet(sheet, truth, c.quick, c.seconds);
+  for (const Sheet& sheet : bench::sheets()) {
+    if (!c.sheets.empty() &&
+        std::find(c.sheets.begin(), c.sheets.end(), sheet.name) == c.sheets.end())
+      continue;
+    std::printf("\n## %s\n\n", sheet.name.c_str());
+    const Truth truth = truth_of(sheet, WEFT_REFERENCE_CACHE);
+    print_truth(sheet, truth);
+    std::vector<Trial> trials = run_sheet(sheet, truth, c.quick, c.seconds);
     bench::mark_front(trials, true);
     print_front(trials, c.all);
     print_needed(trials);
@@ -288,6 +283,11 @@ int run(const Command& c) {
 int main(int argc, char** argv) {
   CLI::App app{"continuum: run time against distance from the continuum", "continuum"};
   Command command;
+  app.add_option("sheets", command.sheets, "which; none: all")->check(CLI::IsMember([] {
+    std::vector<std::string> names;
+    for (const Sheet& sheet : bench::sheets()) names.push_back(sheet.name);
+    return names;
+  }()));
   app.add_option("--seconds", command.seconds, "time to spend on repeating one setting");
   app.add_option("--out", command.out, "folder for continuum.csv and the diagrams");
   app.add_flag("--short", command.quick, "few sizes and settings");

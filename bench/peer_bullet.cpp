@@ -9,6 +9,8 @@
 #include <BulletSoftBody/btSoftBody.h>
 
 #include <map>
+
+#include "held.h"
 #endif
 
 namespace bench {
@@ -36,6 +38,7 @@ class BulletCloth final : public Peer {
       }
     body_ = std::make_unique<btSoftBody>(&info_, x.size(), &x[0], &m[0]);
     for (const weft::Pin& pin : cloth.pins) body_->setMass(pin.j * g.nx + pin.i, 0);
+    moved_ = moving_pins(cloth);
     body_->m_cfg.piterations = 1;
     body_->m_cfg.collisions = 0;
     body_->m_cfg.kDP = btScalar(cloth.drag * dt_);
@@ -46,6 +49,9 @@ class BulletCloth final : public Peer {
   void advance_frame() override {
     for (int s = 0; s < substeps_; ++s) {
       body_->predictMotion(dt_);
+      ++done_;
+      for (const Held& held : moved_)
+        body_->m_nodes[int(held.particle)].m_x = vector(place_of(held, done_ * double(dt_)));
       body_->solveConstraints();
       body_->integrateMotion();
     }
@@ -94,8 +100,9 @@ class BulletCloth final : public Peer {
   }
 
   weft::Scene scene_;
-  int substeps_;
+  int substeps_, done_ = 0;
   btScalar dt_;
+  std::vector<Held> moved_;
   btSoftBodyWorldInfo info_;
   std::unique_ptr<btSoftBody> body_;
   std::map<double, btSoftBody::Material*> materials_;

@@ -11,6 +11,7 @@
 
 #include "machine.h"
 #include "peer.h"
+#include "peer_blender.h"
 #include "tables.h"
 #include "trial.h"
 
@@ -78,6 +79,41 @@ bool run_peer(const Problem& problem, const Solver& solver, int substeps,
   return true;
 }
 
+// Blender's cloth, run once. It has no springs that skip a particle: its structural ones are as much stiffer as those
+// make a sheet that is stretched evenly.
+void run_blender(const Problem& problem, bool quick, const std::vector<double>& truth,
+                 std::vector<Trial>& trials) {
+  if (const std::string why = bench::without_blender(); !why.empty()) {
+    std::printf("  Blender is left out: %s\n", why.c_str());
+    return;
+  }
+  weft::Scene scene = problem.question.scene;
+  weft::Kinds& k = scene.cloths[0].stiffness;
+  k = {k.structural + 4 * k.bend, k.shear, 0};
+  std::vector<bench::BlenderSetting> settings{{16, 4}, {16, 16}};
+  if (!quick) settings.push_back({16, 64});
+  const auto runs = bench::run_blender(scene, problem.question.seconds, settings);
+  for (std::size_t n = 0; n < runs.size(); ++n) {
+    Trial t;
+    t.problem = problem.name;
+    t.size = problem.size;
+    t.setting.method = "Blender, cloth modifier";
+    t.setting.substeps = t.substeps = settings[n].substeps;
+    t.setting.frame = problem.question.seconds / settings[n].frames;
+    t.frames = settings[n].frames;
+    t.repetitions = 1;
+    t.run_ms = t.quiet_ms = runs[n].ms;
+    if (runs[n].positions.size() == truth.size()) {
+      const bench::Distance d = bench::distance(runs[n].positions, truth);
+      t.rms = d.rms;
+      t.greatest = d.greatest;
+    } else {
+      t.note = "blew up";
+    }
+    trials.push_back(t);
+  }
+}
+
 // Every run of the others against our fastest that is at least as accurate.
 void print_ratios(const Problem& problem, const std::vector<Trial>& trials) {
   const auto ours = [](const Trial& t) {
@@ -134,6 +170,7 @@ void run_size(const Problem& problem, bool quick, std::vector<Trial>& trials) {
       if (run_peer(problem, solver, substeps_at(problem, substeps), r.positions, quick ? 1 : 3, t))
         trials.push_back(t);
     }
+  run_blender(problem, quick, r.positions, trials);
   bench::mark_front(trials);
   bench::print_trials(problem, trials, true);
   print_ratios(problem, trials);

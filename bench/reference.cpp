@@ -117,7 +117,8 @@ std::string unsupported(const weft::Scene& scene) {
   if (c.self_collision.mode != weft::SelfCollisionMode::off) return "self-collision";
   if (scene.wind.drag > 0 || scene.wind.lift > 0) return "wind";
   for (const weft::Pin& pin : c.pins)
-    if (!pin.keys.empty()) return "moving pins";
+    if (pin.follow >= 0 || pin.of_several())
+      return "pins that follow a body or hold several particles";
   for (const weft::Collider& collider : scene.colliders)
     if (!collider.keys.empty() || !collider.rotate.keys.empty() ||
         collider.friction.model != weft::FrictionModel::coulomb || collider.cuts ||

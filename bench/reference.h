@@ -4,8 +4,8 @@
 //
 // by velocity Verlet, written independently of the library (whole arrays, no rows in flight, no
 // floats). The substep is halved until two successive runs agree; Verlet being of second order, a
-// third of their distance is the error of the finer one. Contact with fixed spheres and planes and
-// Coulomb friction follow the law that the library's colliders converge to.
+// third of their distance is the error of the finer one. Pins move by their keys. Contact with fixed spheres and
+// planes and Coulomb friction follow the law that the library's colliders converge to.
 #pragma once
 
 #include <cstdint>

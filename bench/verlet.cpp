@@ -134,6 +134,7 @@ Verlet::Verlet(const weft::Scene& scene)
     p = std::size_t(pin.j) * std::size_t(columns_) + std::size_t(pin.i);
     inverse_mass_[p] = gx_[p] = gy_[p] = gz_[p] = 0;
   }
+  moved_ = moving_pins(cloth);
 }
 
 double Verlet::safe_step() const {
@@ -302,6 +303,13 @@ void Verlet::contact(double h) {
     }
 }
 
+void Verlet::move_pins(double time) {
+  for (const Held& held : moved_) {
+    const weft::Vec3 at = place_of(held, time);
+    x_[held.particle] = at[0], y_[held.particle] = at[1], z_[held.particle] = at[2];
+  }
+}
+
 void Verlet::advance(double seconds, std::int64_t steps) {
   const double h = seconds / double(steps);
   const double drag = scene_.cloths[0].drag;
@@ -315,11 +323,13 @@ void Verlet::advance(double seconds, std::int64_t steps) {
   move(h, 1);
   for (auto* g : {&gx_, &gy_, &gz_})
     for (double& c : *g) c *= 2;
+  move_pins(h);
   contact(h);
   const double keep = std::exp(-drag * h);
   for (std::int64_t n = 1; n < steps; ++n) {
     forces();
     move(h, keep);
+    move_pins(double(n + 1) * h);
     contact(h);
   }
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "held.h"
 #include "weft/scene.h"
 
 namespace bench {
@@ -39,6 +40,8 @@ class Verlet {
   template <class Visit>
   void for_each_curvature(Visit&& visit) const;
   void move(double h, double keep);
+  // Pins with keys, where they are at `time` [s].
+  void move_pins(double time);
   void contact(double h);
   double largest_acceleration() const;
 
@@ -48,6 +51,7 @@ class Verlet {
   std::vector<Springs> springs_;
   std::vector<double> x_, y_, z_, vx_, vy_, vz_, fx_, fy_, fz_;
   std::vector<double> inverse_mass_;  // 1/kg; 0 = pinned
+  std::vector<Held> moved_;           // by keys
   std::vector<double> gx_, gy_, gz_;  // m/s²; 0 where pinned
   std::vector<double> ex_, ey_, ez_;  // one row of spring forces
   double hu_ = 0, hv_ = 0;            // m, spacings

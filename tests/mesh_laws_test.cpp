@@ -4,6 +4,7 @@
 
 #include "mesh_scenes.h"
 #include "physics/model/mesh/rest_triangles.h"
+#include "truth.h"
 #include "weft/vec3.h"
 
 namespace weft {
@@ -150,18 +151,23 @@ double tip_of_beam(const MadeUpMesh& like) {
   return tip / (0.3 * gravity * std::pow(length, 4) / (8 * rigidity));
 }
 
+constexpr const char* kBeam = "cantilever of a mesh, drop of the tip";
+
 TEST(MeshCloth, BendsAsABeamDoes) {
   const MadeUpMesh strip{.nx = 21, .ny = 7, .width = 0.5, .height = 0.15};
   for (const Diagonals diagonals : {Diagonals::alike, Diagonals::crossed}) {
     MadeUpMesh regular = strip;
     regular.diagonals = diagonals;
-    EXPECT_NEAR(tip_of_beam(regular), 1, 0.01);
+    const char* how = diagonals == Diagonals::alike ? "diagonals alike" : "diagonals crossed";
+    expect({kBeam, how, 1, 0.01, "q L⁴/(8 D)"}, tip_of_beam(regular));
   }
   MadeUpMesh shifted = strip;
-  shifted.shift = 0.1;
-  EXPECT_NEAR(tip_of_beam(shifted), 1, 0.06);
-  shifted.shift = 0.3;
-  EXPECT_NEAR(tip_of_beam(shifted), 1, 0.15);
+  for (const auto& [shift, bound] : {std::pair{0.1, 0.06}, {0.3, 0.15}}) {
+    shifted.shift = shift;
+    const std::string how = std::string("vertices off the grid by up to ") +
+                            (shift < 0.2 ? "0.1" : "0.3") + " spacings";
+    EXPECT_LT(show({kBeam, how, 1, 0.02, "q L⁴/(8 D)"}, tip_of_beam(shifted)), bound);
+  }
 }
 
 // A strip that hangs by its side is stretched by what is below, whatever its triangles.
@@ -181,7 +187,9 @@ TEST(MeshCloth, StretchesAsTheContinuumDoes) {
     const auto x = positions_of(run);
     for (std::size_t n = 0; n < x.size(); ++n)
       if (mesh->vertices[n][2] == 1) end += x[n][2] / 9;
-    EXPECT_NEAR(end, hung_length(125), 2e-4) << shift;
+    expect({"hanging strip of a mesh, length",
+            shift > 0 ? "irregular triangles" : "regular triangles", hung_length(125), 2e-4, "m"},
+           end);
   }
 }
 

@@ -46,8 +46,7 @@ double distance(const std::vector<double>& coarse, const std::vector<double>& fi
 }
 
 // From 17 to 33 points a side, and on to 65; or from another number of squares a side.
-double order_in_space(const std::string& name, const std::function<void(Scene&)>& change,
-                      int coarsest = 16) {
+double order_in_space(const std::function<void(Scene&)>& change, int coarsest = 16) {
   std::vector<double> before;
   double distances[2] = {};
   for (int step = 0; step < 3; ++step) {
@@ -58,13 +57,13 @@ double order_in_space(const std::string& name, const std::function<void(Scene&)>
       distances[step - 1] = distance(before, now, std::size_t(((coarsest / 2) << step) + 1));
     before = now;
   }
-  const double order = std::log2(distances[0] / distances[1]);
-  show({"curtain, order in space",
-        name + ", " + std::to_string(coarsest + 1) + ", " + std::to_string(2 * coarsest + 1) +
-            " and " + std::to_string(4 * coarsest + 1) + " points a side",
-        2, order - 2, "log₂"},
-       order);
-  return order;
+  return std::log2(distances[0] / distances[1]);
+}
+
+constexpr const char* kLaw = "curtain, order in space";
+
+void expect_order(const std::string& name, double least, double order) {
+  expect_above({kLaw, name, least, 0, "log₂"}, order);
 }
 
 void lines(Scene& scene, int order) {
@@ -75,8 +74,9 @@ void lines(Scene& scene, int order) {
 }
 
 TEST(Curtain, IsOfSecondOrderInSpaceWhereItsBorderCountsHalf) {
-  EXPECT_GT(order_in_space("springs", [](Scene&) {}), 1.9);
-  EXPECT_GT(order_in_space("lines, order 2", [](Scene& s) { lines(s, 2); }), 1.9);
+  const std::string points = ", 17, 33 and 65 points a side";
+  expect_order("springs" + points, 1.9, order_in_space([](Scene&) {}));
+  expect_order("lines, order 2" + points, 1.9, order_in_space([](Scene& s) { lines(s, 2); }));
 }
 
 // A fabric that is stiff along its threads and soft in shear (C11 = 3000, C22 = 2000, C12 = 200,
@@ -89,8 +89,10 @@ TEST(Curtain, IsOfSecondOrderInSpaceAsAMembrane) {
       s.cloths[0].bending = bending;
     };
   };
-  EXPECT_GT(order_in_space("membrane", as({1500, 1500, 500, 500, 0}, 1e-3)), 1.9);
-  EXPECT_GT(order_in_space("woven membrane", as({3000, 2000, 200, 80, 0}, 2e-4), 32), 1.7);
+  expect_order("membrane, 17, 33 and 65 points a side", 1.9,
+               order_in_space(as({1500, 1500, 500, 500, 0}, 1e-3)));
+  expect_order("woven membrane, 33, 65 and 129 points a side", 1.7,
+               order_in_space(as({3000, 2000, 200, 80, 0}, 2e-4), 32));
 }
 
 // Springs and the membrane agree to first order in strain.
@@ -101,13 +103,14 @@ TEST(Curtain, OfSpringsAndOfTheMembraneThatTheyStandForAgree) {
   const std::vector<double> a = after_half_a_second(springs), b = after_half_a_second(membrane);
   double sum = 0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
-  EXPECT_LT(std::sqrt(3 * sum / double(a.size())), 2e-4);
+  expect({"curtain, springs against the membrane that they stand for", "65 points a side", 0, 2e-4,
+          "m"},
+         std::sqrt(3 * sum / double(a.size())));
 }
 
 TEST(Curtain, IsOfFirstOrderWhereAllCountsAlike) {
-  EXPECT_LT(
-      order_in_space("springs, all alike", [](Scene& s) { s.cloths[0].lumping = Lumping::equal; }),
-      1.2);
+  expect({kLaw, "springs, all alike, 17, 33 and 65 points a side", 1, 0.2, "log₂"},
+         order_in_space([](Scene& s) { s.cloths[0].lumping = Lumping::equal; }));
 }
 
 TEST(Lumping, SharesTheMassByArea) {
