@@ -1,6 +1,7 @@
 // Squares beside each other (beside_squares.h).
 #include "physics/contact/self/beside_squares.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,6 +11,14 @@ namespace weft::physics {
 namespace {
 
 constexpr std::size_t kFewSquares = 4096;  // that one thread does faster
+
+// Four floats, of which the last is of no account.
+using Record = Eigen::Array4f;
+
+float product(const Record& a, const Record& b) {
+  const Record products = a * b;
+  return products[0] + products[1] + products[2];
+}
 
 // The least length of a mean of two vectors, by their squares and their product.
 float least_between(float aa, float bb, float ab) {
@@ -90,19 +99,16 @@ void BesideSquares::list_row(std::size_t sheet, int row, const std::vector<std::
 // How a square lies: its mean edges, and how far its edges are off them.
 auto BesideSquares::lie_of(std::size_t n, const Place* place) const -> Lie {
   const std::int32_t* const corner = squares_[n].corner;
-  Lie lie{};
-  float warp = 0;
-  for (int k = 0; k < 3; ++k) {
-    const float a = place[corner[0]].x[k], b = place[corner[1]].x[k];
-    const float c = place[corner[2]].x[k], d = place[corner[3]].x[k];
-    lie.u[k] = 0.5f * (b - a + d - c);
-    lie.v[k] = 0.5f * (c - a + d - b);
-    const float off = 0.5f * (a + d - b - c);
-    warp += off * off;
-    lie.uu += lie.u[k] * lie.u[k];
-    lie.vv += lie.v[k] * lie.v[k];
-  }
-  lie.warp = std::sqrt(warp);
+  const Record a = Record::Map(place[corner[0]].x), b = Record::Map(place[corner[1]].x);
+  const Record c = Record::Map(place[corner[2]].x), d = Record::Map(place[corner[3]].x);
+  const Record u = 0.5f * (b - a + d - c), v = 0.5f * (c - a + d - b);
+  const Record off = 0.5f * (a + d - b - c);
+  Lie lie;
+  Record::Map(lie.u) = u;
+  Record::Map(lie.v) = v;
+  lie.uu = product(u, u);
+  lie.vv = product(v, v);
+  lie.warp = std::sqrt(product(off, off));
   return lie;
 }
 
@@ -117,23 +123,21 @@ auto BesideSquares::lie_of(std::size_t n, const Place* place) const -> Lie {
 // where u and v are the edges at rest. Contact keeps half of that distance.
 // Edges change by no more than corners come from each other.
 float BesideSquares::alike(std::int32_t number, const Place* place) const {
-  constexpr float kApart = 0.6f;    // ρ, with what an interval may change
-  constexpr float kChange = 0.03f;  // of the shorter edge at rest: looked at again after
+  constexpr float kApart = 0.6f;  // ρ, with what an interval may change
+  // Of the shorter edge at rest: looked at again after the first of these by which they may change. Flat squares may
+  // by 0.07.
+  constexpr float kChanges[] = {0.065f, 0.03f, 0};
   const std::size_t p = std::size_t(number) / kPairs, pair = std::size_t(number) % kPairs;
   std::size_t of = sheets_.size() - 1;
   while (std::int32_t(p) < named_[of].first) --of;
   const Sheet& sheet = sheets_[of];
   const Lie a = lie_of(p, place);
   const Lie b = pair == 0 ? a : lie_of(p + std::size_t(step(of, pair)), place);
-  float uu = 0, vv = 0, askew[4] = {};
-  for (int k = 0; k < 3; ++k) {
-    uu += a.u[k] * b.u[k];
-    vv += a.v[k] * b.v[k];
-    askew[0] += a.u[k] * a.v[k], askew[1] += a.u[k] * b.v[k];
-    askew[2] += b.u[k] * a.v[k], askew[3] += b.u[k] * b.v[k];
-  }
-  float product = 0;
-  for (const float s : askew) product = std::max(product, std::abs(s));
+  const Record au = Record::Map(a.u), av = Record::Map(a.v);
+  const Record bu = Record::Map(b.u), bv = Record::Map(b.v);
+  const float uu = product(au, bu), vv = product(av, bv);
+  const float askew = std::max({std::abs(product(au, av)), std::abs(product(au, bv)),
+                                std::abs(product(bu, av)), std::abs(product(bu, bv))});
   const float warp = std::max(a.warp, b.warp);
   const float least_u = least_between(a.uu, b.uu, uu), least_v = least_between(a.vv, b.vv, vv);
   const float longest = std::sqrt(std::max({a.uu, b.uu, a.vv, b.vv}));
@@ -141,12 +145,15 @@ float BesideSquares::alike(std::int32_t number, const Place* place) const {
   // Whether they do when edges are others by so much.
   const auto holds = [&](float change) {
     const float off = warp + 2 * change, u = least_u - off, v = least_v - off;
-    const float most = product + off * (2 * (longest + change) + off);
+    const float most = askew + off * (2 * (longest + change) + off);
     const float needed = kApart * kApart * (1 + std::abs(sheet.uv) / rest) + most / rest;
     return u > 0 && v > 0 && u * u >= needed * sheet.uu && v * v >= needed * sheet.vv;
   };
-  const float change = kChange * std::sqrt(std::min(sheet.uu, sheet.vv));
-  return holds(change) ? change : holds(0) ? 0 : -1;
+  for (const float share : kChanges) {
+    const float change = share * std::sqrt(std::min(sheet.uu, sheet.vv));
+    if (holds(change)) return change;
+  }
+  return -1;
 }
 
 std::size_t BesideSquares::bytes() const {

@@ -38,7 +38,7 @@ class BesideSquares {
   // one after.
   static constexpr std::size_t kPairs = 5;
   struct Lie {
-    float u[3], v[3];  // m, mean edges along the row and the column
+    float u[4], v[4];  // m, mean edges along the row and the column, three floats of each
     float uu, vv;      // m², their squares
     float warp;        // m, how far edges are off them
   };

@@ -13,6 +13,10 @@ namespace {
 constexpr std::size_t kAtOnce = 256;  // pairs of squares that are measured in one go
 constexpr std::size_t kFewLists = 8;  // that one thread does faster
 
+bool is_none(const Displacement& d) {
+  return d.u[0] == 0 && d.u[1] == 0 && d.u[2] == 0;
+}
+
 }  // namespace
 
 float SelfContact::friction_of(std::int32_t a, std::int32_t b) const {
@@ -139,22 +143,24 @@ void SelfContact::find_among_surfaces(Threads& threads) {
   std::swap(contacts, unsorted_surfaces_);
 }
 
-// Velocities change with displacements; positions also by what is put apart.
+// Velocities change with displacements; positions also by what is put apart. Contacts that nothing presses change
+// nothing.
 template <int N>
 void SelfContact::scatter(ContactSolver<N>& solver, const ContactInterval& interval) {
   const double dt = interval.dt;
   const float inverse = float(1 / interval.seconds());
   touched_ = !solver.touched().empty();
+  moving_.clear();
+  for (const Sheet& s : sheets_) moving_.push_back({&s.model->particles(), s.model->history()});
   double taken = 0;
   for (const std::int32_t n : solver.touched()) {
     const Displacement &change = solver.change(n), &lift = solver.lift(n);
     const float w = change.u[3];
-    if (!(w > 0)) continue;
+    if (!(w > 0) || (is_none(change) && is_none(lift))) continue;
     const Site s = site(n);
-    const Sheet& sheet = sheets_[s.cloth];
-    Particles& l = sheet.model->particles();
-    const auto [row, column] = sheet.place(s.row, s.column);
-    History* const history = sheet.model->history();
+    const auto [row, column] = sheets_[s.cloth].place(s.row, s.column);
+    Particles& l = *moving_[s.cloth].particles;
+    History* const history = moving_[s.cloth].history;
     const bool goes_on = history && history->goes_on(l, row, column);
     double before = 0, after = 0;
     float way = 0;

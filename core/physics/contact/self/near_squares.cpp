@@ -53,7 +53,6 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<Nam
   beyond_ = kBeyond * spacing;
   origins_.resize(bodies);
   chosen_.resize(bodies);
-  passing_.resize(bodies);
   stride_.resize(bodies);
   make_squares();
   make_parts(rest);
@@ -82,7 +81,7 @@ void NearSquares::for_each_square(const Visit& visit) const {
   for (std::size_t s = 0; s < sheets_.size(); ++s)
     for (int j = 0; j < sheets_[s].points->rows && !sheets_[s].mesh; ++j)
       for (int i = 0; i < sheets_[s].columns; ++i) visit(std::size_t(named_[s].name(j, i)));
-  for (std::size_t n = passing_.size(); n < squares_.size(); ++n) visit(n);
+  for (std::size_t n = origins_.size(); n < squares_.size(); ++n) visit(n);
 }
 
 // Those of grids.
@@ -141,13 +140,18 @@ void NearSquares::make_parts(const std::vector<RestPlace>& rest) {
 
 void NearSquares::leave_out(const std::vector<std::uint8_t>& marked) {
   std::size_t first = 0;
+  passing_.assign(origins_.size(), 0);
+  bool any = false;
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     const Particles& p = *sheets_[s].points;
     p.for_each([&](int j, int i) {
-      passing_[std::size_t(named_[s].name(j, i))] = marked[first + std::size_t(p.number(j, i))];
+      const std::uint8_t mark = marked[first + std::size_t(p.number(j, i))];
+      passing_[std::size_t(named_[s].name(j, i))] = mark;
+      any |= mark != 0;
     });
     first += std::size_t(p.count());
   }
+  if (!any) passing_.clear();
 }
 
 void NearSquares::update(bool all, const Place* now, Threads& threads) {

@@ -147,7 +147,7 @@ class NearSquares {
   std::vector<SquareBox> boxes_;       // as sorted, or of all in an interval
   std::vector<SquarePairs> found_;     // of every chunk of the search, or of the list
   std::vector<LeftOut> left_out_;      // squares that are torn
-  std::vector<std::uint8_t> passing_;  // vertices of squares that are left out
+  std::vector<std::uint8_t> passing_;  // vertices of squares that are left out; empty: none
   std::vector<std::int32_t>
       joined_;  // squares that were torn at the last update and are whole at this
   SquarePairs listed_, within_, still_, before_;

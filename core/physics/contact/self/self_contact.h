@@ -139,6 +139,12 @@ class SelfContact {
     std::span<const SurfaceContact> found() const { return {room.data(), count}; }
   };
 
+  // What contact changes of a sheet; `history` may be null.
+  struct Moving {
+    Particles* particles;
+    History* history;
+  };
+
   std::size_t body(std::size_t sheet, int row, int column) const;
   Site site(std::int32_t body) const;
   BodyBlock bodies_of(const Block& block);
@@ -206,6 +212,7 @@ class SelfContact {
   std::unique_ptr<ContactSolver<4>> surfaces_;
   std::vector<Contact<2>> unsorted_spheres_;
   std::vector<Contact<4>> unsorted_surfaces_;
+  std::vector<Moving> moving_;       // of every sheet
   std::vector<Displacement> asked_;  // of every body, by the course's rule: a sum, and of how many
   std::vector<std::int32_t> zone_;   // of every body, its own number outside of any (passing.cpp)
 

@@ -28,8 +28,9 @@ struct SquarePairs {
   std::size_t bytes() const;
 };
 
-// Whether one of a square's four vertices is marked.
+// Whether one of a square's four vertices is marked. Empty: none is.
 inline bool has_corner_in(const Square& square, const std::vector<std::uint8_t>& marked) {
+  if (marked.empty()) return false;
   const auto at = [&](int c) { return marked[std::size_t(square.corner[c])]; };
   return (at(0) | at(1) | at(2) | at(3)) != 0;
 }
