@@ -60,6 +60,8 @@ Fineness fineness_of(const Cloth& c, const Solver& solver) {
   return {scale * longest / square, c.density * square, stiffness};
 }
 
+constexpr double kOverstretch = 0.7, kGrows = 0.8;  // of overstretch()
+
 // m/s²; by which a gas accelerates the cloth that holds it at the start, where its pressure is greatest.
 double push_of_gas(const Cloth& c) {
   if (!c.pressure.given()) return 0;
@@ -106,6 +108,23 @@ double projection_substep(const Scene& scene) {
     dt = std::min(dt, needed);
   }
   return dt;
+}
+
+double overstretch(const Scene& scene, const Cloth& cloth, double dt) {
+  const Solver& solver = scene.solver;
+  if (solver.method != Method::compliant || solver.sweep == Sweep::line || solver.tethers ||
+      cloth.pins.empty())
+    return 1;
+  const Fineness f = fineness_of(cloth, solver);
+  const double h = dt * implicit_share(solver);
+  return 1 + kOverstretch * std::pow(f.stiffness * h * h / (f.mass * sweeps_of(solver)), kGrows);
+}
+
+double substep_of_overstretch(const Scene& scene, const Cloth& cloth, double times) {
+  const Fineness f = fineness_of(cloth, scene.solver);
+  const double q = std::pow((times - 1) / kOverstretch, 1 / kGrows);
+  return std::sqrt(q * f.mass * sweeps_of(scene.solver) / f.stiffness) /
+         implicit_share(scene.solver);
 }
 
 double gas_shortfall(const Cloth& cloth, double dt) {
