@@ -11,6 +11,7 @@
 #include "physics/frame/velocities.h"
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/number.h"
+#include "physics/model/path.h"
 #include "physics/model/placement.h"
 
 namespace weft {
