@@ -65,8 +65,13 @@ Setting setting_of(const FrameData& start) {
       setting.has_ground = setting.solid = true;
       setting.ground = static_cast<float>(plane->point[1]);
     }
+  // What falls on a floor lies there as wide as it is.
+  const Bounds above = setting.room;
   if (setting.has_ground)
-    setting.room.add(Vec3f{setting.room.center().x, setting.ground, setting.room.center().z});
+    setting.room.add(Vec3f{above.center().x, setting.ground, above.center().z});
+  if (setting.solid)
+    for (const Vec3f& corner : {above.low, above.high})
+      setting.room.add(Vec3f{corner.x, setting.ground, corner.z});
   setting.size = 2 * setting.room.radius();
   return setting;
 }

@@ -86,6 +86,7 @@ Window::Window(int width, int height, const std::string& title) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
+  ImGui::GetIO().ConfigDragClickToInputText = true;  // numbers are typed after a click
   ImGui_ImplGlfw_InitForOpenGL(window_, false);
   ImGui_ImplOpenGL3_Init("#version 330 core");
   glfwGetFramebufferSize(window_, &width_, &height_);

@@ -83,8 +83,9 @@ void Workspace::frame_cloth() {
   camera.frame(to_frame(), aspect_, clear_);
 }
 
+// As the scene begins, however far it has come since.
 void Workspace::show_home() {
-  aim(sight_, to_frame(), aspect_, clear_, camera);
+  aim(sight_, setting_.room, aspect_, clear_, camera);
 }
 
 void Workspace::show_along(float azimuth, float elevation) {

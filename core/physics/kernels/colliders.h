@@ -1,4 +1,4 @@
-// Kernels of colliders. A shape's own file in contact/colliders defines them by WEFT_COLLIDER (collide.h).
+// Kernels of colliders. A shape's own file in contact/colliders defines them by WEFT_COLLIDER (collide_faces.h).
 #pragma once
 
 #include <cstring>

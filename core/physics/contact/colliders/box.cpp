@@ -16,7 +16,7 @@ struct BoxNumbers {
 
 #ifdef WEFT_LANES
 
-#include "physics/kernels/collide.h"
+#include "physics/kernels/collide_faces.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {

@@ -17,7 +17,7 @@ struct CapsuleNumbers {
 
 #ifdef WEFT_LANES
 
-#include "physics/kernels/collide.h"
+#include "physics/kernels/collide_faces.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {

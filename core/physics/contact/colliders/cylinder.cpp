@@ -18,7 +18,7 @@ struct CylinderNumbers {
 
 #ifdef WEFT_LANES
 
-#include "physics/kernels/collide.h"
+#include "physics/kernels/collide_faces.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {

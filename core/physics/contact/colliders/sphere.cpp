@@ -1,7 +1,7 @@
 // Collider sphere: all points within `radius` of its center.  d(p) = |p| - r,  n = p/|p|
 #ifdef WEFT_LANES
 
-#include "physics/kernels/collide.h"
+#include "physics/kernels/collide_faces.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {

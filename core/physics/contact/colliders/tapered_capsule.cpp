@@ -22,7 +22,7 @@ struct TaperedNumbers {
 
 #ifdef WEFT_LANES
 
-#include "physics/kernels/collide.h"
+#include "physics/kernels/collide_faces.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {
