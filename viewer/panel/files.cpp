@@ -32,7 +32,7 @@ bool lasting(const char* label, bool on, const char* begin, const char* end) {
   return pressed;
 }
 
-// Typed after Ctrl + click, as everywhere in the panel.
+// Typed after a click, as everywhere in the panel.
 void whole_number(const char* name, int& value, int low, int high) {
   ImGui::SetNextItemWidth(5 * ImGui::GetFontSize());
   ImGui::DragInt((std::string("##") + name).c_str(), &value, 1, low, high, "%d",
