@@ -14,7 +14,7 @@ namespace {
 
 std::string disc() {
   std::ostringstream text;
-  text << std::ifstream(std::string(WEFT_SOURCE_DIR) + "/scenes/flag_round.obj").rdbuf();
+  text << std::ifstream(WEFT_SOURCE_DIR "/scenes/flag_round.obj").rdbuf();
   return text.str();
 }
 
