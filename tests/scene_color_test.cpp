@@ -97,6 +97,28 @@ TEST(Color, OfAnotherFormIsRefused) {
   EXPECT_FALSE(simulation.view().cloths[1].color);
 }
 
+// Word for word, with the place, the value and what is allowed.
+TEST(Color, FaultsAreNamed) {
+  const auto told = [](const char* text) {
+    std::string all;
+    for (const Fault& fault : read_scene_text(text).faults)
+      all += fault.place + ": " + fault.what + " (" + fault.allowed + ")\n";
+    return all;
+  };
+  EXPECT_EQ(
+      told(
+          R"({"weft": 1, "cloths": [{"color": {"front": "#12ab", "back": "#12345g"}}, {"color": {"front": "#0Af9c3"}}]})"),
+      "/cloths/0/color/front: front is \"#12ab\" (#rrggbb in hexadecimal digits, or nothing)\n"
+      "/cloths/0/color/back: back is \"#12345g\" (#rrggbb in hexadecimal digits, or nothing)\n");
+  EXPECT_EQ(
+      told(
+          R"({"weft": 1, "cloths": [{"color": {"front": [1.5, 0, 0], "back": "#12345678", "side": ""}}], "colliders": [{"sphere": {}, "color": "red"}]})"),
+      "/cloths/0/color/front: front is [1.5, 0, 0] (text)\n"
+      "/cloths/0/color/back: back is \"#12345678\" (#rrggbb in hexadecimal digits, or nothing)\n"
+      "/cloths/0/color/side: unknown key \"side\" (the nearest known key is \"back\")\n"
+      "/colliders/0/color: color is \"red\" (#rrggbb in hexadecimal digits, or nothing)\n");
+}
+
 // From the start, taken over while it runs, or with another value of the scene: the same bits as without.
 TEST(Color, ChangesNoBitOfARun) {
   constexpr int kFrames = 20;

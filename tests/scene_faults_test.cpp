@@ -57,14 +57,6 @@ constexpr Broken kBroken[] = {
      "/cloths: cloths is an object (a list of 1 to 1000 items)"},
     {R"({"cloths": [{}]})",
      ": weft is missing (1)"},
-    {R"({"weft": 1, "cloths": [{"color": {"front": "#12ab", "back": "#12345g"}}, {"color": {"front": "#0Af9c3"}}]})",
-     "/cloths/0/color/front: front is \"#12ab\" (#rrggbb in hexadecimal digits, or nothing)\n"
-     "/cloths/0/color/back: back is \"#12345g\" (#rrggbb in hexadecimal digits, or nothing)"},
-    {R"({"weft": 1, "cloths": [{"color": {"front": [1.5, 0, 0], "back": "#12345678", "side": ""}}], "colliders": [{"sphere": {}, "color": "red"}]})",
-     "/cloths/0/color/front: front is [1.5, 0, 0] (text)\n"
-     "/cloths/0/color/back: back is \"#12345678\" (#rrggbb in hexadecimal digits, or nothing)\n"
-     "/cloths/0/color/side: unknown key \"side\" (the nearest known key is \"back\")\n"
-     "/colliders/0/color: color is \"red\" (#rrggbb in hexadecimal digits, or nothing)"},
     {R"({"weft": 1, "gravty": [0,0,0], "cloths": [{}]})",
      R"(/gravty: unknown key "gravty" (the nearest known key is "gravity"))"},
     {R"({"weft": 1, "gravity": -9.81, "cloths": [{}]})",

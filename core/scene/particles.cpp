@@ -42,7 +42,8 @@ double particle_mass(const Cloth& cloth, int i, int j) {
 }
 
 double area_density(const Cloth& cloth) {
-  if (cloth.mesh.given()) return cloth.density;
+  if (cloth.mesh.given() || (cloth.particle_mass == 0 && cloth.masses.empty()))
+    return cloth.density;
   return particle_mass(cloth, cloth.grid.nx / 2, cloth.grid.ny / 2) /
          (spacing_u(cloth.grid) * spacing_v(cloth.grid));
 }

@@ -45,14 +45,6 @@ Collider copy_of(const Collider& body) {
   return copy;
 }
 
-// kg/m²
-double density_of(const Cloth& cloth) {
-  if (cloth.mesh.given() || (cloth.particle_mass == 0 && cloth.masses.empty()))
-    return cloth.density;
-  const Grid& g = cloth.grid;
-  return particle_mass(cloth, g.nx / 2, g.ny / 2) / (spacing_u(g) * spacing_v(g));
-}
-
 }  // namespace
 
 Scene with_body(Scene scene, const Shape& shape, const Vec3& at, double size) {
@@ -95,7 +87,7 @@ Scene with_mesh(Scene scene, Kind kind, const MeshSource& mesh) {
   const Cloth& like = scene.cloths.front();
   Cloth cloth;
   static_cast<MeshSource&>(cloth.mesh) = mesh;
-  cloth.density = density_of(like);
+  cloth.density = area_density(like);
   cloth.stiffness.structural = like.stiffness.structural;
   cloth.bending = like.bending;
   cloth.drag = like.drag;

@@ -23,8 +23,8 @@ Intervals intervals_of_pins(const Cloth& cloth);
 // other intervals, and for a mesh.
 // - What is held keeps its place on the sheet, to the nearest particle: single particles, the lines between held
 //   neighbours, and what lies between four of them. Paths of neighbours with keys at equal times are those between
-//   them; other neighbours are held one by one. A particle
-//   has one path: where others fall on it, a note says how many are left out.
+//   them; other neighbours are held one by one. A particle has one path: where others fall on it, a note says how
+//   many are left out.
 // - particle_mass and masses are shared out anew; cuts keep their lines.
 // `notes`: what is not quite as asked, a sentence each.
 struct RegriddedCloth {

@@ -304,7 +304,7 @@ std::vector<Pin> single_pins(const Cloth& cloth);
 // Mass of particle (i,j) of a grid [kg] by the cloth's masses, particle_mass, or density and lumping.
 double particle_mass(const Cloth& cloth, int i, int j);
 
-// What a cloth weighs [kg/m²]: of a mesh its density, of a grid a particle in the middle over its square.
+// What a cloth weighs [kg/m²]: its density, or, of particles with masses, that in the middle over its square.
 double area_density(const Cloth& cloth);
 
 // Takes over what the simulation does not look at: name, about, camera, and the colours of cloths and colliders,
