@@ -25,6 +25,7 @@ constexpr Way kWays[] = {
     {"compliant_jacobi", weft::Method::compliant, weft::Sweep::jacobi},
     {"compliant_line", weft::Method::compliant, weft::Sweep::line},
     {"compliant_line_tethered", weft::Method::compliant, weft::Sweep::line, false, true},
+    {"compliant_membrane_gauss_seidel", weft::Method::compliant, weft::Sweep::gauss_seidel, true},
     {"compliant_membrane_line", weft::Method::compliant, weft::Sweep::line, true, false},
     {"compliant_membrane_line_tethered", weft::Method::compliant, weft::Sweep::line, true, true},
 };

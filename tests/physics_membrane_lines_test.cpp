@@ -1,5 +1,5 @@
-// Line sweeps of the membrane: the same motion as by forces in fine substeps; what is kept; what tears; the
-// same bits everywhere.
+// Sweeps of the membrane, line by line and constraint by constraint: the same motion as by forces in fine substeps;
+// what is kept; what tears; the same bits everywhere.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,12 +35,15 @@ Scene curtain(int n, const Membrane& membrane) {
   return scene;
 }
 
-Scene by_lines(Scene scene, int order, int substeps) {
+Scene by_sweeps(Scene scene, Sweep sweep, int order, int substeps) {
   scene.solver.method = Method::compliant;
-  scene.solver.sweep = Sweep::line;
+  scene.solver.sweep = sweep;
   scene.solver.order = order;
   scene.time.substeps = substeps;
   return scene;
+}
+Scene by_lines(Scene scene, int order, int substeps) {
+  return by_sweeps(std::move(scene), Sweep::line, order, substeps);
 }
 Scene by_forces(Scene scene) {
   scene.solver.method = Method::spring;
@@ -81,12 +84,43 @@ TEST(MembraneLines, MoveAsForcesInFineSubsteps) {
   }
 }
 
+// Constraint by constraint the same motion, from shorter substeps on, and the faster the more sweeps there are.
+TEST(MembraneSweeps, MoveAsForcesInFineSubstepsOrManySweeps) {
+  for (const Membrane& membrane : {kWoven, kIsotropic, Membrane{1000, 1500, -400, 200, 0}}) {
+    const Scene scene = curtain(25, membrane);
+    const std::vector<double> truth = after(by_forces(scene), 30);
+    const auto error = [&](int order, int substeps, int iterations) {
+      Scene sweeps = by_sweeps(scene, Sweep::gauss_seidel, order, substeps);
+      sweeps.solver.iterations = iterations;
+      return apart(after(sweeps, 30), truth);
+    };
+    for (const int order : {1, 2}) {
+      double before = 0;
+      for (const int substeps : {16, 32, 64, 128}) {
+        const double now = error(order, substeps, 1);
+        if (before > 4e-4) {
+          EXPECT_LT(now, before / 1.7) << order << ' ' << substeps;
+        }
+        before = now;
+      }
+      EXPECT_LT(before, order == 1 ? 6e-4 : 3e-4) << order;
+    }
+    // Converged, sweeps of either kind solve the same equations.
+    Scene lines = by_lines(scene, 1, 16), single = by_sweeps(scene, Sweep::gauss_seidel, 1, 16);
+    lines.solver.iterations = 12;
+    single.solver.iterations = 120;
+    EXPECT_LT(apart(after(single, 10), after(lines, 10)), 1e-4);
+  }
+}
+
 // What a cloth can have besides, each alone.
 TEST(MembraneLines, MoveAsForcesWithWhatAClothMayHaveBesides) {
   struct Feature {
     const char* name;
     std::function<void(Scene&)> add;
-    double most;  // m
+    double most;                      // m
+    int frames = 30, substeps = 128;  // of single sweeps
+    bool damped = false;              // which lines leave out
   };
   const Feature features[] = {
       {"cells of 3 to 1",
@@ -104,6 +138,12 @@ TEST(MembraneLines, MoveAsForcesWithWhatAClothMayHaveBesides) {
       {"strong coupling", [](Scene& s) { s.cloths[0].membrane.coupling = 1600; }, 1e-3},
       {"negative coupling", [](Scene& s) { s.cloths[0].membrane.coupling = -900; }, 1e-3},
       {"two sweeps", [](Scene& s) { s.solver.iterations = 2; }, 1e-3},
+      {"damping", [](Scene& s) { s.cloths[0].membrane.damping = 4e-3; }, 4e-4, 30, 1024, true},
+      {"a cut",
+       [](Scene& s) {
+         s.cloths[0].cuts = {{{7.4, -1}, {8.7, 9.3}, {12, 9.2}}};
+       },
+       4e-4, 12},
       {"moving pins",
        [](Scene& s) {
          for (Pin& pin : s.cloths[0].pins)
@@ -119,12 +159,20 @@ TEST(MembraneLines, MoveAsForcesWithWhatAClothMayHaveBesides) {
     f.add(scene);
     Scene truth = by_forces(scene);
     truth.solver.iterations = 1;
-    EXPECT_LT(apart(after(by_lines(scene, 2, 32), 30), after(truth, 30)), f.most) << f.name;
+    const std::vector<double> end = after(truth, f.frames);
+    const auto error = [&](const Scene& s) { return apart(after(s, f.frames), end); };
+    const double lines = error(by_lines(scene, 2, 32));
+    const double sweeps = error(by_sweeps(scene, Sweep::gauss_seidel, 2, f.substeps));
+    EXPECT_LT(sweeps, f.most) << f.name;
+    if (f.damped)
+      EXPECT_GT(lines, f.most) << f.name;
+    else
+      EXPECT_LT(lines, f.most) << f.name;
   }
 }
 
 // Starts stretched, turning and rough, in free flight.
-Simulation flying(int nx, int ny, const Membrane& membrane, int order, int substeps) {
+Simulation flying(int nx, int ny, const Membrane& membrane, Sweep sweep, int order, int substeps) {
   Scene scene = curtain(nx, membrane);
   scene.gravity = {};
   Cloth& cloth = scene.cloths[0];
@@ -132,7 +180,7 @@ Simulation flying(int nx, int ny, const Membrane& membrane, int order, int subst
   cloth.grid.v = {0, 0, 0.8 * (ny - 1.0) / (nx - 1)};
   cloth.pins.clear();
   cloth.drag = 0;
-  Simulation simulation(by_lines(scene, order, substeps));
+  Simulation simulation(by_sweeps(scene, sweep, order, substeps));
   std::mt19937 random(7);
   const auto noise = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
   std::vector<double> x = simulation.positions(), v(x.size());
@@ -153,17 +201,22 @@ double length(const Vec3& a) {
 
 TEST(MembraneLines, KeepMomentumAndGainNoEnergy) {
   for (const Membrane& membrane : {kWoven, kIsotropic, Membrane{500, 2500, -150, 300, 0}})
-    for (const int order : {1, 2})
+    for (const auto& [sweep, order] : {std::pair(Sweep::line, 1),
+                                       {Sweep::line, 2},
+                                       {Sweep::gauss_seidel, 1},
+                                       {Sweep::gauss_seidel, 2}})
       for (const int substeps : {4, 16, 64}) {
-        Simulation simulation = flying(31, 22, membrane, order, substeps);
+        Simulation simulation = flying(31, 22, membrane, sweep, order, substeps);
         const Report start = simulation.report(false);
         double angular = 0, drift = 0;
         for (int frame = 0; frame < 60; ++frame) {
           simulation.advance_frame();
           const Report now = simulation.report(false);
           drift = length(now.momentum - start.momentum);
+          // The rough start moves far in one of 4 substeps, of which a single sweep takes back a part.
+          const bool rough = sweep == Sweep::gauss_seidel && substeps == 4 && frame < 3;
           EXPECT_LT(now.energy.kinetic + now.energy.elastic,
-                    1.01 * (start.energy.kinetic + start.energy.elastic))
+                    (rough ? 1.05 : 1.01) * (start.energy.kinetic + start.energy.elastic))
               << order << " " << substeps << " " << frame;
           angular = length(now.angular_momentum - start.angular_momentum);
         }
@@ -206,53 +259,60 @@ TEST(MembraneLines, HasOneResult) {
       },
       [](Scene& s) { s.cloths[0].strain_limit = 0.005; },
   };
-  for (const auto& change : variants) {
-    Scene scene = by_lines(curtain(52, kWoven), 1, 8);
-    scene.cloths[0].grid.ny = 37;
-    scene.cloths[0].pins = {{0, 0, {}}, {51, 0, {}}};
-    change(scene);
-    std::uint64_t hash = 0;
-    for (const Options& machine : machines()) {
-      Simulation simulation(scene, machine);
-      for (int frame = 0; frame < 12; ++frame) simulation.advance_frame();
-      if (hash == 0) hash = simulation.hash();
-      EXPECT_EQ(hash, simulation.hash()) << int(machine.simd) << " " << machine.threads;
+  for (const auto& change : variants)
+    for (const Sweep sweep : {Sweep::line, Sweep::gauss_seidel}) {
+      Scene scene = by_sweeps(curtain(52, kWoven), sweep, 1, 8);
+      scene.cloths[0].grid.ny = 37;
+      scene.cloths[0].pins = {{0, 0, {}}, {51, 0, {}}};
+      change(scene);
+      std::uint64_t hash = 0;
+      for (const Options& machine : machines()) {
+        Simulation simulation(scene, machine);
+        for (int frame = 0; frame < 12; ++frame) simulation.advance_frame();
+        if (hash == 0) hash = simulation.hash();
+        EXPECT_EQ(hash, simulation.hash()) << int(machine.simd) << " " << machine.threads;
+      }
     }
-  }
 }
 
 TEST(MembraneLines, TearWhereTheyAreStretched) {
-  Scene scene = by_lines(curtain(24, Membrane{60, 60, 10, 10, 0}), 1, 16);
-  scene.cloths[0].tear_strain = 0.05;
-  Simulation simulation(scene);
-  for (int frame = 0; frame < 60; ++frame) simulation.advance_frame();
-  EXPECT_GT(simulation.report(false).torn, 0);
-  EXPECT_TRUE(simulation.status().ok);
+  for (const Sweep sweep : {Sweep::line, Sweep::gauss_seidel}) {
+    Scene scene = by_sweeps(curtain(24, Membrane{60, 60, 10, 10, 0}), sweep, 1, 16);
+    scene.cloths[0].tear_strain = 0.05;
+    Simulation simulation(scene);
+    for (int frame = 0; frame < 60; ++frame) simulation.advance_frame();
+    EXPECT_GT(simulation.report(false).torn, 0);
+    EXPECT_TRUE(simulation.status().ok);
+  }
 }
 
 TEST(MembraneLines, FallFreelyOnceCutOff) {
-  Scene scene = by_lines(curtain(17, kWoven), 2, 16);
-  scene.gravity = {0, -9.81, 0};
-  scene.cloths[0].drag = 0;
-  scene.cloths[0].bending = 0;
-  Simulation simulation(scene);
-  ASSERT_GT(simulation.cut({0.22, 0, -0.1}, {0.22, 0, 1.1}, 1e-3), 0);
-  for (int frame = 0; frame < 15; ++frame) simulation.advance_frame();
-  const double t = 15.0 / 60;
-  EXPECT_NEAR(simulation.positions()[3 * (8 * 17 + 12) + 1], -9.81 * t * t / 2, 1e-3);
+  for (const Sweep sweep : {Sweep::line, Sweep::gauss_seidel}) {
+    Scene scene = by_sweeps(curtain(17, kWoven), sweep, 2, 16);
+    scene.gravity = {0, -9.81, 0};
+    scene.cloths[0].drag = 0;
+    scene.cloths[0].bending = 0;
+    Simulation simulation(scene);
+    ASSERT_GT(simulation.cut({0.22, 0, -0.1}, {0.22, 0, 1.1}, 1e-3), 0);
+    for (int frame = 0; frame < 15; ++frame) simulation.advance_frame();
+    const double t = 15.0 / 60;
+    EXPECT_NEAR(simulation.positions()[3 * (8 * 17 + 12) + 1], -9.81 * t * t / 2, 1e-3);
+  }
 }
 
 TEST(MembraneLines, HoldAStrainLimit) {
-  Scene scene = by_lines(curtain(24, Membrane{100, 100, 10, 20, 0}), 1, 16);
-  scene.cloths[0].strain_limit = 0.02;
-  Simulation simulation(scene);
-  for (int frame = 0; frame < 60; ++frame) simulation.advance_frame();
-  const double limited = simulation.report(false).strain.max;
-  scene.cloths[0].strain_limit = 0;
-  Simulation loose(scene);
-  for (int frame = 0; frame < 60; ++frame) loose.advance_frame();
-  EXPECT_LT(limited, 0.0215);
-  EXPECT_GT(loose.report(false).strain.max, 0.03);
+  for (const Sweep sweep : {Sweep::line, Sweep::gauss_seidel}) {
+    Scene scene = by_sweeps(curtain(24, Membrane{100, 100, 10, 20, 0}), sweep, 1, 16);
+    scene.cloths[0].strain_limit = 0.02;
+    Simulation simulation(scene);
+    for (int frame = 0; frame < 60; ++frame) simulation.advance_frame();
+    const double limited = simulation.report(false).strain.max;
+    scene.cloths[0].strain_limit = 0;
+    Simulation loose(scene);
+    for (int frame = 0; frame < 60; ++frame) loose.advance_frame();
+    EXPECT_LT(limited, 0.0215);
+    EXPECT_GT(loose.report(false).strain.max, 0.03);
+  }
 }
 
 TEST(MembraneLines, SayWhatTheyLeaveOut) {
@@ -273,6 +333,9 @@ TEST(MembraneLines, SayWhatTheyLeaveOut) {
   scene.cloths[0].membrane.damping = 0;
   EXPECT_TRUE(told("line sweeps leave out the damping of bending"));
   scene.solver.sweep = Sweep::gauss_seidel;
+  EXPECT_TRUE(told("gauss_seidel sweeps leave out the damping of bending"));
+  EXPECT_FALSE(told("springs of the membrane"));
+  scene.solver.sweep = Sweep::jacobi;
   EXPECT_TRUE(told("springs of the membrane"));
   EXPECT_TRUE(told("that of bending"));
 }

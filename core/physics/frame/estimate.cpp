@@ -49,6 +49,7 @@ constexpr double kFrameParticle = 12;            // a particle and frame: saving
 constexpr double kSpring = 0.5, kDampedSpring = 0.75;
 constexpr double kGaussSeidel = 1.0, kJacobi = 0.6, kLine = 1.3;    // and sweep
 constexpr double kMembrane = 1.6, kSpringBend = 2, kSweepBend = 5;  // from here on: a particle
+constexpr double kCell = 9, kMembraneLines = 10;                    // and sweep, of a membrane
 constexpr double kVertex = 9, kBentVertex = 18;                     // of a mesh
 constexpr double kEdge = 1.6, kStrandEdge = 5, kBentSweep = 25;     // and of its sweeps
 constexpr double kTriangle = 20, kStrandStress = 60;  // of a membrane's; of its edges in strands
@@ -249,7 +250,12 @@ double constraint_cost(const Cloth& cloth, const Solver& solver) {
                        : solver.sweep == Sweep::line ? cost::kLine
                                                      : cost::kGaussSeidel;
   const double tethers = solver.tethers ? cost::kTethers : 0;
-  return solver.iterations * (count * sweep + bends * cost::kSweepBend) +
+  const bool cells =
+      cloth.membrane.given() && solver.method == Method::compliant && solver.sweep != Sweep::jacobi;
+  const double stretch =
+      !cells ? count * sweep
+             : particles * (solver.sweep == Sweep::line ? cost::kMembraneLines : cost::kCell);
+  return solver.iterations * (stretch + bends * cost::kSweepBend) +
          particles * (cost::kProjection + tethers);
 }
 

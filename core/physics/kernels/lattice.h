@@ -167,6 +167,7 @@ struct TangentRow : FarRows {
 
 struct MembraneRows;  // kernels/membrane.h
 struct MembraneSquares;
+struct MembraneSweep;
 struct TearRow;  // kernels/tear.h
 struct BendRow;  // kernels/bending.h
 struct BendLine;
@@ -175,7 +176,8 @@ struct WindRow;  // kernels/wind.h
 
 // spring_stencil: f += spring force; damped_spring_stencil: and damping along it. project: Gauss-Seidel, in place.
 // jacobi_stencil: corrections of one row's constraints, by unit inverse mass, added to rows j and j+dj.
-// membrane_squares: squared lengths that lines of a membrane are to have. bend_row: v += dt force/mass of the
+// membrane_squares: squared lengths that lines of a membrane are to have. sweep_membrane: Gauss-Seidel over its cells,
+// in place. bend_row: v += dt force/mass of the
 // bending energy; bend_line: implicit bending along a batch of lines; bend_twist: of every second cell between two
 // rows. tear: returns how many have ended. greatest_square: of a constraint's length [m²]. stretch_energy [J].
 #define WEFT_LATTICE_KERNELS(KERNEL)                                                  \
@@ -187,6 +189,7 @@ struct WindRow;  // kernels/wind.h
   KERNEL(void, jacobi_rows, (const JacobiRows&))                                      \
   KERNEL(void, jacobi_stencil, (const ProjectRows&, int row, Row3 sum, Row3 sum_far)) \
   KERNEL(void, membrane_squares, (const MembraneSquares&))                            \
+  KERNEL(void, sweep_membrane, (const MembraneSweep&))                                \
   KERNEL(void, bend_row, (const BendRow&))                                            \
   KERNEL(void, bend_line, (const BendLine&))                                          \
   KERNEL(void, bend_twist, (const TwistRow&))                                         \

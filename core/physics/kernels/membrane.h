@@ -1,4 +1,5 @@
-// What the kernels of the membrane work on (kernels/membrane.cpp, membrane_squares.cpp).
+// What the kernels of the membrane work on (kernels/membrane.cpp, membrane_squares.cpp,
+// membrane_sweep.cpp).
 #pragma once
 
 #include "physics/kernels/bending.h"
@@ -44,6 +45,33 @@ struct MembraneSquares {
   const float* share;            // of each column: half, 1 at both sides
   const std::int32_t* alive[4];  // of row 0, as the membrane's; or null
   std::int32_t* sheared;         // then: -1 for cells with both diagonals, 0 for others
+};
+
+// A Gauss-Seidel sweep over a membrane's cells (kernels/membrane_sweep.cpp), those between rows j and j+1 for the j of
+// begin … end-1 with j % 2 == colour. The component arrays of x, u and v lie equally far apart.
+struct MembraneSweep {
+  int begin, end, rows;
+  int columns, stride;
+  int colour;
+  Row3 x, u;           // row 0; particles are at x + u, and u receives what moves them [m]
+  const float* w;      // inverse mass of row 0 [1/kg]
+  float per_u, per_v;  // one over the spacings along and across rows [1/m]
+  // Of the cells after each row: their area, times the row's share of the stiffness and the square of the time that
+  // forces have [m² s²].
+  const float* scale;
+  float give[4];             // m/N; the inverse of C: 11 22 12 66
+  float give_difference[2];  // and of C11 and C22 alone
+  float* stress;  // multipliers [N/m]: five planes laid out as the lattice; null: a single sweep
+  std::ptrdiff_t stress_plane;
+  // Damping over the substep, and where particles were before it: there, or else x - dt v.
+  float rate;
+  ConstRow3 v, previous;
+  float dt;
+  // As the membrane's; null: cannot tear. Squared lengths past which they end, by stencil, or 0: the sweep ends none
+  // [m²]; and how many have ended, added up by row.
+  std::int32_t* alive[4];
+  float longest_square[4];
+  std::int32_t* ended;
 };
 
 }  // namespace weft::physics

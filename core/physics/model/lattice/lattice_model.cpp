@@ -99,7 +99,8 @@ void LatticeModel::append_projections(StageList& list) {
   sweep.compliant = method_ == Method::compliant;
   const bool lines = solver.sweep == Sweep::line;
   if (sweep.compliant && !lines && solver.iterations > 1)
-    multipliers_ = std::make_unique<Multipliers>(lattice_, stencils_.size());
+    multipliers_ = std::make_unique<Multipliers>(
+        lattice_, solves_membrane() ? kCellStresses : stencils_.size());
   sweep.multipliers = multipliers_.get();
   // Jacobi sweeps find all corrections of a particle at once, and need not gather them.
   const bool gather = solver.sweep != Sweep::jacobi;
@@ -138,6 +139,8 @@ void LatticeModel::append_projections(StageList& list) {
       sweep.tears = tears && n + 1 == solver.iterations;
       if (solver.sweep == Sweep::jacobi)
         list.stages.push_back(make_jacobi(parts_, sweep));
+      else if (solves_membrane())
+        append_membrane_sweep(parts_, sweep, list.stages);
       else
         append_gauss_seidel(parts_, sweep, list.stages);
     }
@@ -165,7 +168,7 @@ void LatticeModel::append_limits(StageList& list) {
   append_gauss_seidel(parts_, limit, list.stages);
 }
 
-// Methods that project know springs alone; the past of order 2 is not the start of the substep, which a
+// Jacobi sweeps and the method positional know springs alone; the past of order 2 is not the start of the substep, which a
 // limit that holds compares with.
 std::vector<std::string> LatticeModel::notes() const {
   std::vector<std::string> notes;
@@ -176,9 +179,12 @@ std::vector<std::string> LatticeModel::notes() const {
   const double bend_damping = parts_.cloth.bending.damping;
   if (!m.given() || is_membrane()) return notes;
   if (solves_membrane()) {
-    if (m.damping > 0 || bend_damping > 0)
-      notes.push_back(std::string("line sweeps leave out the damping of ") +
-                      damped(m.damping > 0, bend_damping > 0));
+    const bool lines = parts_.scene.solver.sweep == Sweep::line;
+    const bool undamped = lines && m.damping > 0;
+    if (undamped || bend_damping > 0)
+      notes.push_back((lines ? "line" : "gauss_seidel") +
+                      std::string(" sweeps leave out the damping of ") +
+                      damped(undamped, bend_damping > 0));
     return notes;
   }
   std::string note =

@@ -58,11 +58,11 @@ class LatticeModel final : public ClothModel {
   double stretch_energy(const Rows& x, StretchRow r, RowSpan rows) const;
   StretchRow stretch_row(const Rows& x, double dt) const;
   double greatest_coordinate(const Rows& x) const;
-  // Whether the membrane's own forces act, or line sweeps solve it, and not springs in its place.
+  // Whether the membrane's own forces act, or sweeps solve it, and not springs in its place.
   bool is_membrane() const { return parts_.cloth.membrane.given() && is_explicit(method_); }
-  bool solves_membrane() const { return parts_.cloth.membrane.given() && solved_by_lines(); }
-  bool solved_by_lines() const {
-    return method_ == Method::compliant && parts_.scene.solver.sweep == Sweep::line;
+  bool solves_membrane() const {
+    return parts_.cloth.membrane.given() && method_ == Method::compliant &&
+           parts_.scene.solver.sweep != Sweep::jacobi;
   }
   MembraneCells membrane() const;
 

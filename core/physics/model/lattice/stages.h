@@ -56,6 +56,9 @@ struct SweepOptions {
   bool tears = false;                         // ends constraints past their tear strain
 };
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
+// The same of a membrane, over its cells; with multipliers for kCellStresses.
+inline constexpr std::size_t kCellStencils = 4, kCellStresses = 5;
+void append_membrane_sweep(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
 // A strain limit that holds: sweeps by forces that last, which stay in `forces`.
 void append_held_limit(const LatticeParts& parts, Multipliers& forces, Stages& stages);
 // The strain limit, one constraint after the other.
