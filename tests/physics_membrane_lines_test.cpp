@@ -120,7 +120,6 @@ TEST(MembraneLines, MoveAsForcesWithWhatAClothMayHaveBesides) {
     std::function<void(Scene&)> add;
     double most;                      // m
     int frames = 30, substeps = 128;  // of single sweeps
-    bool damped = false;              // which lines leave out
   };
   const Feature features[] = {
       {"cells of 3 to 1",
@@ -138,7 +137,13 @@ TEST(MembraneLines, MoveAsForcesWithWhatAClothMayHaveBesides) {
       {"strong coupling", [](Scene& s) { s.cloths[0].membrane.coupling = 1600; }, 1e-3},
       {"negative coupling", [](Scene& s) { s.cloths[0].membrane.coupling = -900; }, 1e-3},
       {"two sweeps", [](Scene& s) { s.solver.iterations = 2; }, 1e-3},
-      {"damping", [](Scene& s) { s.cloths[0].membrane.damping = 4e-3; }, 4e-4, 30, 1024, true},
+      {"damping", [](Scene& s) { s.cloths[0].membrane.damping = 4e-3; }, 4e-4, 30, 1024},
+      {"damping of bending",
+       [](Scene& s) {
+         s.cloths[0].bending = 2e-2;
+         s.cloths[0].bending.damping = 0.05;
+       },
+       1e-3},
       {"a cut",
        [](Scene& s) {
          s.cloths[0].cuts = {{{7.4, -1}, {8.7, 9.3}, {12, 9.2}}};
@@ -164,10 +169,7 @@ TEST(MembraneLines, MoveAsForcesWithWhatAClothMayHaveBesides) {
     const double lines = error(by_lines(scene, 2, 32));
     const double sweeps = error(by_sweeps(scene, Sweep::gauss_seidel, 2, f.substeps));
     EXPECT_LT(sweeps, f.most) << f.name;
-    if (f.damped)
-      EXPECT_GT(lines, f.most) << f.name;
-    else
-      EXPECT_LT(lines, f.most) << f.name;
+    EXPECT_LT(lines, f.most) << f.name;
   }
 }
 
@@ -213,10 +215,10 @@ TEST(MembraneLines, KeepMomentumAndGainNoEnergy) {
           simulation.advance_frame();
           const Report now = simulation.report(false);
           drift = length(now.momentum - start.momentum);
-          // The rough start moves far in one of 4 substeps, of which a single sweep takes back a part.
-          const bool rough = sweep == Sweep::gauss_seidel && substeps == 4 && frame < 3;
+          // The rough start moves far in a long substep, of which a single sweep takes back a part.
+          const bool rough = sweep == Sweep::gauss_seidel && substeps < 64 && frame < 3;
           EXPECT_LT(now.energy.kinetic + now.energy.elastic,
-                    (rough ? 1.05 : 1.01) * (start.energy.kinetic + start.energy.elastic))
+                    (rough ? 1.06 : 1.01) * (start.energy.kinetic + start.energy.elastic))
               << order << " " << substeps << " " << frame;
           angular = length(now.angular_momentum - start.angular_momentum);
         }
@@ -315,29 +317,58 @@ TEST(MembraneLines, HoldAStrainLimit) {
   }
 }
 
-TEST(MembraneLines, SayWhatTheyLeaveOut) {
-  Scene scene = by_lines(curtain(9, kWoven), 1, 8);
-  const auto told = [&](const std::string& words) {
-    const Simulation simulation(scene);
-    for (const std::string& note : simulation.plan().notes)
-      if (note.find(words) != std::string::npos) return true;
-    return false;
+// A strip that is slowly drawn out, of cells that are long or hardly resist shear: what a sweep leaves falls with
+// the substep, whatever the order, and nothing swings up.
+TEST(MembraneSweeps, OfLongOrSoftCellsStretchLessTheFinerTheyAre) {
+  struct Pull {
+    int nx, ny;
+    Membrane membrane;
   };
-  EXPECT_FALSE(told("springs of the membrane"));
-  EXPECT_FALSE(told("damping"));
+  for (const Pull& pull : {Pull{5, 21, {5000, 5000, 0, 100, 0}},
+                           {5, 21, {5000, 3000, -1500, 100, 0}},
+                           {13, 13, {5000, 5000, 0, 1, 0}},
+                           {9, 25, {250, 500, 100, 2, 0}}})
+    for (const int order : {1, 2}) {
+      double before = 1e9;
+      for (const int substeps : {8, 16, 32, 64, 128, 256}) {
+        Scene scene = by_sweeps(curtain(3, pull.membrane), Sweep::gauss_seidel, order, substeps);
+        scene.gravity = {};
+        Cloth& cloth = scene.cloths[0];
+        cloth.grid = {pull.nx, pull.ny, {0, 0, 0}, {0.5, 0, 0}, {0, 0, 0.5}, 0};
+        cloth.bending = {};
+        cloth.density = 0.3;
+        cloth.drag = 20;
+        cloth.pins.clear();
+        for (int i = 0; i < pull.nx; ++i) {
+          cloth.pins.push_back({i, 0, {}});
+          const double x = 0.5 * i / (pull.nx - 1);
+          cloth.pins.push_back({i, pull.ny - 1, {{0, {x, 0, 0.5}}, {0.75, {x, 0, 0.5375}}}});
+        }
+        Simulation simulation(scene);
+        for (int frame = 0; frame < 45; ++frame) simulation.advance_frame();
+        const Report r = simulation.report(false);
+        EXPECT_LT(r.strain.max, 1.02 * before) << order << " " << substeps;
+        EXPECT_LT(r.energy.kinetic, 0.01) << order << " " << substeps;
+        before = r.strain.max;
+      }
+      EXPECT_LT(before, 0.09) << order;
+    }
+}
+
+TEST(MembraneSweeps, OfJacobiAreOfSpringsAndSaySo) {
+  Scene scene = by_lines(curtain(9, kWoven), 1, 8);
   scene.cloths[0].membrane.damping = 1e-4;
-  EXPECT_TRUE(told("line sweeps leave out the damping of the membrane"));
-  scene.cloths[0].bending = 1e-4;
   scene.cloths[0].bending.damping = 1e-3;
-  EXPECT_TRUE(told("line sweeps leave out the damping of the membrane and of bending"));
-  scene.cloths[0].membrane.damping = 0;
-  EXPECT_TRUE(told("line sweeps leave out the damping of bending"));
-  scene.solver.sweep = Sweep::gauss_seidel;
-  EXPECT_TRUE(told("gauss_seidel sweeps leave out the damping of bending"));
-  EXPECT_FALSE(told("springs of the membrane"));
-  scene.solver.sweep = Sweep::jacobi;
-  EXPECT_TRUE(told("springs of the membrane"));
-  EXPECT_TRUE(told("that of bending"));
+  for (const Sweep sweep : {Sweep::line, Sweep::gauss_seidel, Sweep::jacobi}) {
+    scene.solver.sweep = sweep;
+    const Simulation simulation(scene);
+    bool told = false;
+    for (const std::string& note : simulation.plan().notes)
+      told |= note.find(
+                  "springs of the membrane's warp, weft and shear run in its place, without "
+                  "its damping") != std::string::npos;
+    EXPECT_EQ(told, sweep == Sweep::jacobi);
+  }
 }
 
 // A sheet that turns and falls on a ball, by few substeps and by many, of a membrane and of springs: where it

@@ -11,8 +11,9 @@ std::vector<Way> ways_of(const Scene& scene) {
   asked.tethers = false;
   asked.order = 1;
   if (!asked.iterate_springs) asked.iterations = 1;  // else they are a part of the material
+  // Which sweeps over meshes leave out.
   const bool damped = std::ranges::any_of(scene.cloths, [](const Cloth& cloth) {
-    return cloth.membrane.damping > 0 || cloth.bending.damping > 0;
+    return cloth.mesh.given() && cloth.bending.damping > 0;
   });
   std::vector<Way> all;
   const auto add = [&](const char* name, Method method, Sweep sweep, int order, double work) {

@@ -26,13 +26,21 @@ struct MembraneRows : LeapfrogRows {
   const float *along, *across, *twist;
 };
 
+// Where particles were before the substep: there, or else x - dt v, with x and v as they are before the sweeps. Row 0.
+struct SubstepStart {
+  ConstRow3 previous, v;
+  float dt;
+};
+
 // What line sweeps are to make of squared lengths (kernels/membrane_squares.cpp), of rows begin … end-1.
 struct MembraneSquares {
   int begin, end, rows;
   int columns, stride;
-  ConstRow3 x, u;    // row 0; particles are at x + u; no u: it is zero [m]
-  float* diagonals;  // of the cells between each row and the next, row 0 [m²]
-  // Of edges along rows and between them; null: there is no coupling.
+  ConstRow3 x, u;  // row 0; particles are at x + u; no u: it is zero [m]
+  // Of the cells between each row and the next, row 0; those that lean to the left may share the array of the others,
+  // if nothing is damped [m²].
+  float *diagonals, *antidiagonals;
+  // Of edges along rows and between them; null: there is neither coupling nor damping.
   float *along, *across;
   float square_u, square_v;  // of the rest lengths [m²]
   float keep_u, keep_v;      // share of its own present square that an edge keeps
@@ -45,6 +53,8 @@ struct MembraneSquares {
   const float* share;            // of each column: half, 1 at both sides
   const std::int32_t* alive[4];  // of row 0, as the membrane's; or null
   std::int32_t* sheared;         // then: -1 for cells with both diagonals, 0 for others
+  float rate;                    // damping over the substep, over 1 more; 0: nothing is damped
+  SubstepStart start;
 };
 
 // A Gauss-Seidel sweep over a membrane's cells (kernels/membrane_sweep.cpp), those between rows j and j+1 for the j of
@@ -59,14 +69,15 @@ struct MembraneSweep {
   // Of the cells after each row: their area, times the row's share of the stiffness and the square of the time that
   // forces have [m² s²].
   const float* scale;
-  float give[4];             // m/N; the inverse of C: 11 22 12 66
-  float give_difference[2];  // and of C11 and C22 alone
-  float* stress;  // multipliers [N/m]: five planes laid out as the lattice; null: a single sweep
+  // One over stiffnesses [m/N]: of edges along and across, and in cells where something is torn; of γ; and with
+  // coupling, of the sum of strains along and across, `sum` times those of each edge, and of their differences. No sum:
+  // there is no coupling.
+  float give_edge[2], give_torn[2], give_shear;
+  float sum[2], give_sum, give_difference[2];
+  float* stress;  // multipliers [N/m]: planes laid out as the lattice; null: a single sweep
   std::ptrdiff_t stress_plane;
-  // Damping over the substep, and where particles were before it: there, or else x - dt v.
-  float rate;
-  ConstRow3 v, previous;
-  float dt;
+  float rate;  // > 0: the sweep of damping, by so many substeps; 0: of strains
+  SubstepStart start;
   // As the membrane's; null: cannot tear. Squared lengths past which they end, by stencil, or 0: the sweep ends none
   // [m²]; and how many have ended, added up by row.
   std::int32_t* alive[4];

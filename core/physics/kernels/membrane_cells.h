@@ -29,6 +29,13 @@ struct Cells {
     sum.q = q + u.q;
     return sum;
   }
+  WEFT_INLINE Cells operator*(Wide factor) const {
+    Cells product = *this;
+    for (Wide3 Cells::*edge :
+         {&Cells::a, &Cells::a_below, &Cells::b, &Cells::b_right, &Cells::p, &Cells::q})
+      product.*edge = this->*edge * factor;
+    return product;
+  }
 };
 
 }  // namespace weft::WEFT_KERNELS

@@ -11,6 +11,9 @@
 //   C12 e f = |C12| ((e ± f)² - e² - f²)/2  <=  |C12| (e - e°)²/2 + C12 e f° + …
 //
 // stiffens both edges by |C12| towards where they lie, and pulls them by what the other strain was.
+//
+// Damping puts (1 + rate) (e - ρ e_before) in the place of e, ρ = rate/(1 + rate): what is to be wanted of squares, by
+// stiffnesses that are 1 + rate times as great.
 #include "physics/kernels/membrane.h"
 #include "physics/kernels/membrane_cells.h"
 #include "physics/kernels/root.h"
@@ -39,38 +42,74 @@ struct There {
   WEFT_INLINE static int greatest(int a, int b) { return a > b ? a : b; }
 };
 
-template <bool kCoupled>
+// What the edges of a block of cells are beyond their rest lengths, in the mean of two each.
+struct Beyond {
+  Wide above, under, sides;  // across from the row before and to the next; along
+  // Cells between the row before and this, and between this and the next, and which of them are whole.
+  WEFT_INLINE Beyond(const MembraneSquares& r, const Cells& before, WideInt whole_before,
+                     const Cells& cells, WideInt whole) {
+    const auto beyond = [](Wide3 one, Wide3 other, float rest, WideInt there) {
+      const Wide both = squared_length(one) + squared_length(other);
+      return select(there, fma(both, wide(0.5f), wide(-rest)), Wide{});
+    };
+    above = beyond(before.b, before.b_right, r.square_v, whole_before);
+    under = beyond(cells.b, cells.b_right, r.square_v, whole);
+    sides = beyond(cells.a, cells.a_below, r.square_u, whole);
+  }
+  WEFT_INLINE void take_off(const Beyond& other, float share) {
+    above = fnma(wide(share), other.above, above);
+    under = fnma(wide(share), other.under, under);
+    sides = fnma(wide(share), other.sides, sides);
+  }
+};
+
+template <bool kEdges, bool kDamped>
 void one_row(const MembraneSquares& r, int j) {
   const std::ptrdiff_t start = std::ptrdiff_t(j) * r.stride;
   const std::ptrdiff_t next = j + 1 < r.rows ? start + r.stride : start;
   const std::ptrdiff_t last = j > 0 ? start - r.stride : start;
+  const auto of = [](ConstRow3 at, std::ptrdiff_t row, std::ptrdiff_t below) {
+    return Cells(at.x + row, at.x + below, at.y - at.x);
+  };
   const auto between = [&](std::ptrdiff_t row, std::ptrdiff_t below) {
-    const auto of = [&](ConstRow3 at) { return Cells(at.x + row, at.x + below, at.y - at.x); };
-    return r.u.x ? of(r.x) + of(r.u) : of(r.x);
+    return r.u.x ? of(r.x, row, below) + of(r.u, row, below) : of(r.x, row, below);
+  };
+  const auto before_between = [&](std::ptrdiff_t row, std::ptrdiff_t below) {
+    return r.start.previous.x ? of(r.start.previous, row, below)
+                              : of(r.x, row, below) + of(r.start.v, row, below) * wide(-r.start.dt);
   };
   Delay<1> coupled;
   for (int i = 0; i < r.columns; i += kLanes) {
     const Cells cells = between(start + i, next + i);
     const There there(r, j, i);
-    store(r.diagonals + start + i, (squared_length(cells.p) + squared_length(cells.q)) * 0.5f);
+    const Wide mean = (squared_length(cells.p) + squared_length(cells.q)) * 0.5f;
     if (r.sheared) put_lanes(r.sheared + start + i, there.sheared);
-    if constexpr (kCoupled) {
-      const auto beyond = [](Wide3 one, Wide3 other, float rest, WideInt whole) {
-        const Wide both = squared_length(one) + squared_length(other);
-        return select(whole, fma(both, wide(0.5f), wide(-rest)), Wide{});
-      };
+    Wide was{};
+    if constexpr (kDamped) {
+      const Cells at_start = before_between(start + i, next + i);
+      was = (squared_length(at_start.p) - squared_length(at_start.q)) * (0.5f * r.rate);
+      store(r.antidiagonals + start + i, mean - was);
+    }
+    store(r.diagonals + start + i, kDamped ? mean + was : mean);
+    if constexpr (kEdges) {
       const auto kept = [](Wide3 edge, float rest, float keep) {
         return fma(squared_length(edge) - rest, wide(keep), wide(rest));
       };
-      const Cells before = between(last + i, start + i);
-      const Wide above = beyond(before.b, before.b_right, r.square_v, There(r, j - 1, i).whole);
-      const Wide under = beyond(cells.b, cells.b_right, r.square_v, there.whole);
-      const Wide sides = beyond(cells.a, cells.a_below, r.square_u, there.whole);
+      const There there_before(r, j - 1, i);
+      Beyond beyond(r, between(last + i, start + i), there_before.whole, cells, there.whole);
+      Wide own_u = kept(cells.a, r.square_u, r.keep_u), own_v = kept(cells.b, r.square_v, r.keep_v);
+      if constexpr (kDamped) {
+        const Cells at_start = before_between(start + i, next + i);
+        beyond.take_off(
+            {r, before_between(last + i, start + i), there_before.whole, at_start, there.whole},
+            r.rate);
+        own_u = own_u + (squared_length(at_start.a) - r.square_u) * (r.rate * (1 - r.keep_u));
+        own_v = own_v + (squared_length(at_start.b) - r.square_v) * (r.rate * (1 - r.keep_v));
+      }
       const MembraneSquares::Coupling c = r.coupling[j];
-      const Wide own_u = kept(cells.a, r.square_u, r.keep_u),
-                 own_v = kept(cells.b, r.square_v, r.keep_v);
-      store(r.along + start + i, fnma(above, wide(c.before), fnma(under, wide(c.after), own_u)));
-      const Wide both = (sides + coupled.next(sides)) * load(r.share + i);
+      store(r.along + start + i,
+            fnma(beyond.above, wide(c.before), fnma(beyond.under, wide(c.after), own_u)));
+      const Wide both = (beyond.sides + coupled.next(beyond.sides)) * load(r.share + i);
       store(r.across + start + i, fnma(both, wide(c.across), own_v));
     }
   }
@@ -80,7 +119,14 @@ void one_row(const MembraneSquares& r, int j) {
 
 void membrane_squares(const MembraneSquares& given) {
   const MembraneSquares r = given;
-  for (int j = r.begin; j < r.end; ++j) r.along ? one_row<true>(r, j) : one_row<false>(r, j);
+  for (int j = r.begin; j < r.end; ++j) {
+    if (r.rate > 0)
+      one_row<true, true>(r, j);
+    else if (r.along)
+      one_row<true, false>(r, j);
+    else
+      one_row<false, false>(r, j);
+  }
 }
 
 }  // namespace weft::WEFT_KERNELS

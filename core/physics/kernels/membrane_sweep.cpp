@@ -1,17 +1,25 @@
-// Gauss–Seidel over the cells of a grid's membrane (membrane.cpp). A cell is one constraint of the three rows that
-// its strains have in the mean of its edges, with the stiffness C of the material, and two more of one row each, by
-// which its edges differ:
+// Gauss–Seidel over the cells of a grid's membrane (membrane.cpp), each of whose strains is a constraint of its own: of
+// its edges, its angle γ, and where warp and weft are coupled, of the sum and the differences that are left when the
+// coupling is told by squares, with a² = √(C11/C22) and the sign of C12:
 //
-//   E = ½ h_u h_v (e·C e + C11 d1² + C22 d2²)
-//   e = (mean(e11), mean(e22), γ),  d1, d2: half of what e11, e22 of a cell's two edges differ by
+//   C12 mean(e11) mean(e22) = ½ |C12| [(a mean(e11) ± mean(e22)/a)² + a² d1² + d2²/a²
+//                                      - a² mean(e11²) - mean(e22²)/a²]
 //
-// which is the same energy, told otherwise. Multipliers are stresses s, as those of triangles (mesh_strains.cpp):
+// d1, d2: half of what e11, e22 of a cell's two edges differ by. So edges have the stiffness C11 - a² |C12| and
+// C22 - |C12|/a², which is positive wherever the energy is. Multipliers are stresses s:
 //
-//   r = e + rate (e - e_before) + C⁻¹ s,  Δs = ((1 + rate) A + C⁻¹)⁻¹ r,  s <- s - Δs
-//   A = h² area Σ w_k ∂e/∂x_k ∂e/∂x_kᵀ,   x_k <- x_k - h² area w_k ∂e/∂x_kᵀ Δs
+//   r = e + s/k,  Δs = r/(A + 1/k),  s <- s - Δs
+//   A = h² area Σ w_n |∂e/∂x_n|²,   x_n <- x_n - h² area w_n ∂e/∂x_n Δs
 //
-// (Macklin, Müller, Chentanez 2016). Where edges are torn nothing couples those that are left, and each is a row of
-// its own, with half of its material's stiffness.
+// (Macklin, Müller, Chentanez 2016). Taken together, three strains of the mean of a cell's edges and their two
+// differences leave a sweep with complex eigenvalues, and substeps of the second order gain energy.
+//
+// Damping is a sweep of its own before these, over how strains grow by the way that particles are about to go:
+//
+//   r = rate (e - e_before),  Δs = r/(rate A + 1/k)
+//
+// Within the others it would ask them to hold strains where they were. In long substeps a single sweep cannot, and
+// neither stretches what falls as it should nor takes back what is stretched.
 //
 // Rows and columns have two colours each. The cells of one colour fill every second lane: those of two rows, j and
 // j+2, are parted from each other's neighbours, solved without a lane idle, and woven together again.
@@ -21,7 +29,7 @@
 #include "physics/kernels/membrane.h"
 #include "physics/kernels/parting.h"
 #include "physics/kernels/root.h"
-#include "physics/kernels/strain_block.h"
+#include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {
@@ -59,26 +67,13 @@ struct Corners {
   Wide3 of[4];
 };
 
-// Edges along the row and the next, across at the left and the right; of their rest lengths.
-struct Edges {
-  Wide3 along[2], across[2];
-  WEFT_INLINE Edges(const Corners& x, float u, float v)
-      : along{(x.of[1] - x.of[0]) * wide(u), (x.of[3] - x.of[2]) * wide(u)},
-        across{(x.of[2] - x.of[0]) * wide(v), (x.of[3] - x.of[1]) * wide(v)} {}
-  WEFT_INLINE Wide3 twice_along() const { return along[0] + along[1]; }
-  WEFT_INLINE Wide3 twice_across() const { return across[0] + across[1]; }
-};
-
-WEFT_INLINE Wide half_sum_of_squares(const Wide3 (&e)[2]) {
-  return (squared_length(e[0]) + squared_length(e[1])) * 0.5f;
-}
-
 // Constraints that are there, in the lanes of cells.
 struct There {
   WideInt along[2], across[2], diagonal[2];
 };
 
-template <bool kMultipliers, bool kDamped, bool kTorn>
+// kDamps: the sweep of damping.
+template <bool kMultipliers, bool kDamps, bool kTorn>
 class CellBlock {
  public:
   // `row`, `second_row`: of which the cells are, in the first half of the lanes and in the others.
@@ -87,6 +82,7 @@ class CellBlock {
       : p_(p), place_(place), row_(row), second_row_(second_row), active_(active) {
     const float second = p.scale[kLanes == 1 ? row : second_row];
     scale_ = select(lanes_below((kLanes + 1) / 2), wide(p.scale[row]), wide(second));
+    inertia_ = kDamps ? scale_ * p.rate : scale_;
     load_row(place, 0);
     load_row(place.below(p.stride), 2);
     if constexpr (kTorn) find_links();
@@ -94,26 +90,16 @@ class CellBlock {
 
   WEFT_INLINE void solve() {
     const Corners before = x_;
-    const WideInt whole = kTorn ? whole_ : active_;
-    solve_means(whole);
-    const Wide half = wide(0.5f);
-    if constexpr (!kTorn) {
-      solve_edges<false>(half, -half, whole, wide(1), 3);
-      solve_edges<true>(half, -half, whole, wide(1), 4);
-    } else {
-      // The edge that comes first, alone, where the cell is not whole.
-      const Wide first = select(whole, half, wide(1)), second = select(whole, -half, Wide{});
-      const Wide softer = select(whole, wide(1), wide(2));
-      const WideInt torn = active_ & ~whole;
-      solve_edges<false>(first, second, whole | (torn & there_.along[0]), softer, 3);
-      solve_edges<true>(first, second, whole | (torn & there_.across[0]), softer, 4);
-      if (any(torn)) {
-        solve_edges<false>(Wide{}, wide(1), torn & there_.along[1], softer, 0);
-        solve_edges<true>(Wide{}, wide(1), torn & there_.across[1], softer, 1);
-        solve_shear(torn & there_.diagonal[0] & there_.diagonal[1]);
-      }
-      if (p_.longest_square[0] > 0) end_overlong(before);
+    solve_edges<false>();
+    solve_edges<true>();
+    solve_shear();
+    if (p_.sum[0] != 0) {
+      solve_sum();
+      solve_difference<false>();
+      solve_difference<true>();
     }
+    if constexpr (kTorn && !kDamps)
+      if (p_.longest_square[0] > 0) end_overlong(before);
     const auto add = [&](Place at, int k) {
       const Wide3 near = moved_.of[k], far = moved_.of[k + 1];
       at.add_to(p_.u.x, near.x, far.x);
@@ -125,7 +111,7 @@ class CellBlock {
   }
 
  private:
-  static constexpr int kShear = 3;  // of p_.give
+  enum Slot { kEdges = 0, kShear = 4, kSum = 5, kDifferences = 6 };  // of multipliers
 
   WEFT_INLINE void load_row(Place at, int k) {
     const auto part = [&](auto value) {
@@ -134,15 +120,16 @@ class CellBlock {
       const Parting<1> z(value(2, at.at), value(2, at.second()));
       return std::pair(Wide3{x.near, y.near, z.near}, Wide3{x.far, y.far, z.far});
     };
-    const std::ptrdiff_t plane = p_.x.y - p_.x.x, previous = p_.previous.y - p_.previous.x;
+    const ConstRow3 previous = p_.start.previous, v = p_.start.v;
+    const std::ptrdiff_t plane = p_.x.y - p_.x.x, before = previous.y - previous.x;
     std::tie(x_.of[k], x_.of[k + 1]) = part([&](int c, std::ptrdiff_t i) {
       return load(p_.x.x + c * plane + i) + load(p_.u.x + c * plane + i);
     });
-    if constexpr (kDamped)
+    if constexpr (kDamps)
       std::tie(way_.of[k], way_.of[k + 1]) = part([&](int c, std::ptrdiff_t i) {
         const Wide predicted =
-            p_.previous.x ? load(p_.x.x + c * plane + i) - load(p_.previous.x + c * previous + i)
-                          : load(p_.v.x + c * plane + i) * p_.dt;
+            previous.x ? load(p_.x.x + c * plane + i) - load(previous.x + c * before + i)
+                       : load(v.x + c * plane + i) * p_.start.dt;
         return predicted + load(p_.u.x + c * plane + i);
       });
     const Parting<1> w = at.load_from(p_.w);
@@ -150,124 +137,134 @@ class CellBlock {
     w_[k + 1] = w.far;
   }
 
-  // The three rows of the mean strains.
-  WEFT_INLINE void solve_means(WideInt which) {
-    const Edges e(x_, p_.per_u, p_.per_v);
-    const Wide3 u = e.twice_along(), v = e.twice_across();
-    const Two metric{half_sum_of_squares(e.along), half_sum_of_squares(e.across),
-                     dot(u, v) * 0.25f};
-    Three r = strains(metric);
-    if constexpr (kDamped) {
-      const Edges by(way_, p_.per_u, p_.per_v);
-      const Wide3 du = by.twice_along(), dv = by.twice_across();
-      const Wide gained[3] = {
-          (gain(e.along[0], by.along[0]) + gain(e.along[1], by.along[1])) * 0.5f,
-          (gain(e.across[0], by.across[0]) + gain(e.across[1], by.across[1])) * 0.5f,
-          (dot(u, dv) + dot(v, du) - dot(du, dv)) * 0.25f};
-      for (int n = 0; n < 3; ++n) r.of[n] = r.of[n] + p_.rate * gained[n];
-    }
-    Three held{};
-    if constexpr (kMultipliers) {
-      for (int n = 0; n < 3; ++n) held.of[n] = place_.load_from(stress(n)).near;
-      add_give(p_.give, held, r);
-    }
-    for (Wide& left : r.of) left = select(which, left, Wide{});
-    const Wide scale = scale_ * (0.25f * (1 + p_.rate));
-    const Wide all = scale * ((w_[0] + w_[3]) + (w_[1] + w_[2]));
-    const Wide mixed = scale * ((w_[0] + w_[3]) - (w_[1] + w_[2]));
-    const Two g{all * (p_.per_u * p_.per_u), all * (p_.per_v * p_.per_v),
-                mixed * (p_.per_u * p_.per_v)};
-    const Three by = stress_step(metric, g, p_.give, r);
-    if constexpr (kMultipliers)
-      for (int n = 0; n < 3; ++n) place_.store_to(stress(n), held.of[n] - by.of[n]);
-    const Wide warp = scale_ * (0.5f * p_.per_u) * by.of[0];
-    const Wide weft = scale_ * (0.5f * p_.per_v) * by.of[1];
-    const Wide3 a = e.along[0] * warp, a_below = e.along[1] * warp;
-    const Wide3 b = e.across[0] * weft, b_right = e.across[1] * weft;
-    const Wide3 su = u * (scale_ * (0.25f * p_.per_v) * by.of[2]);
-    const Wide3 sv = v * (scale_ * (0.25f * p_.per_u) * by.of[2]);
-    move(0, (a + b) + (su + sv));
-    move(1, (b_right - a) + (su - sv));
-    move(2, (a_below - b) + (sv - su));
-    move(3, Wide3{} - ((a_below + b_right) + (su + sv)));
-  }
-
-  // The row first e' + second e'' of the edges along, or across, so many times softer than their material.
+  // The corners of edge n along or across: of the row and the next, or at the left and the right.
   template <bool kAcross>
-  WEFT_INLINE void solve_edges(Wide first, Wide second, WideInt which, Wide softer, int slot) {
-    const float per = kAcross ? p_.per_v : p_.per_u;
-    const Wide give = softer * p_.give_difference[kAcross];
-    const auto edges_of = [&](const Corners& x, Wide3(&to)[2]) {
-      to[0] = (x.of[kAcross ? 2 : 1] - x.of[0]) * wide(per);
-      to[1] = (x.of[3] - x.of[kAcross ? 1 : 2]) * wide(per);
-    };
-    Wide3 e[2];
-    edges_of(x_, e);
-    const Wide square[2] = {squared_length(e[0]), squared_length(e[1])};
-    Wide r = 0.5f * (first * (square[0] - 1.0f) + second * (square[1] - 1.0f));
-    if constexpr (kDamped) {
-      Wide3 by[2];
-      edges_of(way_, by);
-      r = r + p_.rate * (first * gain(e[0], by[0]) + second * gain(e[1], by[1]));
-    }
+  static constexpr int from(int n) {
+    return kAcross ? n : 2 * n;
+  }
+  template <bool kAcross>
+  static constexpr int to(int n) {
+    return kAcross ? n + 2 : 2 * n + 1;
+  }
+  // Of its rest length.
+  template <bool kAcross>
+  WEFT_INLINE Wide3 edge(const Corners& x, int n) const {
+    return (x.of[to<kAcross>(n)] - x.of[from<kAcross>(n)]) * wide(kAcross ? p_.per_v : p_.per_u);
+  }
+  // The strain of an edge, or how much of it damping counts: the rate times what it has grown by.
+  template <bool kAcross>
+  WEFT_INLINE Wide strain(Wide3 e, Wide square, int n) const {
+    if constexpr (!kDamps) return 0.5f * (square - 1.0f);
+    const Wide3 by = edge<kAcross>(way_, n);
+    return p_.rate * dot(e - by * wide(0.5f), by);
+  }
+  // Δs; what is pressed together has small derivatives, and takes a step as if it were not.
+  WEFT_INLINE Wide step(Wide r, Wide a, Wide at_rest, Wide give, WideInt which, int slot) const {
     Wide held{};
     if constexpr (kMultipliers) {
       held = place_.load_from(stress(slot)).near;
       r = r + give * held;
     }
-    // As for the means: what is pressed together takes short steps.
-    const auto inertia = [&](Wide share, Wide w, Wide length) {
-      return share * share * w * max(length, wide(1));
-    };
-    const Wide scale = scale_ * per;
-    const Wide a = inertia(first, w_[0] + w_[kAcross ? 2 : 1], square[0]) +
-                   inertia(second, w_[kAcross ? 1 : 2] + w_[3], square[1]);
-    const Wide by = select(which, r / (scale * (per * (1 + p_.rate)) * a + give), Wide{});
+    const Wide by = select(which, r / (inertia_ * max(a, at_rest) + give), Wide{});
     if constexpr (kMultipliers) place_.store_to(stress(slot), held - by);
-    const Wide3 one = e[0] * (first * scale * by), other = e[1] * (second * scale * by);
-    move(0, one);
-    move(kAcross ? 2 : 1, Wide3{} - one);
-    move(kAcross ? 1 : 2, other);
-    move(3, Wide3{} - other);
+    return by;
   }
 
-  // The row of γ alone.
-  WEFT_INLINE void solve_shear(WideInt which) {
-    const Edges e(x_, p_.per_u, p_.per_v);
-    const Wide3 u = e.twice_along(), v = e.twice_across();
-    Wide r = dot(u, v) * 0.25f;
-    if constexpr (kDamped) {
-      const Edges by(way_, p_.per_u, p_.per_v);
-      const Wide3 du = by.twice_along(), dv = by.twice_across();
-      r = r + p_.rate * (dot(u, dv) + dot(v, du) - dot(du, dv)) * 0.25f;
+  // Both edges along or across, each by itself.
+  template <bool kAcross>
+  WEFT_INLINE void solve_edges() {
+    const float per = kAcross ? p_.per_v : p_.per_u;
+    Wide give = wide(p_.give_edge[kAcross]);
+    if constexpr (kTorn) give = select(whole_, give, wide(p_.give_torn[kAcross]));
+    for (int n = 0; n < 2; ++n) {
+      const Wide3 e = edge<kAcross>(x_, n);
+      const Wide square = squared_length(e);
+      const Wide weight = (w_[from<kAcross>(n)] + w_[to<kAcross>(n)]) * (per * per);
+      const WideInt which = kTorn ? kAcross ? there_.across[n] : there_.along[n] : active_;
+      const Wide by = step(strain<kAcross>(e, square, n), weight * square, weight, give, which,
+                           kEdges + 2 * kAcross + n);
+      const Wide3 pull = e * (scale_ * per * by);
+      move(from<kAcross>(n), pull);
+      move(to<kAcross>(n), Wide3{} - pull);
     }
-    Wide held{};
-    if constexpr (kMultipliers) {
-      held = place_.load_from(stress(2)).near;
-      r = r + p_.give[kShear] * held;
+  }
+
+  // Half of what the strains of both edges differ by.
+  template <bool kAcross>
+  WEFT_INLINE void solve_difference() {
+    const float per = 0.5f * (kAcross ? p_.per_v : p_.per_u);
+    Wide3 e[2];
+    Wide half[2], a{}, at_rest{};
+    for (int n = 0; n < 2; ++n) {
+      e[n] = edge<kAcross>(x_, n);
+      const Wide square = squared_length(e[n]);
+      half[n] = 0.5f * strain<kAcross>(e[n], square, n);
+      const Wide weight = (w_[from<kAcross>(n)] + w_[to<kAcross>(n)]) * (per * per);
+      a = a + weight * square;
+      at_rest = at_rest + weight;
+    }
+    const Wide by = step(half[0] - half[1], a, at_rest, wide(p_.give_difference[kAcross]),
+                         kTorn ? whole_ : active_, kDifferences + kAcross);
+    const Wide scale = scale_ * per * by;
+    for (int n = 0; n < 2; ++n) {
+      const Wide3 pull = e[n] * (n == 0 ? scale : -scale);
+      move(from<kAcross>(n), pull);
+      move(to<kAcross>(n), Wide3{} - pull);
+    }
+  }
+
+  // The sum of strains along and across, p_.sum times each.
+  WEFT_INLINE void solve_sum() {
+    Wide r{};
+    Wide3 pull[4] = {};
+    for (int n = 0; n < 2; ++n) {
+      const Wide3 along = edge<false>(x_, n), across = edge<true>(x_, n);
+      r = r + p_.sum[0] * strain<false>(along, squared_length(along), n) +
+          p_.sum[1] * strain<true>(across, squared_length(across), n);
+      const Wide3 u = along * wide(p_.sum[0] * p_.per_u), v = across * wide(p_.sum[1] * p_.per_v);
+      pull[from<false>(n)] = pull[from<false>(n)] + u;
+      pull[to<false>(n)] = pull[to<false>(n)] - u;
+      pull[from<true>(n)] = pull[from<true>(n)] + v;
+      pull[to<true>(n)] = pull[to<true>(n)] - v;
+    }
+    const float u = p_.sum[0] * p_.per_u, v = p_.sum[1] * p_.per_v;
+    const Wide at_rest = ((w_[0] + w_[1]) + (w_[2] + w_[3])) * (u * u + v * v);
+    solve_all(r, pull, at_rest, wide(p_.give_sum), kTorn ? whole_ : active_, kSum);
+  }
+
+  WEFT_INLINE void solve_shear() {
+    const auto sums = [&](const Corners& x) {
+      return std::pair(edge<false>(x, 0) + edge<false>(x, 1), edge<true>(x, 0) + edge<true>(x, 1));
+    };
+    const auto [u, v] = sums(x_);
+    Wide r = dot(u, v) * 0.25f;
+    if constexpr (kDamps) {
+      const auto [du, dv] = sums(way_);
+      r = p_.rate * (dot(u, dv) + dot(v, du) - dot(du, dv)) * 0.25f;
     }
     const Wide3 su = u * wide(0.25f * p_.per_v), sv = v * wide(0.25f * p_.per_u);
     const Wide3 one = su + sv, other = su - sv;
-    const Wide at_rest = wide(0.25f * (p_.per_u * p_.per_u + p_.per_v * p_.per_v));
-    const Wide a = (w_[0] + w_[3]) * max(squared_length(one), at_rest) +
-                   (w_[1] + w_[2]) * max(squared_length(other), at_rest);
-    const Wide by = select(which, r / (scale_ * (1 + p_.rate) * a + p_.give[kShear]), Wide{});
-    if constexpr (kMultipliers) place_.store_to(stress(2), held - by);
-    const Wide s = scale_ * by;
-    move(0, one * s);
-    move(1, other * s);
-    move(2, Wide3{} - other * s);
-    move(3, Wide3{} - one * s);
+    const Wide3 pull[4] = {one, other, Wide3{} - other, Wide3{} - one};
+    const Wide at_rest =
+        ((w_[0] + w_[1]) + (w_[2] + w_[3])) * (0.25f * (p_.per_u * p_.per_u + p_.per_v * p_.per_v));
+    const WideInt which = kTorn ? there_.diagonal[0] & there_.diagonal[1] : active_;
+    solve_all(r, pull, at_rest, wide(p_.give_shear), which, kShear);
   }
 
-  // How much the strain of an edge, of its rest length, has grown by the way its ends have gone.
-  WEFT_INLINE static Wide gain(Wide3 edge, Wide3 by) { return dot(edge - by * wide(0.5f), by); }
+  // A strain that all corners change by `pull`, taken off.
+  WEFT_INLINE void solve_all(Wide r, const Wide3 (&pull)[4], Wide at_rest, Wide give, WideInt which,
+                             Slot slot) {
+    Wide a{};
+    for (int k = 0; k < 4; ++k) a = a + w_[k] * squared_length(pull[k]);
+    const Wide by = scale_ * step(r, a, at_rest, give, which, slot);
+    for (int k = 0; k < 4; ++k) move(k, pull[k] * by);
+  }
 
   WEFT_INLINE void move(int corner, Wide3 by) {
     by = by * w_[corner];
     x_.of[corner] = x_.of[corner] + by;
     moved_.of[corner] = moved_.of[corner] + by;
-    if constexpr (kDamped) way_.of[corner] = way_.of[corner] + by;
+    if constexpr (kDamps) way_.of[corner] = way_.of[corner] + by;
   }
 
   WEFT_INLINE float* stress(int n) const { return p_.stress + n * p_.stress_plane; }
@@ -321,15 +318,15 @@ class CellBlock {
   const Place place_;
   const int row_, second_row_;
   const WideInt active_;
-  Wide scale_, w_[4];
-  Corners x_, way_;  // where corners are, and how far they have gone in this substep
+  Wide scale_, inertia_, w_[4];  // what stresses move, and what they change the residual by
+  Corners x_, way_;              // where corners are, and how far they have gone in this substep
   Corners moved_{};
   There there_;
   WideInt whole_;
 };
 
 // The cells below row j, and below row j+2 if that is asked for.
-template <bool kMultipliers, bool kDamped, bool kTorn>
+template <bool kMultipliers, bool kDamps, bool kTorn>
 WEFT_INLINE void solve_rows(const MembraneSweep& p, int j, bool two) {
   constexpr int kCells = kLanes == 1 ? 1 : kLanes / 2;  // of a row in a block
   const std::ptrdiff_t row = std::ptrdiff_t(j) * p.stride;
@@ -339,33 +336,33 @@ WEFT_INLINE void solve_rows(const MembraneSweep& p, int j, bool two) {
   const WideInt column = Parting<1>::place(select(first_row, number, number - kCells));
   for (int colour = 0; colour < 2; ++colour)
     for (int i = colour; i + 1 < p.columns; i += 2 * kCells)
-      CellBlock<kMultipliers, kDamped, kTorn>(p, {row + i, two ? 2 * std::ptrdiff_t(p.stride) : 0},
-                                              j, two ? j + 2 : j,
-                                              rows & (column < p.columns - 1 - i))
+      CellBlock<kMultipliers, kDamps, kTorn>(p, {row + i, two ? 2 * std::ptrdiff_t(p.stride) : 0},
+                                             j, two ? j + 2 : j,
+                                             rows & (column < p.columns - 1 - i))
           .solve();
 }
 
-template <bool kMultipliers, bool kDamped, bool kTorn>
+template <bool kMultipliers, bool kDamps, bool kTorn>
 void sweep(const MembraneSweep& given) {
   const MembraneSweep p = given;  // a copy that no store can alias
   const int last = (p.end < p.rows - 1 ? p.end : p.rows - 1) - 1;
   for (int j = p.begin + (p.begin % 2 != p.colour); j <= last;) {
     const bool two = kLanes > 1 && j + 2 <= last;
-    solve_rows<kMultipliers, kDamped, kTorn>(p, j, two);
+    solve_rows<kMultipliers, kDamps, kTorn>(p, j, two);
     j += two ? 4 : 2;
   }
 }
 
-template <bool kMultipliers, bool kDamped>
-void sweep(const MembraneSweep& p) {
-  p.alive[0] ? sweep<kMultipliers, kDamped, true>(p) : sweep<kMultipliers, kDamped, false>(p);
+template <bool kMultipliers, bool kDamps>
+void sweep_what_is_left(const MembraneSweep& p) {
+  p.alive[0] ? sweep<kMultipliers, kDamps, true>(p) : sweep<kMultipliers, kDamps, false>(p);
 }
 
 }  // namespace
 
 void sweep_membrane(const MembraneSweep& p) {
-  if (p.rate > 0) return p.stress ? sweep<true, true>(p) : sweep<false, true>(p);
-  p.stress ? sweep<true, false>(p) : sweep<false, false>(p);
+  if (p.rate > 0) return sweep_what_is_left<false, true>(p);
+  p.stress ? sweep_what_is_left<true, false>(p) : sweep_what_is_left<false, false>(p);
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -7,7 +7,8 @@
 //   x_k <- x_k - h² area w_k (p du_k + q dv_k),  p = u Δs_1 + v Δs_3,  q = u Δs_3 + v Δs_2
 //
 // (Macklin, Müller, Chentanez 2016; the rate of strain is that of Green's strain over the substep, which turning
-// leaves alone.) No root but one: A is made of the metric u·u, u·v, v·v (strain_block.h).
+// leaves alone.) Where strands take turns with triangles, damping is in these equations; colours alone have a sweep of
+// it before theirs, r = rate (e - e_before), Δs = (rate A + C⁻¹)⁻¹ r (membrane_sweep.cpp says why). No root but one: A is made of the metric u·u, u·v, v·v (strain_block.h).
 #include "physics/kernels/mesh_sweep.h"
 #include "physics/kernels/records.h"
 #include "physics/kernels/strain_block.h"
@@ -58,8 +59,11 @@ struct Triangles {
   }
 };
 
+// Whether damping is in a sweep, or a sweep of damping is before the others.
+enum class Damping { none, in_one, alone };
+
 // kMidst: tells how long sides are in the mean of before and after (mesh_sweeps.cpp).
-template <bool kMultipliers, bool kDamped, bool kMidst>
+template <bool kMultipliers, Damping kDamping, bool kMidst>
 WEFT_INLINE void solve(const Triangles& t, float* stress, float* midst) {
   const StrainSweep& s = t.s;
   Wide3 x[3];
@@ -75,9 +79,12 @@ WEFT_INLINE void solve(const Triangles& t, float* stress, float* midst) {
   const Two metric = d.metric();
   Three r = strains(metric);
   Wide scale = load(t.b.area + t.lane) * s.dt2;
-  if constexpr (kDamped) {
+  if constexpr (kDamping != Damping::none) {
     const Three before = t.strains_before();
-    for (int n = 0; n < kStrains; ++n) r.of[n] = r.of[n] + s.rate * (r.of[n] - before.of[n]);
+    for (int n = 0; n < kStrains; ++n) {
+      const Wide gained = s.rate * (r.of[n] - before.of[n]);
+      r.of[n] = kDamping == Damping::alone ? gained : r.of[n] + gained;
+    }
   }
   Three held{};
   if constexpr (kMultipliers)
@@ -85,7 +92,10 @@ WEFT_INLINE void solve(const Triangles& t, float* stress, float* midst) {
       for (int n = 0; n < kStrains; ++n) held.of[n] = load(stress + n * kBatch + t.lane);
       add_give(s.give, held, r);
     }
-  const Three by = t.step(metric, kDamped ? scale * (1.0f + s.rate) : scale, w, r);
+  const Wide inertia = kDamping == Damping::none    ? scale
+                       : kDamping == Damping::alone ? scale * s.rate
+                                                    : scale * (1.0f + s.rate);
+  const Three by = t.step(metric, inertia, w, r);
   if constexpr (kMultipliers)
     for (int n = 0; n < kStrains; ++n) store(stress + n * kBatch + t.lane, held.of[n] - by.of[n]);
   const Wide3 p = (d.u * by.of[0] + d.v * by.of[2]) * scale;
@@ -102,12 +112,12 @@ WEFT_INLINE void solve(const Triangles& t, float* stress, float* midst) {
     }
 }
 
-template <bool kMultipliers, bool kDamped, bool kMidst>
+template <bool kMultipliers, Damping kDamping, bool kMidst>
 void sweep(const StrainSweep& given) {
   const StrainSweep s = given;  // a copy that no store can alias
   for (int n = 0; n < s.count; ++n)
     for (int lane = 0; lane < kBatch; lane += kLanes)
-      solve<kMultipliers, kDamped, kMidst>(
+      solve<kMultipliers, kDamping, kMidst>(
           {s, s.batches[n], lane},
           kMultipliers ? s.stress + std::ptrdiff_t(n) * kStrains * kBatch : nullptr,
           kMidst ? s.midst + std::ptrdiff_t(n) * 3 * kBatch : nullptr);
@@ -115,13 +125,16 @@ void sweep(const StrainSweep& given) {
 
 template <bool kMidst>
 void sweep(const StrainSweep& s) {
-  if (s.before) return s.stress ? sweep<true, true, kMidst>(s) : sweep<false, true, kMidst>(s);
-  s.stress ? sweep<true, false, kMidst>(s) : sweep<false, false, kMidst>(s);
+  if (s.before)
+    return s.stress ? sweep<true, Damping::in_one, kMidst>(s)
+                    : sweep<false, Damping::in_one, kMidst>(s);
+  s.stress ? sweep<true, Damping::none, kMidst>(s) : sweep<false, Damping::none, kMidst>(s);
 }
 
 }  // namespace
 
 void sweep_strains(const StrainSweep& s) {
+  if (s.damps) return sweep<false, Damping::alone, false>(s);
   s.midst ? sweep<true>(s) : sweep<false>(s);
 }
 

@@ -53,10 +53,12 @@ struct StrainSweep {
   const StrainBatch* batches;
   int count;
   float* records;
-  const float* before;  // records of where vertices were before the substep; null: no damping
-  float give[4];        // m/N; the inverse of C: 11 22 12 66
-  float dt2;            // s²
-  float rate;           // damping over dt
+  const float*
+      before;  // records of where vertices were before the substep; null: no damping in this sweep
+  bool damps;  // a sweep of damping alone, with `before`
+  float give[4];  // m/N; the inverse of C: 11 22 12 66
+  float dt2;      // s²
+  float rate;     // damping over dt
   float* stress;  // multipliers of the batches, each three times 16 [N/m]; null: a single sweep
   bool fresh;     // they are still zero, whatever the memory says
   // Of the batches' sides, from corner k to the next, three times 16: squared lengths in the mean of before and

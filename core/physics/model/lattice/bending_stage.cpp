@@ -72,13 +72,16 @@ class BendingConstraints final : public WholeStage {
                    terms(parts.lattice), "constraints"),
         parts_(parts),
         corrections_(corrections),
-        batches_(parts.lattice, corrections, parts.kernels, kBendScratch) {
+        damped_(parts.cloth.bending.damping > 0 ? Rows(parts.lattice.rows, parts.lattice.stride)
+                                                : Rows()),
+        x_(parts.cloth.bending.damping > 0 ? damped_ : parts.lattice.x),
+        batches_(parts.lattice, x_, corrections, parts.kernels, kBendScratch) {
     if (parts.scene.solver.order == 2) batches_.follow_masses();
     if (left(parts, &BendLinks::along, 0))
       torn_ = TurnedLinks<float>(parts.lattice, batches_.row_groups());
   }
 
-  std::size_t bytes() const override { return batches_.bytes() + torn_.bytes(); }
+  std::size_t bytes() const override { return batches_.bytes() + torn_.bytes() + damped_.bytes(); }
   void restart() override {
     batches_.turn_masses();
     torn_.forget();
@@ -88,15 +91,49 @@ class BendingConstraints final : public WholeStage {
   void run(const Substep& s, Threads& threads) override {
     const BendingStiffness k = bending_stiffness(parts_.cloth);
     const double h = s.dt * implicit_share(parts_.scene.solver);
-    const auto compliance = [&](double stiffness) { return float(1 / (stiffness * h * h)); };
+    const double rate = parts_.cloth.bending.damping / s.dt;
+    const auto compliance = [&](double stiffness) {
+      return float(1 / (stiffness * (1 + rate) * h * h));
+    };
     if (s.dt != dt_) set_compliance(compliance(k.along), compliance(k.across), s.dt);
     batches_.begin(threads);
+    if (rate > 0) take_off_start(float(rate / (1 + rate)), s.dt);
     along_rows();
     along_columns();
     twist(compliance(k.twist));
   }
 
  private:
+  // Second differences D and twists are linear. Damping puts D + rate (D - D_before) = (1 + rate) (D - ρ D_before) in
+  // their place, which is that of the places x - ρ x_before, ρ = rate/(1 + rate).
+  void take_off_start(float share, double dt) {
+    constexpr int kRowsTogether = 16;
+    constexpr double kParticleNs = 0.5;
+    Lattice& l = parts_.lattice;
+    const SubstepStart start = start_of(parts_, dt);
+    const auto take_off = [&](const float* x, const float* before, const float* v, float* to) {
+      if (before)
+        for (int i = 0; i < l.stride; ++i) to[i] = x[i] - share * before[i];
+      else
+        for (int i = 0; i < l.stride; ++i) to[i] = (1 - share) * x[i] + share * start.dt * v[i];
+    };
+    const auto row = [&](int j) {
+      const ConstRow3 x = l.x.row(j);
+      const auto in_row = [&](ConstRow3 r) { return r.x ? r.from(j * l.stride) : r; };
+      const ConstRow3 before = in_row(start.previous), v = in_row(start.v);
+      const Row3 to = damped_.row(j);
+      take_off(x.x, before.x, v.x, to.x);
+      take_off(x.y, before.y, v.y, to.y);
+      take_off(x.z, before.z, v.z, to.z);
+    };
+    batches_.share_out((l.rows + kRowsTogether - 1) / kRowsTogether,
+                       kParticleNs * kRowsTogether * l.columns, [&](int n, BatchMemory&) {
+                         const int begin = n * kRowsTogether;
+                         for (int j = begin; j < std::min(begin + kRowsTogether, l.rows); ++j)
+                           row(j);
+                       });
+  }
+
   // Of every row and every column, where those on the border count half.
   void set_compliance(float along, float across, double dt) {
     dt_ = dt;
@@ -142,7 +179,7 @@ class BendingConstraints final : public WholeStage {
                        kDifferenceNs * kBendLines * l.rows, [&](int batch, BatchMemory& memory) {
                          const int first = batch * kBendLines;
                          BendLine p{};
-                         p.x = l.x.row(0).from(first);
+                         p.x = x_.row(0).from(first);
                          p.u = corrections_.row(0).from(first);
                          p.w = l.w(0) + first;
                          p.step = l.stride;
@@ -161,8 +198,8 @@ class BendingConstraints final : public WholeStage {
         const int j = 2 * pair + colour;
         TwistRow r{};
         r.columns = l.columns;
-        r.x = l.x.row(j);
-        r.below = l.x.row(j + 1);
+        r.x = x_.row(j);
+        r.below = x_.row(j + 1);
         r.u = corrections_.row(j);
         r.u_below = corrections_.row(j + 1);
         r.w = l.w(j);
@@ -178,6 +215,8 @@ class BendingConstraints final : public WholeStage {
 
   LatticeParts parts_;
   Rows& corrections_;
+  Rows damped_;  // places less those before the substep, where bending is damped
+  Rows& x_;      // these, or the lattice's
   LineBatches batches_;
   TurnedLinks<float> torn_;             // of the rows
   double dt_ = 0;                       // s, of the compliances

@@ -17,12 +17,6 @@ bool keeps_previous(const Solver& solver, Method method) {
   return !is_explicit(method) && solver.order == 2;
 }
 
-const char* damped(bool membrane, bool bending) {
-  return membrane && bending ? "the membrane and of bending"
-         : membrane          ? "the membrane"
-                             : "bending";
-}
-
 }  // namespace
 
 LatticeModel::LatticeModel(const Scene& scene, int index, Method method, std::uint64_t seed,
@@ -135,6 +129,9 @@ void LatticeModel::append_projections(StageList& list) {
                 "the cloth has no constraints");
   } else {
     list.skip("line", "sweep is not line");
+    for (int n = 0; n < solver.iterations; ++n)
+      if (solves_membrane() && parts_.cloth.membrane.damping > 0)
+        append_membrane_damping(parts_, *corrections_, list.stages);
     for (int n = 0; n < solver.iterations && !stencils_.empty(); ++n) {
       sweep.tears = tears && n + 1 == solver.iterations;
       if (solver.sweep == Sweep::jacobi)
@@ -176,20 +173,9 @@ std::vector<std::string> LatticeModel::notes() const {
       parts_.cloth.strain_limit_order == StrainLimitOrder::strict)
     notes.push_back("with order 2 the strain limit is one pass a substep, as with colours");
   const Membrane& m = parts_.cloth.membrane;
-  const double bend_damping = parts_.cloth.bending.damping;
-  if (!m.given() || is_membrane()) return notes;
-  if (solves_membrane()) {
-    const bool lines = parts_.scene.solver.sweep == Sweep::line;
-    const bool undamped = lines && m.damping > 0;
-    if (undamped || bend_damping > 0)
-      notes.push_back((lines ? "line" : "gauss_seidel") +
-                      std::string(" sweeps leave out the damping of ") +
-                      damped(undamped, bend_damping > 0));
-    return notes;
-  }
+  if (!m.given() || is_membrane() || solves_membrane()) return notes;
   std::string note =
-      "springs of the membrane's warp, weft and shear run in its place, without its damping" +
-      std::string(bend_damping > 0 ? " and that of bending" : "");
+      "springs of the membrane's warp, weft and shear run in its place, without its damping";
   if (m.coupling != m.shear)
     note +=
         "; they couple warp and weft by " + number(m.shear) + " N/m, not by " + number(m.coupling);

@@ -5,9 +5,10 @@
 
 namespace weft::physics {
 
-LineBatches::LineBatches(Lattice& lattice, Rows& corrections, const KernelTable& kernels,
-                         int scratch)
+LineBatches::LineBatches(const Lattice& lattice, Rows& positions, Rows& corrections,
+                         const KernelTable& kernels, int scratch)
     : lattice_(lattice),
+      positions_(positions),
       corrections_(corrections),
       kernels_(kernels),
       scratch_(scratch),
@@ -34,7 +35,7 @@ BatchMemory LineBatches::make_memory() const {
 
 void LineBatches::turn_there(int group, BatchMemory& memory) {
   if (masses_change_) turn_masses(group);
-  const Row3 x = lattice_.x.row(0), u = corrections_.row(0), tile = memory.tile.row(0);
+  const Row3 x = positions_.row(0), u = corrections_.row(0), tile = memory.tile.row(0);
   turn(x.x, u.x, group, tile.x);
   turn(x.y, u.y, group, tile.y);
   turn(x.z, u.z, group, tile.z);

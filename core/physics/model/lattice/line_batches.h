@@ -57,8 +57,10 @@ class TurnedLinks {
 
 class LineBatches {
  public:
-  // `corrections`: where solutions go, laid out as the lattice; `scratch`: floats for each particle of a batch.
-  LineBatches(Lattice& lattice, Rows& corrections, const KernelTable& kernels, int scratch);
+  // `positions`: where particles are without their corrections. `corrections`: where solutions go, laid out as the
+  // lattice; `scratch`: floats for each particle of a batch.
+  LineBatches(const Lattice& lattice, Rows& positions, Rows& corrections,
+              const KernelTable& kernels, int scratch);
 
   int row_groups() const { return (lattice_.rows + kBatchLines - 1) / kBatchLines; }
   std::size_t bytes() const;
@@ -115,8 +117,8 @@ class LineBatches {
   void turn_masses(int group);
   void turn_back(int group, BatchMemory& memory);
 
-  Lattice& lattice_;
-  Rows& corrections_;
+  const Lattice& lattice_;
+  Rows &positions_, &corrections_;
   const KernelTable& kernels_;
   int scratch_;
   AlignedArray<float> masses_;

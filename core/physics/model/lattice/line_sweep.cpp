@@ -58,7 +58,7 @@ class Line final : public WholeStage {
         options_(options),
         solve_(options.membrane ? parts.kernels.lines.membrane_line_batch
                                 : parts.kernels.lines.line_batch),
-        batches_(parts.lattice, corrections, parts.kernels, kBatchScratch) {
+        batches_(parts.lattice, parts.lattice.x, corrections, parts.kernels, kBatchScratch) {
     for (const Stencil& f : parts.stencils) {
       LineStencil& l = (f.dj == 0   ? along_rows_
                         : f.di == 0 ? along_columns_
@@ -251,6 +251,7 @@ class Line final : public WholeStage {
 
   void set_compliance(double dt) {
     dt_ = dt;
+    if (membrane_) membrane_->prepare(dt);
     for (auto* stencils : all())
       for (LineStencil& l : *stencils)
         for (int n = 0; n < int(l.compliance.size()); ++n)
@@ -265,12 +266,9 @@ class Line final : public WholeStage {
     return parts_.lattice.column_width[std::size_t(column)];
   }
   float compliance(const Stencil& f, int j, float width) const {
-    if (membrane_) {
-      const double h = dt_ * implicit_share(parts_.scene.solver);
-      return float(
-          std::max(membrane_->compliance(f, std::min(j, parts_.lattice.rows - 1), width, h),
-                   least_ * f.rest * f.rest));
-    }
+    if (membrane_)
+      return float(std::max(membrane_->compliance(f, std::min(j, parts_.lattice.rows - 1), width),
+                            least_ * f.rest * f.rest));
     const double real = options_.compliant ? compliance_of(parts_, f, j, dt_) / width : 0;
     return float(std::max(real, least_));
   }

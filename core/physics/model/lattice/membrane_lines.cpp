@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/model/push.h"
+
 namespace weft::physics {
 namespace {
 
@@ -19,7 +21,8 @@ MembraneLines::MembraneLines(const LatticeParts& parts)
       hv_(spacing_v(parts.cloth.grid)),
       diagonals_(guarded<float>()) {
   if (parts.tearing) sheared_ = guarded<std::int32_t>();
-  if (!coupled()) return;
+  if (damped()) antidiagonals_ = guarded<float>();
+  if (!looks_at_edges()) return;
   along_ = guarded<float>();
   across_ = guarded<float>();
   const int groups = (parts.lattice.rows + kBatchLines - 1) / kBatchLines;
@@ -45,8 +48,8 @@ AlignedArray<T> MembraneLines::guarded() const {
 }
 
 std::size_t MembraneLines::bytes() const {
-  return (diagonals_.size() + along_.size() + across_.size() + share_.size() + turned_.size() +
-          sheared_.size()) *
+  return (diagonals_.size() + antidiagonals_.size() + along_.size() + across_.size() +
+          share_.size() + turned_.size() + sheared_.size()) *
              sizeof(float) +
          coupling_.size() * sizeof(MembraneSquares::Coupling);
 }
@@ -56,7 +59,12 @@ double MembraneLines::gradient(int j) const {
   return j >= 0 && j + 1 < rows ? 1 - parts_.cloth.stiffness_gradient * (j + 0.5) / (rows - 1) : 0;
 }
 
-double MembraneLines::compliance(const Stencil& f, int j, double share, double h) const {
+void MembraneLines::prepare(double dt) {
+  dt_ = dt;
+  rate_ = parts_.cloth.membrane.damping / dt;
+}
+
+double MembraneLines::compliance(const Stencil& f, int j, double share) const {
   constexpr double kLeast = 1e-12;  // N/m
   const Membrane& m = parts_.cloth.membrane;
   const double area = hu_ * hv_, coupling = std::abs(m.coupling);
@@ -69,7 +77,8 @@ double MembraneLines::compliance(const Stencil& f, int j, double share, double h
   else
     stiffness =
         area * std::max(kLeast, (m.weft + coupling) * gradient(j) * share) / std::pow(hv_, 4);
-  return 1 / (stiffness * h * h);
+  const double h = dt_ * implicit_share(parts_.scene.solver);
+  return 1 / (stiffness * (1 + rate_) * h * h);
 }
 
 MembraneSquares MembraneLines::rows(int begin, int end, const Rows* corrections) {
@@ -84,10 +93,15 @@ MembraneSquares MembraneLines::rows(int begin, int end, const Rows* corrections)
   r.stride = l.stride;
   r.x = l.x.row(0);
   if (corrections) r.u = corrections->row(0);
-  r.diagonals = diagonals_.data() + kGuard;
+  r.diagonals = r.antidiagonals = diagonals_.data() + kGuard;
+  if (damped()) {
+    r.antidiagonals = antidiagonals_.data() + kGuard;
+    r.rate = float(rate_ / (1 + rate_));
+    r.start = start_of(parts_, dt_);
+  }
   r.square_u = float(hu_ * hu_);
   r.square_v = float(hv_ * hv_);
-  if (coupled()) {
+  if (looks_at_edges()) {
     r.along = along_.data() + kGuard;
     r.across = across_.data() + kGuard;
     r.keep_u = float(coupling / (m.warp + coupling));
@@ -113,12 +127,13 @@ void MembraneLines::look(LineBatches& batches, const Rows* corrections) {
 }
 
 const float* MembraneLines::squares(const Stencil& f, int row) const {
-  if (f.kind == Kind::shear) return row_of(diagonals_, row) - f.near();
-  return coupled() ? row_of(across_, row) : nullptr;
+  if (f.kind == Kind::shear)
+    return row_of(f.di < 0 && damped() ? antidiagonals_ : diagonals_, row) - f.near();
+  return looks_at_edges() ? row_of(across_, row) : nullptr;
 }
 
 const float* MembraneLines::turned(int group, LineBatches& batches) {
-  if (!coupled()) return nullptr;
+  if (!looks_at_edges()) return nullptr;
   float* lanes =
       turned_.data() + std::size_t(group) * turned_columns(parts_.lattice.columns) * kBatchLines;
   batches.turn(along_.data() + kGuard, nullptr, group, lanes);

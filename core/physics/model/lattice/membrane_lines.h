@@ -12,9 +12,11 @@ class MembraneLines {
  public:
   explicit MembraneLines(const LatticeParts& parts);
 
-  // Of a stencil's constraints in row j, whose columns stand for `share` of an inner one's width, in a substep
-  // that gives forces the time h [s]: 1/(K h²) [m²/kg] where the energy is ½ K ((e·e - s)/2)².
-  double compliance(const Stencil& stencil, int j, double share, double h) const;
+  // Before substeps of this length [s].
+  void prepare(double dt);
+  // Of a stencil's constraints in row j, whose columns stand for `share` of an inner one's width: 1/(K h²) [m²/kg]
+  // where the energy is ½ K ((e·e - s)/2)² and h the time that forces have.
+  double compliance(const Stencil& stencil, int j, double share) const;
 
   // Newton steps of a line. Of the diagonals, which come first and are softer, what one step leaves is little.
   static int steps(const Stencil& stencil) { return stencil.kind == Kind::shear ? 1 : 2; }
@@ -39,12 +41,15 @@ class MembraneLines {
     return lanes.data() + kGuard + std::size_t(row) * std::size_t(parts_.lattice.stride);
   }
   double gradient(int j) const;
-  bool coupled() const { return parts_.cloth.membrane.coupling != 0; }
+  bool damped() const { return parts_.cloth.membrane.damping > 0; }
+  // Whether edges are to have other squares than those of their rest lengths.
+  bool looks_at_edges() const { return parts_.cloth.membrane.coupling != 0 || damped(); }
   MembraneSquares rows(int begin, int end, const Rows* corrections);
 
   LatticeParts parts_;
   double hu_, hv_;
-  AlignedArray<float> diagonals_, along_, across_, share_, turned_;
+  double dt_ = 0, rate_ = 0;  // s; damping over dt
+  AlignedArray<float> diagonals_, antidiagonals_, along_, across_, share_, turned_;
   AlignedArray<std::int32_t> sheared_;
   std::vector<MembraneSquares::Coupling> coupling_;
 };

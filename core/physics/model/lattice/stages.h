@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "physics/kernels/membrane.h"
 #include "physics/kernels/tear.h"
 #include "physics/model/cloth_model.h"
 #include "physics/model/lattice/lattice.h"
@@ -56,9 +57,11 @@ struct SweepOptions {
   bool tears = false;                         // ends constraints past their tear strain
 };
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
-// The same of a membrane, over its cells; with multipliers for kCellStresses.
-inline constexpr std::size_t kCellStencils = 4, kCellStresses = 5;
+// The same of a membrane, over its cells, with multipliers for kCellStresses; and the sweep of its damping, which comes
+// before.
+inline constexpr std::size_t kCellStencils = 4, kCellStresses = 8;
 void append_membrane_sweep(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
+void append_membrane_damping(const LatticeParts& parts, Rows& corrections, Stages& stages);
 // A strain limit that holds: sweeps by forces that last, which stay in `forces`.
 void append_held_limit(const LatticeParts& parts, Multipliers& forces, Stages& stages);
 // The strain limit, one constraint after the other.
@@ -68,6 +71,9 @@ std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts, Rows& corr
 // cloth does not bend.
 std::unique_ptr<RowStage> make_bending_force(const LatticeParts& parts);
 std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Rows& corrections);
+
+// Where particles were before a substep of dt, as it is known after the stages of `predict`.
+SubstepStart start_of(const LatticeParts& parts, double dt);
 
 // Compliance 1/(k dt²) [1/kg] of a stencil's constraints in row j, dt the share of the substep that
 // the solver's order gives constraint forces.

@@ -250,8 +250,10 @@ void MeshSweeps::make_strains(const std::vector<RestTriangle>& triangles, bool k
 
 void MeshSweeps::append_strains(int iterations, bool fresh, StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 1));
+  for (int n = 0; n < iterations && strains_->damps_before(); ++n)
+    strains_->append(1, {false, false, true}, list);
   for (int n = 0; n < iterations; ++n) {
-    strains_->append(iterations, fresh && n == 0, n + 1 == iterations, list);
+    strains_->append(iterations, {fresh && n == 0, n + 1 == iterations}, list);
     append_seams(list);
   }
   list.stages.push_back(make_store_records(parts_, records_, false));

@@ -10,17 +10,18 @@ namespace {
 
 class SweepStrains final : public RowStage {
  public:
-  // `before`: null where nothing is damped.
+  // `before`: null where a sweep damps nothing.
   SweepStrains(const ClothParts& parts, StrainColour& colour, AlignedArray<float>& records,
-               const float* before, int number, bool fresh, bool last)
-      : RowStage("gauss_seidel", "membrane of triangles of colour " + std::to_string(number), 1,
-                 colour.triangles, "triangles"),
+               const float* before, int number, StrainPass pass)
+      : RowStage("gauss_seidel",
+                 (pass.damps ? "damping" : "membrane") +
+                     (" of triangles of colour " + std::to_string(number)),
+                 1, colour.triangles, "triangles"),
         parts_(parts),
         colour_(colour),
         records_(records),
         before_(before),
-        fresh_(fresh),
-        last_(last) {}
+        pass_(pass) {}
   Velocities velocities() const override { return Velocities::left_alone; }
   bool rows_apart() const override { return colour_.disjoint; }
   void run(int begin, int end, const Substep& s) override {
@@ -39,10 +40,11 @@ class SweepStrains final : public RowStage {
     sweep.give[3] = float(1 / m.shear);
     sweep.dt2 = float(h * h);
     sweep.rate = float(m.damping / s.dt);
-    sweep.fresh = fresh_;
-    if (colour_.stress.size() > 0)
+    sweep.damps = pass_.damps;
+    sweep.fresh = pass_.fresh;
+    if (!pass_.damps && colour_.stress.size() > 0)
       sweep.stress = colour_.stress.data() + std::ptrdiff_t(kStrains * kBatch) * first;
-    if (last_ && colour_.midst.size() > 0)
+    if (pass_.last && colour_.midst.size() > 0)
       sweep.midst = colour_.midst.data() + std::ptrdiff_t(kStrains * kBatch) * first;
     parts_.kernels.mesh.sweep_strains(sweep);
   }
@@ -52,7 +54,7 @@ class SweepStrains final : public RowStage {
   StrainColour& colour_;
   AlignedArray<float>& records_;
   const float* before_;
-  bool fresh_, last_;
+  StrainPass pass_;
 };
 
 StrainBatch batch_of(const std::vector<int>& chosen, int row, const Particles& p,
@@ -74,7 +76,10 @@ StrainBatch batch_of(const std::vector<int>& chosen, int row, const Particles& p
 StrainSweeps::StrainSweeps(const ClothParts& parts, const MeshOrder& order,
                            const std::vector<RestTriangle>& triangles, AlignedArray<float>& records,
                            bool keeps_stress, bool tears)
-    : parts_(parts), triangles_(triangles), records_(records) {
+    : parts_(parts),
+      triangles_(triangles),
+      records_(records),
+      damps_in_one_(keeps_stress && damped()) {
   const Particles& p = parts.particles;
   if (damped()) before_ = records_of(p);
   if (keeps_stress || tears) places_.resize(triangles.size());
@@ -135,12 +140,12 @@ std::vector<const float*> StrainSweeps::midst() const {
   return midst;
 }
 
-void StrainSweeps::append(int iterations, bool fresh, bool last, StageList& list) {
+void StrainSweeps::append(int iterations, StrainPass pass, StageList& list) {
   for (int c = 0; c < int(colours_.size()); ++c) {
     StrainColour& colour = colours_[std::size_t(c)];
     if (iterations > 1) make_room(colour);
     list.stages.push_back(std::make_unique<SweepStrains>(
-        parts_, colour, records_, damped() ? before_.data() : nullptr, c, fresh, last));
+        parts_, colour, records_, pass.damps || damps_in_one_ ? before_.data() : nullptr, c, pass));
   }
 }
 

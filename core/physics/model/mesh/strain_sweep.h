@@ -17,9 +17,16 @@ struct StrainColour {
   AlignedArray<float> midst;   // m², of each side (mesh_sweep.h); none: nobody asks
 };
 
+// What a sweep is among others: the first of a substep, and of stress; the last of one, which tells lengths; or of
+// damping alone, before the others.
+struct StrainPass {
+  bool fresh, last, damps = false;
+};
+
 class StrainSweeps {
  public:
-  // `keeps_stress`: multipliers are there whatever the number of sweeps, and may be asked for and changed.
+  // `keeps_stress`: multipliers are there whatever the number of sweeps, and may be asked for and changed; damping is
+  // then in the sweeps.
   // `tears`: follow() is going to be called. `triangles` outlive it.
   StrainSweeps(const ClothParts& parts, const MeshOrder& order,
                const std::vector<RestTriangle>& triangles, AlignedArray<float>& records,
@@ -27,8 +34,10 @@ class StrainSweeps {
 
   // Before anything is moved: keeps what damping compares with, if there is any.
   void append_places_before(StageList& list);
-  // One sweep of so many; `fresh`: the first of a substep, and of stress; `last`: of a substep, tells lengths.
-  void append(int iterations, bool fresh, bool last, StageList& list);
+  // One sweep of so many.
+  void append(int iterations, StrainPass pass, StageList& list);
+  // Whether sweeps of damping go before them.
+  bool damps_before() const { return damped() && !damps_in_one_; }
 
   // A triangle has lost its membrane, or has it again: as its area says.
   void follow(int triangle);
@@ -60,6 +69,7 @@ class StrainSweeps {
   const ClothParts& parts_;
   const std::vector<RestTriangle>& triangles_;
   AlignedArray<float>& records_;
+  bool damps_in_one_;
   AlignedArray<float> before_;  // none: nothing is damped
   std::vector<StrainColour> colours_;
   std::vector<Place> places_;  // none: neither stress nor tears are asked for
