@@ -1,4 +1,5 @@
 // The pair search against a brute-force oracle, and what the response does to pairs.
+#include <cmath>
 #include <cstdio>
 #include <random>
 #include <set>
@@ -11,6 +12,7 @@
 #include "physics/frame/cloth_step.h"
 #include "physics/model/lattice/stages.h"
 #include "squares.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
@@ -148,6 +150,40 @@ TEST(SelfCollisionPairs, CrossingsAreThoseOfEveryEdgeAndTriangle) {
         crossings += std::int64_t(physics::find_crossings(x, {f}, {e}).size());
     EXPECT_GT(crossings, 0);
     EXPECT_EQ(physics::count_crossings(x, faces), crossings) << pulled;
+  }
+}
+
+// A plane sheet does not cross itself however it is turned and wherever it lies, though its rounded corners lie beside
+// its plane; what passes through it by more than these do is found.
+TEST(SelfCollisionPairs, PlaneSheetsDoNotCrossThemselves) {
+  constexpr int kSide = 7;
+  std::mt19937 random(3);
+  std::normal_distribution<double> any;
+  std::vector<physics::Face> faces;
+  add_squares(kSide, kSide, 0, faces);
+  const int tip = kSide * kSide;
+  for (int k = 0; k < 300; ++k) {
+    const auto direction = [&] {
+      const Vec3 d{any(random), any(random), any(random)};
+      return times(d, 1 / length(d));
+    };
+    const double spacing = std::pow(10, -1 - k % 3), narrow = k % 2 == 0 ? 1 : 0.1;
+    const Vec3 u = direction(), normal = cross(u, direction()), v = cross(normal, u);
+    const Vec3 start = times(direction(), k % 5);
+    std::vector<Vec3> x;
+    const auto rounded = [&](double a, double b, double above) {
+      const Vec3 n = times(normal, above / length(normal));
+      const Vec3 at =
+          plus(plus(start, n), plus(times(u, a * spacing), times(v, b * spacing * narrow)));
+      x.push_back({double(float(at[0])), double(float(at[1])), double(float(at[2]))});
+    };
+    for (int p = 0; p < kSide * kSide; ++p) rounded(p % kSide, p / kSide, 0);
+    EXPECT_EQ(physics::count_crossings(x, faces), 0) << k;
+    std::vector<physics::Face> more = faces;
+    more.push_back({tip, tip + 1, tip + 2});
+    for (const double above : {spacing, -spacing, spacing}) rounded(3.3, 2.4, 0.1 * above);
+    x.back()[0] += 0.1 * spacing;
+    EXPECT_GT(physics::count_crossings(x, more), 0) << k;
   }
 }
 

@@ -71,14 +71,10 @@ void FrameNotes::note_stretch(const EndedFrame& frame, std::vector<std::string>&
 // Sweeps that leave strain keep energy that nothing put in; so do sheets that are put apart faster than they give
 // way.
 void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::string>& notes) {
-  constexpr double kInstant = 1e-9;  // s; in substeps so short all stiffness is felt
   if (left_strain_ || driven_ || frame.method != Method::compliant) return;
   double held = 0;
   for (std::size_t c = 0; c < frame.cloths.size(); ++c)
-    if (!is_asleep(frame.sleeping, c)) {
-      const ClothStep& step = *frame.cloths[c];
-      held += step.model().held_energy(step.particles().x, kInstant, frame.threads);
-    }
+    if (!is_asleep(frame.sleeping, c)) held += frame.cloths[c]->model().elastic_energy().sum();
   if (!frame.energy.is_made(held)) return;
   left_strain_ = true;
   notes.push_back("frame " + std::to_string(frame.number) + ": the sweeps" +

@@ -6,6 +6,7 @@
 
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/cloth_model.h"
+#include "weft/vec3.h"
 
 namespace weft::physics {
 namespace {
@@ -26,18 +27,36 @@ Box box_of(const std::vector<Vec3>& x, const std::array<std::int32_t, N>& corner
 }
 
 double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 u{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-  const Vec3 w{d[0] - a[0], d[1] - a[1], d[2] - a[2]};
-  return w[0] * (u[1] * v[2] - u[2] * v[1]) + w[1] * (u[2] * v[0] - u[0] * v[2]) +
-         w[2] * (u[0] * v[1] - u[1] * v[0]);
+  return dot(minus(d, a), cross(minus(b, a), minus(c, a)));
 }
 
-// The edge's ends lie on both sides of the triangle, and the edge passes all three of its sides the
-// same way round.
+double farthest(const Vec3& a, const Vec3& b) {
+  double most = 0;
+  for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(a[k] - b[k]));
+  return most;
+}
+
+// How far from the plane of a triangle with this normal rounded corners may bring what lies in it. What is far from a
+// narrow triangle is taken far off by a corner's rounding.
+double rounding(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c,
+                double normal) {
+  constexpr double kUnits = 4.0 / (1 << 24);  // of single precision
+  double place = 0;
+  for (const Vec3* at : {&p, &q, &a, &b, &c}) place = std::max(place, farthest(*at, {}));
+  const double side = std::max({farthest(a, b), farthest(b, c), farthest(c, a)});
+  const double reach = std::max({side, farthest(p, a), farthest(q, a)});
+  return kUnits * place * (1 + reach * side / normal);
+}
+
+// The edge's ends lie on both sides of the triangle, by more than what rounding makes of a plane sheet, and the edge
+// passes all three of its sides the same way round.
 bool passes(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  if (volume(a, b, c, p) * volume(a, b, c, q) >= 0) return false;
+  const double of_p = volume(a, b, c, p), of_q = volume(a, b, c, q);
+  if (of_p * of_q >= 0) return false;
   const double u = volume(p, q, a, b), v = volume(p, q, b, c), w = volume(p, q, c, a);
-  return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
+  if (!((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0))) return false;
+  const double normal = length(cross(minus(b, a), minus(c, a)));
+  return std::min(std::abs(of_p), std::abs(of_q)) > rounding(p, q, a, b, c, normal) * normal;
 }
 
 }  // namespace

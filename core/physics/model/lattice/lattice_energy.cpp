@@ -95,7 +95,7 @@ ElasticEnergy LatticeModel::elastic_energy() const {
   const std::vector<Vec3> x = lattice_.gather(lattice_.x);
   ElasticEnergy energy{.bending = bending_energy(parts_.cloth, x, bend_links())};
   if (is_membrane() || solves_membrane())
-    energy.membrane = membrane().energy(x);
+    energy.membrane = membrane_energy(lattice_.x);
   else
     energy.springs = physics::elastic_energy(parts_.cloth, stencils_, x);
   return energy;
@@ -147,9 +147,7 @@ StretchRow LatticeModel::stretch_row(const Rows& x, double dt) const {
   const double projected = std::min(1.0, 2 * cloth.positional_k * parts_.scene.solver.iterations);
   StretchRow r{};
   r.slack = float(kRounding * greatest_coordinate(x));
-  r.share = is_explicit(method_) || solves_membrane() ? kInfinite
-            : method_ == Method::positional           ? float(projected)
-                                                      : 1;
+  r.share = is_explicit(method_) ? kInfinite : method_ == Method::positional ? float(projected) : 1;
   r.inverse_dt2 = float(1 / (dt * dt));
   return r;
 }
@@ -175,9 +173,16 @@ double LatticeModel::stretch_energy(const Rows& x, StretchRow r, RowSpan rows) c
   return sum;
 }
 
+double LatticeModel::membrane_energy(const Rows& x) const {
+  return parts_.tearing ? membrane().energy(lattice_.gather(x)) : membrane().energy(x);
+}
+
 double LatticeModel::held_energy(const Rows& x, double dt, Threads& threads) const {
   double sum =
-      is_membrane() ? membrane().energy(lattice_.gather(x)) : stretch_energy(x, dt, threads);
+      is_membrane() || solves_membrane() ? membrane_energy(x) : stretch_energy(x, dt, threads);
+  if (solves_membrane())
+    sum += pull().stiffness * double(parts_.constraints()) *
+           std::pow(kRounding * greatest_coordinate(x), 2);
   if (parts_.cloth.bending.given()) sum += bending_energy(parts_.cloth, lattice_.gather(x));
   return sum;
 }

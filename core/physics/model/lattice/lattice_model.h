@@ -57,6 +57,7 @@ class LatticeModel final : public ClothModel {
   double stretch_energy(const Rows& x, double dt, Threads& threads) const;
   double stretch_energy(const Rows& x, StretchRow r, RowSpan rows) const;
   StretchRow stretch_row(const Rows& x, double dt) const;
+  double membrane_energy(const Rows& x) const;
   double greatest_coordinate(const Rows& x) const;
   // Whether the membrane's own forces act, or sweeps solve it, and not springs in its place.
   bool is_membrane() const { return parts_.cloth.membrane.given() && is_explicit(method_); }

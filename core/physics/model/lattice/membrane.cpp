@@ -1,6 +1,9 @@
 // The membrane energy in double precision (membrane.h).
 #include "physics/model/lattice/membrane.h"
 
+#include <cassert>
+#include <utility>
+
 #include "weft/vec3.h"
 
 namespace weft::physics {
@@ -105,6 +108,48 @@ double MembraneCells::energy(const std::vector<Vec3>& x) const {
       if (c.whole) sum += m.coupling * e.mean_along() * e.mean_across();
       energy += c.weight * sum;
     }
+  return energy;
+}
+
+namespace {
+
+// Of the way from particle i of one row to particle k of another.
+double square(ConstRow3 a, std::ptrdiff_t i, ConstRow3 b, std::ptrdiff_t k) {
+  const double x = double(b.x[k]) - a.x[i], y = double(b.y[k]) - a.y[i],
+               z = double(b.z[k]) - a.z[i];
+  return x * x + y * y + z * z;
+}
+
+}  // namespace
+
+double MembraneCells::energy(const Rows& x) const {
+  assert(!stencils_[kRight].links);
+  const Membrane& m = membrane_;
+  const double uu = 1 / (hu_ * hu_), vv = 1 / (hv_ * hv_), uv = 1 / (4 * hu_ * hv_);
+  const auto along_row = [&](int j, std::vector<double>& strain) {
+    const ConstRow3 row = x.row(j);
+    for (int i = 0; i + 1 < columns_; ++i)
+      strain[std::size_t(i)] = (square(row, i, row, i + 1) * uu - 1) / 2;
+  };
+  std::vector<double> above(static_cast<std::size_t>(columns_)), below = above, across = above;
+  double energy = 0;
+  along_row(0, above);
+  for (int j = 0; j + 1 < rows_; ++j) {
+    const ConstRow3 row = x.row(j), next = x.row(j + 1);
+    along_row(j + 1, below);
+    for (int i = 0; i < columns_; ++i)
+      across[std::size_t(i)] = (square(row, i, next, i) * vv - 1) / 2;
+    double sum = 0;
+    for (int i = 0; i + 1 < columns_; ++i) {
+      const double t = above[std::size_t(i)], b = below[std::size_t(i)];
+      const double l = across[std::size_t(i)], r = across[std::size_t(i) + 1];
+      const double shear = (square(row, i, next, i + 1) - square(next, i, row, i + 1)) * uv;
+      sum += m.warp * (t * t + b * b) + m.weft * (l * l + r * r) + m.coupling * (t + b) * (l + r) +
+             2 * m.shear * shear * shear;
+    }
+    energy += hu_ * hv_ * factor(j) * sum / 4;
+    std::swap(above, below);
+  }
   return energy;
 }
 

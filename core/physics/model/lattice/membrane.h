@@ -7,6 +7,7 @@
 #include "physics/kernels/membrane.h"
 #include "physics/model/lattice/lattice.h"
 #include "physics/model/lattice/stencil.h"
+#include "physics/step/rows.h"
 
 namespace weft::physics {
 
@@ -19,8 +20,9 @@ class MembraneCells {
  public:
   MembraneCells(const Cloth& cloth, const std::vector<Stencil>& stencils, double repeats = 1);
 
-  // E [J] of particles x, row after row.
+  // E [J] of particles x, row after row; and of those of a lattice that cannot tear, which costs a fifth.
   double energy(const std::vector<Vec3>& x) const;
+  double energy(const Rows& x) const;
   // Adds the force [N] on every particle; velocities v [m/s], or null: none.
   void add_forces(const std::vector<Vec3>& x, const std::vector<Vec3>* v, double share, double rate,
                   std::vector<Vec3>& force) const;
