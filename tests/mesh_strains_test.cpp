@@ -122,7 +122,8 @@ TEST(MeshStrains, MoveAsForcesInFineSubsteps) {
         }
         EXPECT_LT(before, order == 2 ? 2e-4 : 1e-3);
       }
-      EXPECT_LT(coarse[1], coarse[0] / 1.5);  // strands pass a pull on
+      // Strands pass a pull on; where both are damped, colours have less to pass.
+      EXPECT_LT(coarse[1], membrane.damping > 0 ? coarse[0] : coarse[0] / 1.5);
     }
 }
 

@@ -175,8 +175,8 @@ TEST(Tolerance, WhatIsChaoticIsNotPromised) {
   EXPECT_NE(choice.notes[0].find("not promised"), std::string::npos) << choice.notes[0];
 }
 
-// Line sweeps leave damping out: where forces take too many substeps to measure them, they are no way.
-TEST(Tolerance, WhatLeavesDampingOutIsMeasuredOrLeft) {
+// Damping that takes forces many substeps.
+TEST(Tolerance, StrongDampingIsKept) {
   Scene scene = scene_of(kCases[0]);
   Cloth& cloth = scene.cloths[0];
   cloth.membrane = {1500, 1500, 500, 500, 0};

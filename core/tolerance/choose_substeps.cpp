@@ -39,16 +39,15 @@ Choice choose_substeps(const Asked& asked) {
     if (s.trial.kept && s.trial.work <= least)
       least = s.trial.work, choice.best = int(choice.trials.size()) - 1;
   }
+  // Where nothing is promised, the nearest that was tried runs, and the note says how near that is.
   choice.promised = choice.best >= 0;
-  if (choice.promised) {
-    const Trial& best = choice.trials[std::size_t(choice.best)];
-    choice.scene.solver = best.solver;
-    choice.scene.time.substeps = best.substeps;
-  } else {
-    const auto error = [](const Search& s) { return s.trial.error; };
-    choice.notes.push_back(
-        not_promised(asked, *std::ranges::min_element(all, {}, error), "substeps"));
-  }
+  const auto error = [](const Search& s) { return s.trial.error; };
+  const auto nearest = std::ranges::min_element(all, {}, error);
+  if (!choice.promised) choice.notes.push_back(not_promised(asked, *nearest, "substeps"));
+  const Trial& taken = choice.promised ? choice.trials[std::size_t(choice.best)] : nearest->trial;
+  if (taken.substeps == 0 || !std::isfinite(taken.error)) return choice;
+  choice.scene.solver = taken.solver;
+  choice.scene.time.substeps = taken.substeps;
   return choice;
 }
 

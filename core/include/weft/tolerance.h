@@ -39,7 +39,8 @@ struct Trial {
 
 struct Choice {
   std::vector<Trial> trials;
-  // Of those, the one that `scene` is run by; -1: none keeps the error, and `scene` is as asked.
+  // Of those, the one that `scene` is run by; -1: none keeps the error, and the nearest that was tried runs, if any of
+  // them was stable.
   int best = -1;
   bool promised = false;  // over the whole run
   double tried = 0;  // s; what the trials went over: all of the run where the choice is promised

@@ -74,7 +74,10 @@ void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::stri
   if (left_strain_ || driven_ || frame.method != Method::compliant) return;
   double held = 0;
   for (std::size_t c = 0; c < frame.cloths.size(); ++c)
-    if (!is_asleep(frame.sleeping, c)) held += frame.cloths[c]->model().elastic_energy().sum();
+    if (!is_asleep(frame.sleeping, c)) {
+      const ClothStep& step = *frame.cloths[c];
+      held += step.model().held_energy(step.particles().x, 0, frame.threads);
+    }
   if (!frame.energy.is_made(held)) return;
   left_strain_ = true;
   notes.push_back("frame " + std::to_string(frame.number) + ": the sweeps" +

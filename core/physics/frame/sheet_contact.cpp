@@ -57,8 +57,8 @@ void SheetContact::begin_frame(Threads& threads) {
 void SheetContact::run_contact(const Substeps& frame, int end, int count, Threads& threads) {
   const auto start = std::chrono::steady_clock::now();
   if (TaskRecord* record = threads.record()) record->enter("self_collision");
-  const Vec3 g = gravity_at(scene_, frame.time + end * frame.dt);
-  until_ = contact_->run({frame.dt, count, length(g)}, threads);
+  const double time = frame.time + end * frame.dt;
+  until_ = contact_->run({frame.dt, count, length(gravity_at(scene_, time)), time}, threads);
   if (untangle_->due()) untangle_->calm(count * frame.dt);
   spent_ += std::chrono::steady_clock::now() - start;
   ++runs_;

@@ -4,7 +4,8 @@
 //   F = A [drag (u·n)² n + lift (u·n) |u| (n - û (û·n))]
 //
 // (drag and lift of a flat plate; Wilson et al. 2014, "Simulating wind effects on cloth"), a third of
-// it at each corner. A particle gains  w T ΣF / (1 + a + b²),  a = w T Σ A/3 drag (u·n),  b = w T Σ A/3
+// it at each corner; on a grid, of both triangles of a square a quarter at each of its corners, so that particles are
+// pushed as the area says that they stand for. A particle gains  w T ΣF / (1 + a + b²),  a = w T Σ A/3 drag (u·n),  b = w T Σ A/3
 // lift |u|:  by drag, as much as in the exact motion of a plate against still air; by both, never more
 // than the whole relative motion.
 #include "physics/kernels/gather.h"
@@ -62,6 +63,10 @@ WEFT_INLINE Third third_of(const Air& r, WideInt inside, Wide3 air, Wide3 a, Wid
   const Wide area = select(inside, size * (0.5f / 3.0f), Wide{});
   const Wide drag = area * (r.drag * into), lift = area * (r.lift * speed);
   return {n * (into * drag) + across * (into * lift), drag, lift};
+}
+
+WEFT_INLINE Third operator*(const Third& a, float factor) {
+  return {a.force * wide(factor), a.drag * factor, a.lift * factor};
 }
 
 class Delayed {
@@ -128,9 +133,9 @@ void wind(const WindRow& given) {
     const Third first = third_of(r, inside, air, x00, x10, x01, load3(r.v, i) + v10 + v01);
     const Third second =
         third_of(r, inside, air, x10, x11, x01, v10 + load3(r.v_next, i + 1) + v01);
-    const Third both = first + second;
-    add(r.air, i, first + own_right.next(both));
-    add(r.air_next, i, both + next_right.next(second));
+    const Third quarter = (first + second) * 0.75f;
+    add(r.air, i, quarter + own_right.next(quarter));
+    add(r.air_next, i, quarter + next_right.next(quarter));
   }
 }
 

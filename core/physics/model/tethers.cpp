@@ -1,6 +1,7 @@
 #include "physics/model/tethers.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "physics/kernels/second_order.h"
 
@@ -8,6 +9,14 @@ namespace weft::physics {
 namespace {
 
 constexpr float kFree = 1e18f;  // m; the reach of a particle without a tether
+
+// How much longer rounded places may make a distance from a pin: what is taut at rest is not to be drawn in by it.
+double rounding(const Vec3& pin, double reach) {
+  constexpr double kUnits = 4.0 / (1 << 24);  // of single precision, of both ends
+  double farthest = 0;
+  for (const double x : pin) farthest = std::max(farthest, std::abs(x));
+  return kUnits * (farthest + reach);
+}
 
 class Tethers final : public RowStage {
  public:
@@ -92,8 +101,10 @@ class Tethers final : public RowStage {
       for (int i = 0; i < p.count(j); ++i)
         slot.pins.push_back(tethers[std::size_t(p.number(j, i))].pin);
     for_each_tether(slot, [&](int j, int i, int pin) {
+      const auto [pin_row, pin_lane] = p.place(pin);
+      const double reach = tethers[std::size_t(p.number(j, i))].reach;
       slot.reach[std::size_t(j) * std::size_t(p.stride) + std::size_t(i)] =
-          float(tethers[std::size_t(p.number(j, i))].reach);
+          float(reach + rounding(p.position(pin_row, pin_lane), reach));
       if (moving_[std::size_t(pin)]) slot.moves[std::size_t(j)] = true;
     });
     share_rows(slot);

@@ -189,7 +189,7 @@ void SelfContact::solve(ContactSolver<N>& solver, const ContactInterval& interva
   record_.contacts_now = std::int64_t(solver.contacts().size());
   record_.contacts += record_.contacts_now;
   const std::int64_t swept = solver.sweeps();
-  const double missing = solver.solve(place_.data(), moved_.data(), interval, threads);
+  const double missing = solver.solve(place_.data(), now_.data(), moved_.data(), interval, threads);
   record_.least_distance = std::min(record_.least_distance, 1 - missing);
   record_.sweeps += solver.sweeps() - swept;
 }

@@ -23,8 +23,10 @@ constexpr std::int32_t kPacketsAtOnce = 8, kFewPackets = 64;
 }  // namespace
 
 template <int N>
-ContactSolver<N>::ContactSolver(std::size_t bodies, const ContactKernels<N>& kernels)
-    : kernels_(kernels),
+ContactSolver<N>::ContactSolver(std::size_t bodies, BodyAnswer& answer,
+                                const ContactKernels<N>& kernels)
+    : answer_(answer),
+      kernels_(kernels),
       bodies_(bodies),
       colours_(bodies),
       is_touched_(bodies),
@@ -156,6 +158,10 @@ float ContactSolver<N>::sweep(Displacement* change, float enough, int most) {
     });
     ++sweeps_;
     greatest = *std::max_element(corrections.begin(), corrections.end());
+    if (change == change_.data())
+      greatest = std::max(greatest, answer_.sweep(change));
+    else
+      answer_.keep_out(change);
     if (s == 0) first = greatest;
     if (greatest <= std::max(enough, kEnough * first)) break;
   }
@@ -189,13 +195,14 @@ void ContactSolver<N>::keep_impulses() {
 }
 
 template <int N>
-float ContactSolver<N>::solve(const Place* place, const Displacement* moved,
+float ContactSolver<N>::solve(const Place* place, const Place* now, const Displacement* moved,
                               const ContactInterval& interval, Threads& threads) {
   places_ = place;
   moved_ = moved;
   threads_ = &threads;
   if (contacts_.empty()) {
     forget();
+    answer_.forget();
     return 0;
   }
   const double seconds = interval.seconds();
@@ -204,6 +211,12 @@ float ContactSolver<N>::solve(const Place* place, const Displacement* moved,
   for_each_part([&](std::int32_t from, std::int32_t count) {
     kernels_.prepare({&packets_[std::size_t(from)], count, places_, moved_, change_.data(), 0, 0});
   });
+  if (answer_.given()) {
+    std::vector<std::int32_t> particles = touched_;
+    std::ranges::sort(particles);
+    answer_.find(particles, now, moved, interval);
+    answer_.begin(change_.data());
+  }
   sweep(change_.data(), kEnoughOfHeld * held_, kSweeps);
   keep_impulses();
   const double most = (kSlow * double(held_) + kPressed * interval.gravity * seconds) * seconds;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "physics/contact/self/body_answer.h"
 #include "physics/kernels/contact.h"
 #include "physics/step/aligned_array.h"
 #include "physics/step/threads.h"
@@ -19,9 +20,10 @@ namespace weft::physics {
 
 // From one run of contact to the next.
 struct ContactInterval {
-  double dt;       // s
-  int substeps;    // impulses act in the last of them
-  double gravity;  // m/s²
+  double dt;        // s
+  int substeps;     // impulses act in the last of them
+  double gravity;   // m/s²
+  double time = 0;  // s, at its end
   double seconds() const { return substeps * dt; }
 };
 
@@ -38,14 +40,15 @@ struct Contact {
 template <int N>
 class ContactSolver {
  public:
-  ContactSolver(std::size_t bodies, const ContactKernels<N>& kernels);
+  // `answer`, of what lies on the bodies of the scene, lives longer.
+  ContactSolver(std::size_t bodies, BodyAnswer& answer, const ContactKernels<N>& kernels);
 
   // To be filled before each run.
   std::vector<Contact<N>>& contacts() { return contacts_; }
-  // Displacements in an interval, from these places. Returns how much of the distance held is missing at
+  // Displacements in an interval, from these places, to where things are now. Returns how much of the distance held is missing at
   // most, after all.
-  float solve(const Place* place, const Displacement* moved, const ContactInterval& interval,
-              Threads& threads);
+  float solve(const Place* place, const Place* now, const Displacement* moved,
+              const ContactInterval& interval, Threads& threads);
 
   // What comes of it: bodies, each once, with the displacement by which their velocities change, and
   // what their positions alone do.
@@ -80,6 +83,7 @@ class ContactSolver {
   float separate(float most);
   void settle(int substeps);
 
+  BodyAnswer& answer_;
   const ContactKernels<N>& kernels_;
   const std::size_t bodies_;
   std::vector<Contact<N>> contacts_;

@@ -30,6 +30,12 @@ constexpr float kMotion = 0.03f;
 constexpr int kMostSubsteps = 32;   // between two looks
 constexpr std::size_t kFew = 4096;  // particles that one thread does faster
 
+double greatest_thickness(const std::vector<Sheet>& sheets) {
+  float most = 0;
+  for (const Sheet& s : sheets) most = std::max(most, s.thickness);
+  return most;
+}
+
 // Their names are still to be given. Rows are whole groups of lanes.
 std::vector<NamedSheet> named(const std::vector<Sheet>& sheets) {
   std::vector<NamedSheet> named;
@@ -95,7 +101,8 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool sur
       named_(named(sheets_)),
       bodies_(give_names(named_)),
       blocks_(sheets_, surfaces ? kFlatSurface : 0, kernels),
-      search_(surfaces ? 0 : particles_, named_, kernels) {
+      search_(surfaces ? 0 : particles_, named_, kernels),
+      answer_(scene, greatest_thickness(sheets_)) {
   for (const Sheet& s : sheets_) {
     thickness_ = std::max(thickness_, s.thickness);
     course_ |= s.response != SelfCollisionResponse::stiff && !surfaces;
@@ -114,13 +121,14 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool sur
   for (std::size_t n = 0; n < sheets_.size(); ++n) place_at_rest(n);
   if (surfaces) {
     near_ = std::make_unique<NearSquares>(sheets_, named_, rest_, kernels);
-    surfaces_ = std::make_unique<ContactSolver<4>>(bodies_, kernels.sheets.contacts_of_four);
+    surfaces_ =
+        std::make_unique<ContactSolver<4>>(bodies_, answer_, kernels.sheets.contacts_of_four);
     zone_.resize(bodies_);
     std::iota(zone_.begin(), zone_.end(), 0);
   } else {
     for (std::size_t n = 0; n < sheets_.size(); ++n)
       if (sheets_[n].mesh) list_neighbours(n);
-    spheres_ = std::make_unique<ContactSolver<2>>(bodies_, kernels.sheets.contacts_of_two);
+    spheres_ = std::make_unique<ContactSolver<2>>(bodies_, answer_, kernels.sheets.contacts_of_two);
   }
   begin_.resize(bodies_ + 1);
 }
@@ -210,6 +218,7 @@ void SelfContact::restart() {
   kept_runs_ = 0;
   if (spheres_) spheres_->forget();
   if (surfaces_) surfaces_->forget();
+  answer_.forget();
 }
 
 // The particles of active blocks, block by block, and where they are.

@@ -35,6 +35,7 @@
 #include <vector>
 
 #include "physics/contact/self/blocks.h"
+#include "physics/contact/self/body_answer.h"
 #include "physics/contact/self/contact_solver.h"
 #include "physics/contact/self/near_squares.h"
 #include "physics/contact/self/pair_search.h"
@@ -208,6 +209,7 @@ class SelfContact {
   std::vector<Measured> measured_;          // of pieces of the list of squares
   const SquarePairs* pairs_ = nullptr;      // as measured
   std::vector<std::int32_t> begin_;         // of every key's contacts, to sort them
+  BodyAnswer answer_;
   std::unique_ptr<ContactSolver<2>> spheres_;
   std::unique_ptr<ContactSolver<4>> surfaces_;
   std::vector<Contact<2>> unsorted_spheres_;

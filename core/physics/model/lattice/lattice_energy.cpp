@@ -125,6 +125,9 @@ double LatticeModel::greatest_coordinate(const Rows& x) const {
   return std::max(1.0, double(x.greatest(parts_.kernels)));
 }
 
+// 1/s²; of substeps so short that all stiffness is felt.
+constexpr float kAtOnce = 1e30f;
+
 // A projected constraint counts as a spring of at most the inertia of its ends over dt², all that a
 // sweep makes of it, and of its positional share.
 double LatticeModel::stretch_energy(const Rows& x, double dt, Threads& threads) const {
@@ -148,7 +151,7 @@ StretchRow LatticeModel::stretch_row(const Rows& x, double dt) const {
   StretchRow r{};
   r.slack = float(kRounding * greatest_coordinate(x));
   r.share = is_explicit(method_) ? kInfinite : method_ == Method::positional ? float(projected) : 1;
-  r.inverse_dt2 = float(1 / (dt * dt));
+  r.inverse_dt2 = dt > 0 ? float(1 / (dt * dt)) : kAtOnce;
   return r;
 }
 
@@ -159,7 +162,8 @@ double LatticeModel::stretch_energy(const Rows& x, StretchRow r, RowSpan rows) c
   double sum = 0;
   for (const Stencil& f : stencils_) {
     r.rest = float(f.rest);
-    r.give = cloth.strain_limit > 0 ? float(cloth.strain_limit * f.rest) : kInfinite;
+    r.give = cloth.strain_limit > 0 && r.inverse_dt2 < kAtOnce ? float(cloth.strain_limit * f.rest)
+                                                               : kInfinite;
     for (int j = rows.begin; j < std::min(rows.end, lattice_.rows - f.dj); ++j) {
       static_cast<FarRows&>(r) = far_rows(f, x, lattice_.columns, j);
       r.w_near = lattice_.w(j) + f.near();

@@ -126,29 +126,19 @@ double MembraneCells::energy(const Rows& x) const {
   assert(!stencils_[kRight].links);
   const Membrane& m = membrane_;
   const double uu = 1 / (hu_ * hu_), vv = 1 / (hv_ * hv_), uv = 1 / (4 * hu_ * hv_);
-  const auto along_row = [&](int j, std::vector<double>& strain) {
-    const ConstRow3 row = x.row(j);
-    for (int i = 0; i + 1 < columns_; ++i)
-      strain[std::size_t(i)] = (square(row, i, row, i + 1) * uu - 1) / 2;
-  };
-  std::vector<double> above(static_cast<std::size_t>(columns_)), below = above, across = above;
   double energy = 0;
-  along_row(0, above);
   for (int j = 0; j + 1 < rows_; ++j) {
     const ConstRow3 row = x.row(j), next = x.row(j + 1);
-    along_row(j + 1, below);
-    for (int i = 0; i < columns_; ++i)
-      across[std::size_t(i)] = (square(row, i, next, i) * vv - 1) / 2;
-    double sum = 0;
+    double sum = 0, l = 0, r = (square(row, 0, next, 0) * vv - 1) / 2;
     for (int i = 0; i + 1 < columns_; ++i) {
-      const double t = above[std::size_t(i)], b = below[std::size_t(i)];
-      const double l = across[std::size_t(i)], r = across[std::size_t(i) + 1];
+      l = std::exchange(r, (square(row, i + 1, next, i + 1) * vv - 1) / 2);
+      const double t = (square(row, i, row, i + 1) * uu - 1) / 2;
+      const double b = (square(next, i, next, i + 1) * uu - 1) / 2;
       const double shear = (square(row, i, next, i + 1) - square(next, i, row, i + 1)) * uv;
       sum += m.warp * (t * t + b * b) + m.weft * (l * l + r * r) + m.coupling * (t + b) * (l + r) +
              2 * m.shear * shear * shear;
     }
     energy += hu_ * hv_ * factor(j) * sum / 4;
-    std::swap(above, below);
   }
   return energy;
 }

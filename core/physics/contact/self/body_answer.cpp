@@ -1,0 +1,107 @@
+// What bodies answer (body_answer.h).
+#include "physics/contact/self/body_answer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "physics/contact/colliders/shapes.h"
+#include "physics/contact/self/contact_solver.h"
+#include "physics/model/placement.h"
+#include "weft/vec3.h"
+
+namespace weft::physics {
+namespace {
+
+float dot3(const float (&a)[3], const float (&b)[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+}  // namespace
+
+BodyAnswer::BodyAnswer(const Scene& scene, double reach) : scene_(scene), reach_(reach) {
+  for (std::size_t c = 0; c < scene.colliders.size(); ++c)
+    if (!scene.colliders[c].cuts && !std::holds_alternative<MeshBody>(scene.colliders[c].shape))
+      colliders_.push_back(c);
+}
+
+bool BodyAnswer::is_near(const Collider& c, const Place& now, const Displacement& moved,
+                         const ContactInterval& interval, Near& near) const {
+  const double seconds = interval.seconds();
+  const Vec3 at{now.x[0], now.x[1], now.x[2]}, way{moved.u[0], moved.u[1], moved.u[2]};
+  const Placement placement(c, interval.time);
+  const Nearest nearest = nearest_at(c.shape, interval.time, placement.seen(at));
+  if (!(nearest.distance - c.offset < reach_)) return false;
+  const RigidMotion motion(c, interval.time, seconds);
+  const Vec3 carried = motion.carried(minus(at, placement.place), times(way, 1 / seconds), seconds);
+  const Vec3 slid = minus(way, times(carried, seconds)), out = placement.out_of(nearest.normal);
+  near.gap = float(nearest.distance - c.offset);
+  for (std::size_t k = 0; k < 3; ++k) near.normal[k] = float(out[k]), near.slid[k] = float(slid[k]);
+  // The course has its own rule for what slides, which knows no pressing.
+  const bool coulomb = c.friction.model == FrictionModel::coulomb;
+  near.statik = float(coulomb ? c.friction.statik : 0);
+  near.dynamic = float(coulomb ? c.friction.dynamic : 0);
+  return true;
+}
+
+void BodyAnswer::find(std::span<const std::int32_t> particles, const Place* now,
+                      const Displacement* moved, const ContactInterval& interval) {
+  std::swap(near_, before_);
+  near_.clear();
+  const float ratio = float(interval.seconds() / seconds_), scale = ratio * ratio;
+  seconds_ = interval.seconds();
+  auto old = before_.begin();
+  for (const std::int32_t n : particles) {
+    if (!(moved[n].u[3] > 0)) continue;
+    while (old != before_.end() && old->particle < n) ++old;
+    Near near{n, 0, {}, {}, 0, 0, 0, {}};
+    for (const std::size_t c : colliders_)
+      if (is_near(scene_.colliders[c], now[n], moved[n], interval, near)) {
+        if (old != before_.end() && old->particle == n) {
+          near.pressed = old->pressed * scale;
+          for (int k = 0; k < 3; ++k) near.rubbed[k] = old->rubbed[k] * scale;
+        }
+        near_.push_back(near);
+        break;
+      }
+  }
+}
+
+void BodyAnswer::begin(Displacement* change) const {
+  for (const Near& l : near_)
+    for (int k = 0; k < 3; ++k) change[l.particle].u[k] += l.pressed * l.normal[k] + l.rubbed[k];
+}
+
+float BodyAnswer::sweep(Displacement* change) {
+  float greatest = 0;
+  for (Near& l : near_) {
+    float* const u = change[l.particle].u;
+    float way[3], wanted[3];
+    for (int k = 0; k < 3; ++k) way[k] = l.slid[k] + u[k];
+    const float out = dot3(way, l.normal);
+    const float left = l.gap + u[0] * l.normal[0] + u[1] * l.normal[1] + u[2] * l.normal[2];
+    const float pressed = std::max(0.0f, l.pressed - left);
+    for (int k = 0; k < 3; ++k) wanted[k] = l.rubbed[k] - (way[k] - out * l.normal[k]);
+    const float square = dot3(wanted, wanted), holds = l.statik * pressed;
+    const float share = square <= holds * holds ? 1 : l.dynamic * pressed / std::sqrt(square);
+    for (int k = 0; k < 3; ++k) {
+      const float rubbed = wanted[k] * share;
+      const float by = (pressed - l.pressed) * l.normal[k] + (rubbed - l.rubbed[k]);
+      l.rubbed[k] = rubbed;
+      u[k] += by;
+      greatest = std::max(greatest, std::abs(by));
+    }
+    l.pressed = pressed;
+  }
+  return greatest;
+}
+
+void BodyAnswer::keep_out(Displacement* lift) const {
+  for (const Near& l : near_) {
+    float* const u = lift[l.particle].u;
+    const float into = std::min(0.0f, u[0] * l.normal[0] + u[1] * l.normal[1] + u[2] * l.normal[2]);
+    for (int k = 0; k < 3; ++k) u[k] -= into * l.normal[k];
+  }
+}
+
+}  // namespace weft::physics
