@@ -141,8 +141,8 @@ void wind(const WindRow& given) {
 
 void push(const PushRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide time = load(r.w + i) * r.time;
-    const Wide drag = time * load(r.air.drag + i), lift = time * load(r.air.lift + i);
+    const Wide w = load(r.w + i), time = w * r.time, resists = w * r.resists;
+    const Wide drag = resists * load(r.air.drag + i), lift = resists * load(r.air.lift + i);
     const Wide3 gained = load3(r.air.f, i) * (time / (1.0f + drag + lift * lift));
     store3(r.v, i, load3(r.v, i) + gained);
     store3(r.x, i, load3(r.x, i) + gained * wide(r.dt));

@@ -40,8 +40,9 @@ struct PushRow {
   Row3 x, v;
   const float* w;
   AirRow air;
-  float time;  // s, that the air pushes for
-  float dt;    // s; how far positions follow the velocity that is gained
+  float time;     // s, that the air pushes for
+  float resists;  // s, that what is gained resists it for
+  float dt;       // s; how far positions follow the velocity that is gained
 };
 
 }  // namespace weft::physics

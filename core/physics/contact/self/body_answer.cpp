@@ -7,7 +7,6 @@
 
 #include "physics/contact/colliders/shapes.h"
 #include "physics/contact/self/contact_solver.h"
-#include "physics/model/placement.h"
 #include "weft/vec3.h"
 
 namespace weft::physics {
@@ -25,16 +24,17 @@ BodyAnswer::BodyAnswer(const Scene& scene, double reach) : scene_(scene), reach_
       colliders_.push_back(c);
 }
 
-bool BodyAnswer::is_near(const Collider& c, const Place& now, const Displacement& moved,
+bool BodyAnswer::is_near(const Body& body, const Place& now, const Displacement& moved,
                          const ContactInterval& interval, Near& near) const {
   const double seconds = interval.seconds();
+  const Collider& c = *body.collider;
   const Vec3 at{now.x[0], now.x[1], now.x[2]}, way{moved.u[0], moved.u[1], moved.u[2]};
-  const Placement placement(c, interval.time);
-  const Nearest nearest = nearest_at(c.shape, interval.time, placement.seen(at));
+  const Nearest nearest = nearest_at(c.shape, interval.time, body.placement.seen(at));
   if (!(nearest.distance - c.offset < reach_)) return false;
-  const RigidMotion motion(c, interval.time, seconds);
-  const Vec3 carried = motion.carried(minus(at, placement.place), times(way, 1 / seconds), seconds);
-  const Vec3 slid = minus(way, times(carried, seconds)), out = placement.out_of(nearest.normal);
+  const Vec3 carried =
+      body.motion.carried(minus(at, body.placement.place), times(way, 1 / seconds), seconds);
+  const Vec3 slid = minus(way, times(carried, seconds));
+  const Vec3 out = body.placement.out_of(nearest.normal);
   near.gap = float(nearest.distance - c.offset);
   for (std::size_t k = 0; k < 3; ++k) near.normal[k] = float(out[k]), near.slid[k] = float(slid[k]);
   // The course has its own rule for what slides, which knows no pressing.
@@ -50,13 +50,19 @@ void BodyAnswer::find(std::span<const std::int32_t> particles, const Place* now,
   near_.clear();
   const float ratio = float(interval.seconds() / seconds_), scale = ratio * ratio;
   seconds_ = interval.seconds();
+  bodies_.clear();
+  for (const std::size_t c : colliders_) {
+    const Collider& collider = scene_.colliders[c];
+    bodies_.push_back({&collider, Placement(collider, interval.time),
+                       RigidMotion(collider, interval.time, interval.seconds())});
+  }
   auto old = before_.begin();
   for (const std::int32_t n : particles) {
     if (!(moved[n].u[3] > 0)) continue;
     while (old != before_.end() && old->particle < n) ++old;
     Near near{n, 0, {}, {}, 0, 0, 0, {}};
-    for (const std::size_t c : colliders_)
-      if (is_near(scene_.colliders[c], now[n], moved[n], interval, near)) {
+    for (const Body& body : bodies_)
+      if (is_near(body, now[n], moved[n], interval, near)) {
         if (old != before_.end() && old->particle == n) {
           near.pressed = old->pressed * scale;
           for (int k = 0; k < 3; ++k) near.rubbed[k] = old->rubbed[k] * scale;
@@ -76,10 +82,11 @@ float BodyAnswer::sweep(Displacement* change) {
   float greatest = 0;
   for (Near& l : near_) {
     float* const u = change[l.particle].u;
+    const float left = l.gap + u[0] * l.normal[0] + u[1] * l.normal[1] + u[2] * l.normal[2];
+    if (left >= 0 && l.pressed == 0) continue;  // and so rubs nothing
     float way[3], wanted[3];
     for (int k = 0; k < 3; ++k) way[k] = l.slid[k] + u[k];
     const float out = dot3(way, l.normal);
-    const float left = l.gap + u[0] * l.normal[0] + u[1] * l.normal[1] + u[2] * l.normal[2];
     const float pressed = std::max(0.0f, l.pressed - left);
     for (int k = 0; k < 3; ++k) wanted[k] = l.rubbed[k] - (way[k] - out * l.normal[k]);
     const float square = dot3(wanted, wanted), holds = l.statik * pressed;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "physics/kernels/contact.h"
+#include "physics/model/placement.h"
 #include "weft/scene.h"
 
 namespace weft::physics {
@@ -47,12 +48,19 @@ class BodyAnswer {
     float statik, dynamic;     // friction
     float pressed, rubbed[3];  // impulses, as displacements [m]
   };
-  bool is_near(const Collider& collider, const Place& now, const Displacement& moved,
+  // A body as it stands at the interval's end, and how it came there.
+  struct Body {
+    const Collider* collider;
+    Placement placement;
+    RigidMotion motion;
+  };
+  bool is_near(const Body& body, const Place& now, const Displacement& moved,
                const ContactInterval& interval, Near& near) const;
 
   const Scene& scene_;
   double reach_;
   std::vector<std::size_t> colliders_;
+  std::vector<Body> bodies_;
   std::vector<Near> near_, before_;
   double seconds_ = 1;
 };

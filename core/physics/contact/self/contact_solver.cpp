@@ -212,9 +212,10 @@ float ContactSolver<N>::solve(const Place* place, const Place* now, const Displa
     kernels_.prepare({&packets_[std::size_t(from)], count, places_, moved_, change_.data(), 0, 0});
   });
   if (answer_.given()) {
-    std::vector<std::int32_t> particles = touched_;
-    std::ranges::sort(particles);
-    answer_.find(particles, now, moved, interval);
+    in_order_.clear();
+    for (std::size_t n = 0; n < bodies_; ++n)
+      if (is_touched_[n]) in_order_.push_back(std::int32_t(n));
+    answer_.find(in_order_, now, moved, interval);
     answer_.begin(change_.data());
   }
   sweep(change_.data(), kEnoughOfHeld * held_, kSweeps);
