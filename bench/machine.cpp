@@ -32,7 +32,7 @@ std::string cpu_name() {
   const char* info = "/proc/cpuinfo";
   std::string name = value_in(info, "model name");
   if (name.empty()) return "unknown processor";
-  return name + " (stencil " + value_in(info, "cpu stencil") + ", model " +
+  return name + " (family " + value_in(info, "cpu family") + ", model " +
          value_in(info, "model\t") + ")";
 }
 

@@ -217,6 +217,19 @@ void target(std::ostream& out, const Plot& plot, const Axis& x, const Axis& y) {
       << "\" font-style=\"italic\">asked of springs, one thread</text>\n";
 }
 
+// Below the title, in two lines where it is too long for one.
+void subtitle(std::ostream& out, const std::string& words) {
+  constexpr std::size_t kLine = 125;  // letters
+  const std::size_t space = words.size() > kLine ? words.rfind(' ', kLine) : std::string::npos;
+  const auto line = [&](const std::string& part, int y) {
+    out << "<text x=\"" << kLeft << "\" y=\"" << y << "\" fill=\"#5b6472\">" << escaped(part)
+        << "</text>\n";
+  };
+  if (space == std::string::npos) return line(words, 59);
+  line(words.substr(0, space), 55);
+  line(words.substr(space + 1), 71);
+}
+
 }  // namespace
 
 std::string to_svg(const Plot& plot) {
@@ -227,8 +240,8 @@ std::string to_svg(const Plot& plot) {
       << "\" font-family=\"Inter, 'Helvetica Neue', Arial, sans-serif\" font-size=\"12\" fill=\""
       << kInk << "\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
       << "<text x=\"" << kLeft << "\" y=\"36\" font-size=\"19\" font-weight=\"700\">"
-      << escaped(plot.title) << "</text>\n<text x=\"" << kLeft << "\" y=\"59\" fill=\"#5b6472\">"
-      << escaped(plot.subtitle) << "</text>\n";
+      << escaped(plot.title) << "</text>\n";
+  subtitle(out, plot.subtitle);
   overall_front(out, plot, x, y);
   grid(out, x, y);
   out << "<path d=\"M" << kLeft << ' ' << kTop << 'V' << kBottom << 'H' << kRight

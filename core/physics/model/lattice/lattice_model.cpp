@@ -171,7 +171,8 @@ std::vector<std::string> LatticeModel::notes() const {
   std::vector<std::string> notes;
   if (history_ && parts_.cloth.strain_limit > 0 &&
       parts_.cloth.strain_limit_order == StrainLimitOrder::strict)
-    notes.push_back("with order 2 the strain limit is one pass a substep, as with colours");
+    notes.push_back(
+        "with order 2 the strain limit is one pass a substep, as with colours, and keeps momentum to some thousandths");
   const Membrane& m = parts_.cloth.membrane;
   if (!m.given() || is_membrane() || solves_membrane()) return notes;
   std::string note =
