@@ -10,6 +10,7 @@
 
 #include "double_vector.h"
 #include "machines.h"
+#include "membrane_curtain.h"
 #include "weft/simulation.h"
 
 namespace weft {
@@ -18,53 +19,6 @@ namespace {
 using oracle::operator+;
 using oracle::operator-;
 using oracle::operator*;
-
-constexpr Membrane kWoven{3000, 2000, 200, 80, 0}, kIsotropic{1500, 1500, 500, 500, 0};
-
-// Held along its first column, which swings it round and down, with a load across.
-Scene curtain(int n, const Membrane& membrane) {
-  Scene scene;
-  scene.time.frame = 1.0 / 60;
-  scene.gravity = {2, -9, 3};
-  Cloth& cloth = scene.cloths.emplace_back();
-  cloth.grid = {n, n, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}, 0};
-  cloth.membrane = membrane;
-  cloth.bending = 2e-4;
-  cloth.drag = 1;
-  for (int j = 0; j < n; ++j) cloth.pins.push_back({0, j, {}});
-  return scene;
-}
-
-Scene by_sweeps(Scene scene, Sweep sweep, int order, int substeps) {
-  scene.solver.method = Method::compliant;
-  scene.solver.sweep = sweep;
-  scene.solver.order = order;
-  scene.time.substeps = substeps;
-  return scene;
-}
-Scene by_lines(Scene scene, int order, int substeps) {
-  return by_sweeps(std::move(scene), Sweep::line, order, substeps);
-}
-Scene by_forces(Scene scene) {
-  scene.solver.method = Method::spring;
-  scene.time.substeps = 900;
-  return scene;
-}
-
-std::vector<double> after(const Scene& scene, int frames) {
-  Simulation simulation(scene);
-  for (int frame = 0; frame < frames; ++frame) simulation.advance_frame();
-  EXPECT_TRUE(simulation.status().ok) << simulation.status().text;
-  EXPECT_FALSE(simulation.plan().fallback);
-  return simulation.positions();
-}
-
-// Root mean square [m].
-double apart(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t n = 0; n < a.size(); ++n) sum += (a[n] - b[n]) * (a[n] - b[n]);
-  return std::sqrt(sum / (double(a.size()) / 3));
-}
 
 TEST(MembraneLines, MoveAsForcesInFineSubsteps) {
   for (const Membrane& membrane : {kWoven, kIsotropic}) {
@@ -81,35 +35,6 @@ TEST(MembraneLines, MoveAsForcesInFineSubsteps) {
     }
     EXPECT_LT(apart(after(by_lines(scene, 2, 4), 30), truth), 2e-3);
     EXPECT_LT(apart(after(by_lines(scene, 2, 16), 30), truth), 8e-4);
-  }
-}
-
-// Constraint by constraint the same motion, from shorter substeps on, and the faster the more sweeps there are.
-TEST(MembraneSweeps, MoveAsForcesInFineSubstepsOrManySweeps) {
-  for (const Membrane& membrane : {kWoven, kIsotropic, Membrane{1000, 1500, -400, 200, 0}}) {
-    const Scene scene = curtain(25, membrane);
-    const std::vector<double> truth = after(by_forces(scene), 30);
-    const auto error = [&](int order, int substeps, int iterations) {
-      Scene sweeps = by_sweeps(scene, Sweep::gauss_seidel, order, substeps);
-      sweeps.solver.iterations = iterations;
-      return apart(after(sweeps, 30), truth);
-    };
-    for (const int order : {1, 2}) {
-      double before = 0;
-      for (const int substeps : {16, 32, 64, 128}) {
-        const double now = error(order, substeps, 1);
-        if (before > 4e-4) {
-          EXPECT_LT(now, before / 1.7) << order << ' ' << substeps;
-        }
-        before = now;
-      }
-      EXPECT_LT(before, order == 1 ? 6e-4 : 3e-4) << order;
-    }
-    // Converged, sweeps of either kind solve the same equations.
-    Scene lines = by_lines(scene, 1, 16), single = by_sweeps(scene, Sweep::gauss_seidel, 1, 16);
-    lines.solver.iterations = 12;
-    single.solver.iterations = 120;
-    EXPECT_LT(apart(after(single, 10), after(lines, 10)), 1e-4);
   }
 }
 
@@ -314,60 +239,6 @@ TEST(MembraneLines, HoldAStrainLimit) {
     for (int frame = 0; frame < 60; ++frame) loose.advance_frame();
     EXPECT_LT(limited, 0.0215);
     EXPECT_GT(loose.report(false).strain.max, 0.03);
-  }
-}
-
-// A strip that is slowly drawn out, of cells that are long or hardly resist shear: what a sweep leaves falls with
-// the substep, whatever the order, and nothing swings up.
-TEST(MembraneSweeps, OfLongOrSoftCellsStretchLessTheFinerTheyAre) {
-  struct Pull {
-    int nx, ny;
-    Membrane membrane;
-  };
-  for (const Pull& pull : {Pull{5, 21, {5000, 5000, 0, 100, 0}},
-                           {5, 21, {5000, 3000, -1500, 100, 0}},
-                           {13, 13, {5000, 5000, 0, 1, 0}},
-                           {9, 25, {250, 500, 100, 2, 0}}})
-    for (const int order : {1, 2}) {
-      double before = 1e9;
-      for (const int substeps : {8, 16, 32, 64, 128, 256}) {
-        Scene scene = by_sweeps(curtain(3, pull.membrane), Sweep::gauss_seidel, order, substeps);
-        scene.gravity = {};
-        Cloth& cloth = scene.cloths[0];
-        cloth.grid = {pull.nx, pull.ny, {0, 0, 0}, {0.5, 0, 0}, {0, 0, 0.5}, 0};
-        cloth.bending = {};
-        cloth.density = 0.3;
-        cloth.drag = 20;
-        cloth.pins.clear();
-        for (int i = 0; i < pull.nx; ++i) {
-          cloth.pins.push_back({i, 0, {}});
-          const double x = 0.5 * i / (pull.nx - 1);
-          cloth.pins.push_back({i, pull.ny - 1, {{0, {x, 0, 0.5}}, {0.75, {x, 0, 0.5375}}}});
-        }
-        Simulation simulation(scene);
-        for (int frame = 0; frame < 45; ++frame) simulation.advance_frame();
-        const Report r = simulation.report(false);
-        EXPECT_LT(r.strain.max, 1.02 * before) << order << " " << substeps;
-        EXPECT_LT(r.energy.kinetic, 0.01) << order << " " << substeps;
-        before = r.strain.max;
-      }
-      EXPECT_LT(before, 0.09) << order;
-    }
-}
-
-TEST(MembraneSweeps, OfJacobiAreOfSpringsAndSaySo) {
-  Scene scene = by_lines(curtain(9, kWoven), 1, 8);
-  scene.cloths[0].membrane.damping = 1e-4;
-  scene.cloths[0].bending.damping = 1e-3;
-  for (const Sweep sweep : {Sweep::line, Sweep::gauss_seidel, Sweep::jacobi}) {
-    scene.solver.sweep = sweep;
-    const Simulation simulation(scene);
-    bool told = false;
-    for (const std::string& note : simulation.plan().notes)
-      told |= note.find(
-                  "springs of the membrane's warp, weft and shear run in its place, without "
-                  "its damping") != std::string::npos;
-    EXPECT_EQ(told, sweep == Sweep::jacobi);
   }
 }
 
