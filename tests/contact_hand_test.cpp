@@ -193,6 +193,33 @@ TEST(ContactHand, WindPushesLikeOnAFlatPlate) {
   std::printf("force of the wind %.4f, %.4f N (%.4f, %.4f)\n", p[0] / dt, p[1] / dt, x, y);
   EXPECT_NEAR(p[0] / dt / x, 1, 0.01);
   EXPECT_NEAR(p[1] / dt / y, 1, 0.01);
+  // All alike, those at corners and sides, too: it stays flat.
+  const std::vector<double> v = simulation.velocities();
+  for (std::size_t n = 0; n < 21 * 21; ++n) EXPECT_NEAR(at(v, n)[1] / v[1], 1, 1e-3) << n;
+}
+
+// Drawn along by air that blows against it: x = w t - ln(1 + k w t)/k, k the drag over the mass of its area.
+TEST(ContactHand, WindDrawsASheetAlongInTheEnd) {
+  constexpr double kWind = 5, kDrag = 1, kSeconds = 1.0 / 3;
+  for (const int order : {1, 2})
+    for (const int substeps : {16, 64, 256}) {
+      Scene scene;
+      scene.gravity = {};
+      scene.time.substeps = substeps;
+      scene.solver.method = Method::compliant;
+      scene.solver.order = order;
+      scene.cloths.push_back(flat_sheet(9, 0.5, {0, 0, 0}));
+      scene.cloths[0].density = 0.3;
+      scene.cloths[0].drag = 0;
+      scene.wind = {{0, kWind, 0}, kDrag, 0, 0};
+      Simulation simulation(scene);
+      advance(simulation, kSeconds);
+      const double k = kDrag / 0.3, t = simulation.time();
+      const double expected = kWind * t - std::log(1 + k * kWind * t) / k;
+      const double most = order == 2 ? 3e-4 : 0.04 / substeps;
+      for (std::size_t n = 0; n < 81; ++n)
+        EXPECT_NEAR(at(simulation.positions(), n)[1], expected, most) << order << " " << substeps;
+    }
 }
 
 // Air at rest slows a sheet down and never turns it back, however light it is.

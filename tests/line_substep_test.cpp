@@ -138,6 +138,27 @@ TEST(Tethers, FollowPinsOnTheirPaths) {
     EXPECT_LT(std::hypot(x[p] - 3, x[p + 1], x[p + 2]), std::sqrt(2.0) * 1.02);
 }
 
+// Taut on all sides and aslant, so that its rounded places lie beside its plane and beside their distances.
+TEST(Tethers, LeaveWhatIsAtRest) {
+  for (const Sweep sweep : {Sweep::gauss_seidel, Sweep::line})
+    for (const int substeps : {64, 1600}) {
+      Scene s = hanging(13, 1000, substeps);
+      s.solver.sweep = sweep;
+      s.solver.tethers = true;
+      s.gravity = {};
+      Cloth& cloth = s.cloths[0];
+      cloth.grid.origin = {0.3, 1.2, -2};
+      cloth.grid.u = {0.5, 0.2, -0.1};
+      cloth.grid.v = {0.19, -0.42, 0.11};
+      cloth.drag = 0;
+      Simulation simulation(s);
+      const std::vector<double> start = simulation.positions();
+      for (int f = 0; f < 30; ++f) simulation.advance_frame();
+      const std::vector<double> end = simulation.positions();
+      for (std::size_t k = 0; k < end.size(); ++k) EXPECT_NEAR(end[k], start[k], 5e-5) << substeps;
+    }
+}
+
 TEST(LineRuns, HashesDependOnNeitherThreadsNorInstructionSet) {
   Scene s = hanging(70, 1e5, 4);
   s.solver.order = 2;

@@ -115,6 +115,26 @@ TEST(LayersOnABody, AtRestHaveNoVelocity) {
   }
 }
 
+// Between two planes, each as steep as the other.
+TEST(LayersOnABody, LieInAGrooveOfTwoBodies) {
+  for (const Way& way : kWays)
+    for (const double heavier : {1.0, 10.0}) {
+      Scene scene = stack(way, 0, heavier, 0.3, 0.3);
+      const double s = std::sqrt(0.5);
+      scene.colliders[0].shape = Plane{{0, -0.04, 0}, {s, s, 0}};
+      Collider other = scene.colliders[0];
+      other.shape = Plane{{0, -0.04, 0}, {-s, s, 0}};
+      scene.colliders.push_back(other);
+      Simulation simulation(scene, {.threads = 1});
+      double deepest = 0;
+      for (int frame = 0; frame < 40; ++frame) {
+        simulation.advance_frame();
+        deepest = std::max(deepest, simulation.report().penetration.collider_max);
+      }
+      EXPECT_LT(deepest, 1e-4) << way.name << ", " << heavier << " times as heavy";
+    }
+}
+
 // A ball comes up below them.
 TEST(LayersOnABody, AreNotPressedIntoABall) {
   for (const Way& way : kWays)

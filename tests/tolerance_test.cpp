@@ -173,6 +173,10 @@ TEST(Tolerance, WhatIsChaoticIsNotPromised) {
   EXPECT_FALSE(choice.promised);
   ASSERT_FALSE(choice.notes.empty());
   EXPECT_NE(choice.notes[0].find("not promised"), std::string::npos) << choice.notes[0];
+  // The nearest that was tried runs.
+  const auto nearest = std::ranges::min_element(choice.trials, {}, &Trial::error);
+  EXPECT_EQ(choice.scene.time.substeps, nearest->substeps);
+  EXPECT_EQ(choice.scene.solver.method, nearest->solver.method);
 }
 
 // Damping that takes forces many substeps.

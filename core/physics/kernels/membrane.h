@@ -26,12 +26,6 @@ struct MembraneRows : LeapfrogRows {
   const float *along, *across, *twist;
 };
 
-// Where particles were before the substep: there, or else x - dt v, with x and v as they are before the sweeps. Row 0.
-struct SubstepStart {
-  ConstRow3 previous, v;
-  float dt;
-};
-
 // What line sweeps are to make of squared lengths (kernels/membrane_squares.cpp), of rows begin … end-1.
 struct MembraneSquares {
   int begin, end, rows;

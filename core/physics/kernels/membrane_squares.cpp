@@ -12,7 +12,7 @@
 //
 // stiffens both edges by |C12| towards where they lie, and pulls them by what the other strain was.
 //
-// Damping puts (1 + rate) (e - ρ e_before) in the place of e, ρ = rate/(1 + rate): what is to be wanted of squares, by
+// Damping puts (1 + rate) (e - ρ e_before) in the place of e, ρ = rate/(1 + rate): squares are to be others, by
 // stiffnesses that are 1 + rate times as great.
 #include "physics/kernels/membrane.h"
 #include "physics/kernels/membrane_cells.h"

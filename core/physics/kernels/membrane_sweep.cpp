@@ -1,6 +1,6 @@
-// Gauss–Seidel over the cells of a grid's membrane (membrane.cpp), each of whose strains is a constraint of its own: of
-// its edges, its angle γ, and where warp and weft are coupled, of the sum and the differences that are left when the
-// coupling is told by squares, with a² = √(C11/C22) and the sign of C12:
+// Gauss–Seidel over the cells of a grid's membrane (membrane.cpp). Each strain of a cell is a constraint of its own:
+// those of its edges, its angle γ, and where warp and weft are coupled the sum and the differences that are left when
+// the coupling is told by squares, with a² = √(C11/C22) and the sign of C12:
 //
 //   C12 mean(e11) mean(e22) = ½ |C12| [(a mean(e11) ± mean(e22)/a)² + a² d1² + d2²/a²
 //                                      - a² mean(e11²) - mean(e22²)/a²]

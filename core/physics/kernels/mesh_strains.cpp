@@ -7,11 +7,13 @@
 //   x_k <- x_k - h² area w_k (p du_k + q dv_k),  p = u Δs_1 + v Δs_3,  q = u Δs_3 + v Δs_2
 //
 // (Macklin, Müller, Chentanez 2016; the rate of strain is that of Green's strain over the substep, which turning
-// leaves alone.) Where strands take turns with triangles, damping is in these equations; colours alone have a sweep of
-// it before theirs, r = rate (e - e_before), Δs = (rate A + C⁻¹)⁻¹ r (membrane_sweep.cpp says why). No root but one: A is made of the metric u·u, u·v, v·v (strain_block.h).
+// leaves alone.) Where strands take turns with triangles, damping is in these equations. Colours alone have a sweep of
+// it before theirs, r = rate (e - e_before), Δs = (rate A + C⁻¹)⁻¹ r (membrane_sweep.cpp says why). No root but one: A is made of the metric u·u, u·v, v·v. A triangle that is pressed together has
+// small derivatives, and a step by these would go far beyond where they hold, so A has the metric with its
+// principal values raised to 1 at least: its step is short rather than long, what it comes to is the same.
 #include "physics/kernels/mesh_sweep.h"
 #include "physics/kernels/records.h"
-#include "physics/kernels/strain_block.h"
+#include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {
@@ -22,10 +24,48 @@ using physics::kStrains;
 using physics::StrainBatch;
 using physics::StrainSweep;
 
+// What a pivot is at least, of its diagonal: corners that are held leave some strains to be told by others.
+constexpr float kLeastPivot = 1e-5f;
+constexpr float kTiny = 1e-30f;
+
+struct Three {
+  Wide of[kStrains];
+};
+
+// A symmetric matrix of two rows.
+struct Two {
+  Wide uu, vv, uv;
+};
+
 struct Derivatives {
   Wide3 u, v;
   WEFT_INLINE Two metric() const { return {dot(u, u), dot(v, v), dot(u, v)}; }
 };
+
+WEFT_INLINE Three strains(const Two& m) {
+  return {{0.5f * (m.uu - 1.0f), 0.5f * (m.vv - 1.0f), m.uv}};
+}
+
+// The metric with its principal values raised to 1: 1 + (B + |B|)/2 with B the metric - 1, where
+// |B| = (B² + |det B|)/tr |B| and B² = B tr B - det B.
+WEFT_INLINE Two raised(const Two& metric) {
+  const Wide a = metric.uu - 1.0f, b = metric.vv - 1.0f;
+  const Wide trace = a + b, mixed = 2.0f * max(metric.uv * metric.uv - a * b, Wide{});
+  const Wide reciprocal = 1.0f / sqrt(trace * trace + 2.0f * mixed + kTiny);
+  const Wide share = 0.5f + 0.5f * trace * reciprocal, more = 1.0f + 0.5f * mixed * reciprocal;
+  return {more + share * a, more + share * b, share * metric.uv};
+}
+
+// x in M x = r by LDLᵀ; M positive, told by its diagonal and 01, 02, 12.
+WEFT_INLINE Three solved(const Wide (&diagonal)[3], Wide m01, Wide m02, Wide m12, const Three& r) {
+  const Wide i0 = 1.0f / diagonal[0], l1 = m01 * i0, l2 = m02 * i0;
+  const Wide i1 = 1.0f / max(diagonal[1] - l1 * m01, kLeastPivot * diagonal[1]);
+  const Wide rest = m12 - l2 * m01, l3 = rest * i1;
+  const Wide i2 = 1.0f / max(diagonal[2] - l2 * m02 - l3 * rest, kLeastPivot * diagonal[2]);
+  const Wide y1 = r.of[1] - l1 * r.of[0], y2 = r.of[2] - l2 * r.of[0] - l3 * y1;
+  const Wide x2 = y2 * i2, x1 = y1 * i1 - l3 * x2;
+  return {{r.of[0] * i0 - l1 * x1 - l2 * x2, x1, x2}};
+}
 
 // Lanes from `lane` on of one batch.
 struct Triangles {
@@ -55,7 +95,19 @@ struct Triangles {
     const Two g{scale * (w[0] * u0 * u0 + w[1] * u1 * u1 + w[2] * u2 * u2),
                 scale * (w[0] * v0 * v0 + w[1] * v1 * v1 + w[2] * v2 * v2),
                 scale * (w[0] * u0 * v0 + w[1] * u1 * v1 + w[2] * u2 * v2)};
-    return stress_step(metric, g, s.give, r);
+    const Two m = raised(metric);
+    const Wide sheared = m.uu * g.vv + m.vv * g.uu + 2.0f * m.uv * g.uv;
+    const Wide diagonal[3] = {m.uu * g.uu + s.give[0], m.vv * g.vv + s.give[1],
+                              sheared + s.give[3]};
+    return solved(diagonal, m.uv * g.uv + s.give[2], m.uu * g.uv + m.uv * g.uu,
+                  m.uv * g.vv + m.vv * g.uv, r);
+  }
+
+  // Adds C⁻¹ s.
+  WEFT_INLINE void add_give(const Three& stress, Three& r) const {
+    r.of[0] = r.of[0] + s.give[0] * stress.of[0] + s.give[2] * stress.of[1];
+    r.of[1] = r.of[1] + s.give[2] * stress.of[0] + s.give[1] * stress.of[1];
+    r.of[2] = r.of[2] + s.give[3] * stress.of[2];
   }
 };
 
@@ -90,7 +142,7 @@ WEFT_INLINE void solve(const Triangles& t, float* stress, float* midst) {
   if constexpr (kMultipliers)
     if (!s.fresh) {
       for (int n = 0; n < kStrains; ++n) held.of[n] = load(stress + n * kBatch + t.lane);
-      add_give(s.give, held, r);
+      t.add_give(held, r);
     }
   const Wide inertia = kDamping == Damping::none    ? scale
                        : kDamping == Damping::alone ? scale * s.rate

@@ -28,6 +28,12 @@ struct ConstRow3 {
   ConstRow3 from(int i) const { return {x + i, y + i, z + i}; }  // particle i on
 };
 
+// Where particles were before the substep: there, or else x - dt v, with x and v as they are before the sweeps. Row 0.
+struct SubstepStart {
+  ConstRow3 previous, v;
+  float dt;
+};
+
 // A run of particles that follow each other.
 struct Run {
   std::int32_t first, last;

@@ -4,10 +4,13 @@
 //   F = A [drag (u·n)² n + lift (u·n) |u| (n - û (û·n))]
 //
 // (drag and lift of a flat plate; Wilson et al. 2014, "Simulating wind effects on cloth"), a third of
-// it at each corner; on a grid, of both triangles of a square a quarter at each of its corners, so that particles are
-// pushed as the area says that they stand for. A particle gains  w T ΣF / (1 + a + b²),  a = w T Σ A/3 drag (u·n),  b = w T Σ A/3
-// lift |u|:  by drag, as much as in the exact motion of a plate against still air; by both, never more
-// than the whole relative motion.
+// it at each corner; on a grid, of both triangles of a square a quarter at each of its corners, so that particles
+// are pushed by the area that they stand for. A particle gains
+//
+//   w T ΣF / (1 + a + b²),  a = w T Σ A/3 drag (u·n),  b = w T Σ A/3 lift |u|
+//
+// by drag, as much as in the exact motion of a plate against still air; by both, never more than the whole
+// relative motion.
 #include "physics/kernels/gather.h"
 #include "physics/kernels/mesh.h"
 

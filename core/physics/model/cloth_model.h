@@ -102,10 +102,10 @@ class ClothModel {
   // Where a pin of the cloth is held at a time [s].
   virtual Vec3 pin_position(const Pin& pin, double time) const = 0;
 
-  // Of the cloth with its particles at `x`: the energy that its constraints hold as the method feels
-  // them in substeps of dt, with what rounding of the positions puts in at once [J]; dt 0: with all their stiffness, and
-  // without what a strain limit takes back. The greatest squared length of the constraints that carry the cloth, of
-  // their rest.
+  // Of the cloth with its particles at `x`: the energy that its constraints hold as the method feels them in
+  // substeps of dt, with what rounding of the positions puts in at once [J]; dt 0: with all their stiffness, and
+  // without what a strain limit takes back. The greatest squared length of the constraints that carry the cloth,
+  // of their rest.
   virtual double held_energy(const Rows& x, double dt, Threads& threads) const = 0;
   virtual float greatest_stretch(const Rows& x) const = 0;
   // The greatest strain along lines that sweeps may solve as a whole, that of each constraint spread over so many

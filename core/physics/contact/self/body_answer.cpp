@@ -12,6 +12,8 @@
 namespace weft::physics {
 namespace {
 
+constexpr std::size_t kAtOnce = 512;  // particles that a thread looks at in one go
+
 float dot3(const float (&a)[3], const float (&b)[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -20,8 +22,7 @@ float dot3(const float (&a)[3], const float (&b)[3]) {
 
 BodyAnswer::BodyAnswer(const Scene& scene, double reach) : scene_(scene), reach_(reach) {
   for (std::size_t c = 0; c < scene.colliders.size(); ++c)
-    if (!scene.colliders[c].cuts && !std::holds_alternative<MeshBody>(scene.colliders[c].shape))
-      colliders_.push_back(c);
+    if (!scene.colliders[c].cuts) colliders_.push_back(c);
 }
 
 bool BodyAnswer::is_near(const Body& body, const Place& now, const Displacement& moved,
@@ -37,40 +38,55 @@ bool BodyAnswer::is_near(const Body& body, const Place& now, const Displacement&
   const Vec3 out = body.placement.out_of(nearest.normal);
   near.gap = float(nearest.distance - c.offset);
   for (std::size_t k = 0; k < 3; ++k) near.normal[k] = float(out[k]), near.slid[k] = float(slid[k]);
-  // The course has its own rule for what slides, which knows no pressing.
-  const bool coulomb = c.friction.model == FrictionModel::coulomb;
-  near.statik = float(coulomb ? c.friction.statik : 0);
-  near.dynamic = float(coulomb ? c.friction.dynamic : 0);
+  // The course has its own rule for what slides, which knows no pressing. How the surface of an animation moves by
+  // itself is not known here.
+  const bool rubs = c.friction.model == FrictionModel::coulomb && c.animation.empty();
+  near.statik = float(rubs ? c.friction.statik : 0);
+  near.dynamic = float(rubs ? c.friction.dynamic : 0);
   return true;
 }
 
-void BodyAnswer::find(std::span<const std::int32_t> particles, const Place* now,
-                      const Displacement* moved, const ContactInterval& interval) {
-  std::swap(near_, before_);
-  near_.clear();
-  const float ratio = float(interval.seconds() / seconds_), scale = ratio * ratio;
-  seconds_ = interval.seconds();
+void BodyAnswer::place_bodies(const ContactInterval& interval) {
   bodies_.clear();
   for (const std::size_t c : colliders_) {
     const Collider& collider = scene_.colliders[c];
     bodies_.push_back({&collider, Placement(collider, interval.time),
                        RigidMotion(collider, interval.time, interval.seconds())});
   }
-  auto old = before_.begin();
-  for (const std::int32_t n : particles) {
-    if (!(moved[n].u[3] > 0)) continue;
-    while (old != before_.end() && old->particle < n) ++old;
-    Near near{n, 0, {}, {}, 0, 0, 0, {}};
-    for (const Body& body : bodies_)
-      if (is_near(body, now[n], moved[n], interval, near)) {
-        if (old != before_.end() && old->particle == n) {
-          near.pressed = old->pressed * scale;
-          for (int k = 0; k < 3; ++k) near.rubbed[k] = old->rubbed[k] * scale;
-        }
-        near_.push_back(near);
-        break;
+}
+
+void BodyAnswer::find(std::span<const std::int32_t> particles, const Place* now,
+                      const Displacement* moved, const ContactInterval& interval,
+                      Threads& threads) {
+  place_bodies(interval);
+  const std::size_t parts = (particles.size() + kAtOnce - 1) / kAtOnce;
+  if (found_.size() < parts) found_.resize(parts);
+  threads.share(parts, parts == 1, [&](std::size_t part) {
+    std::vector<Near>& found = found_[part];
+    found.clear();
+    const std::size_t first = part * kAtOnce;
+    for (const std::int32_t n :
+         particles.subspan(first, std::min(kAtOnce, particles.size() - first)))
+      for (std::size_t b = 0; b < bodies_.size() && moved[n].u[3] > 0; ++b) {
+        Near near{n, std::int32_t(b), 0, {}, {}, 0, 0, 0, {}};
+        if (is_near(bodies_[b], now[n], moved[n], interval, near)) found.push_back(near);
       }
-  }
+  });
+  std::swap(near_, before_);
+  near_.clear();
+  const float ratio = float(interval.seconds() / seconds_), scale = ratio * ratio;
+  seconds_ = interval.seconds();
+  auto old = before_.begin();
+  const auto place = [](const Near& n) { return std::pair(n.particle, n.body); };
+  for (std::size_t part = 0; part < parts; ++part)
+    for (Near& near : found_[part]) {
+      while (old != before_.end() && place(*old) < place(near)) ++old;
+      if (old != before_.end() && place(*old) == place(near)) {
+        near.pressed = old->pressed * scale;
+        for (int k = 0; k < 3; ++k) near.rubbed[k] = old->rubbed[k] * scale;
+      }
+      near_.push_back(near);
+    }
 }
 
 void BodyAnswer::begin(Displacement* change) const {
@@ -109,6 +125,12 @@ void BodyAnswer::keep_out(Displacement* lift) const {
     const float into = std::min(0.0f, u[0] * l.normal[0] + u[1] * l.normal[1] + u[2] * l.normal[2]);
     for (int k = 0; k < 3; ++k) u[k] -= into * l.normal[k];
   }
+}
+
+std::size_t BodyAnswer::bytes() const {
+  std::size_t all = near_.capacity() + before_.capacity();
+  for (const std::vector<Near>& found : found_) all += found.capacity();
+  return all * sizeof(Near);
 }
 
 }  // namespace weft::physics

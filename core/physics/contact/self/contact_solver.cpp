@@ -215,7 +215,7 @@ float ContactSolver<N>::solve(const Place* place, const Place* now, const Displa
     in_order_.clear();
     for (std::size_t n = 0; n < bodies_; ++n)
       if (is_touched_[n]) in_order_.push_back(std::int32_t(n));
-    answer_.find(in_order_, now, moved, interval);
+    answer_.find(in_order_, now, moved, interval, threads);
     answer_.begin(change_.data());
   }
   sweep(change_.data(), kEnoughOfHeld * held_, kSweeps);

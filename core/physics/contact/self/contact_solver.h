@@ -45,8 +45,8 @@ class ContactSolver {
 
   // To be filled before each run.
   std::vector<Contact<N>>& contacts() { return contacts_; }
-  // Displacements in an interval, from these places, to where things are now. Returns how much of the distance held is missing at
-  // most, after all.
+  // Displacements in an interval, from these places to where things are now. Returns how much of the distance held is
+  // missing at most, after all.
   float solve(const Place* place, const Place* now, const Displacement* moved,
               const ContactInterval& interval, Threads& threads);
 

@@ -30,12 +30,6 @@ constexpr float kMotion = 0.03f;
 constexpr int kMostSubsteps = 32;   // between two looks
 constexpr std::size_t kFew = 4096;  // particles that one thread does faster
 
-double greatest_thickness(const std::vector<Sheet>& sheets) {
-  float most = 0;
-  for (const Sheet& s : sheets) most = std::max(most, s.thickness);
-  return most;
-}
-
 // Their names are still to be given. Rows are whole groups of lanes.
 std::vector<NamedSheet> named(const std::vector<Sheet>& sheets) {
   std::vector<NamedSheet> named;
@@ -100,13 +94,11 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool sur
       particles_(count_particles(sheets_)),
       named_(named(sheets_)),
       bodies_(give_names(named_)),
+      thickness_(std::ranges::max_element(sheets_, {}, &Sheet::thickness)->thickness),
       blocks_(sheets_, surfaces ? kFlatSurface : 0, kernels),
       search_(surfaces ? 0 : particles_, named_, kernels),
-      answer_(scene, greatest_thickness(sheets_)) {
-  for (const Sheet& s : sheets_) {
-    thickness_ = std::max(thickness_, s.thickness);
-    course_ |= s.response != SelfCollisionResponse::stiff && !surfaces;
-  }
+      answer_(scene, thickness_) {
+  for (const Sheet& s : sheets_) course_ |= s.response != SelfCollisionResponse::stiff && !surfaces;
   for (std::size_t n = 0; n < sheets_.size(); ++n) {
     const float range = sheets_[n].thickness * sheets_[n].neighbour();
     steps_.push_back(steps_beyond(named_[n], range * range));
@@ -387,7 +379,8 @@ void SelfContact::PairList::pad() {
 }
 
 std::size_t SelfContact::bytes() const {
-  std::size_t bytes = search_.bytes() + blocks_.bytes() + 4 * (begin_.size() + zone_.size());
+  std::size_t bytes =
+      search_.bytes() + blocks_.bytes() + answer_.bytes() + 4 * (begin_.size() + zone_.size());
   bytes += bodies_ * (2 * sizeof(Place) + sizeof(Displacement) + sizeof(RestPlace) + sizeof(float));
   for (const Sheet& s : sheets_)
     if (s.mesh) bytes += s.mesh->bytes();

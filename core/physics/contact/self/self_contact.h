@@ -192,6 +192,7 @@ class SelfContact {
   const std::size_t particles_;
   std::vector<NamedSheet> named_;  // names are the numbers of bodies
   const std::size_t bodies_;
+  const float thickness_;  // greatest of the sheets [m]
   Blocks blocks_;
   std::vector<std::vector<SheetStep>> steps_;  // of every sheet, to those beside each other
   PairSearch search_;                          // among the particles of active blocks
@@ -218,7 +219,6 @@ class SelfContact {
   std::vector<Displacement> asked_;  // of every body, by the course's rule: a sum, and of how many
   std::vector<std::int32_t> zone_;   // of every body, its own number outside of any (passing.cpp)
 
-  float thickness_ = 0;  // greatest of the sheets [m]
   bool course_ = false;  // whether any sheet has the course's rule, for neighbours at least
   bool begun_ = false;
   bool listed_ = false;  // whether lists of pairs are there

@@ -172,7 +172,9 @@ std::vector<std::string> LatticeModel::notes() const {
   if (history_ && parts_.cloth.strain_limit > 0 &&
       parts_.cloth.strain_limit_order == StrainLimitOrder::strict)
     notes.push_back(
-        "with order 2 the strain limit is one pass a substep, as with colours, and keeps momentum to some thousandths");
+        "with order 2 the strain limit is one pass a substep, as with colours, and keeps momentum "
+        "to some "
+        "thousandths");
   const Membrane& m = parts_.cloth.membrane;
   if (!m.given() || is_membrane() || solves_membrane()) return notes;
   std::string note =

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 
+#include "physics/kernels/membrane.h"
 #include "physics/model/lattice/stages.h"
 #include "physics/model/push.h"
 
@@ -14,7 +15,7 @@ class SweepCells final : public RowStage {
  public:
   SweepCells(const LatticeParts& parts, const SweepOptions& options, bool damps, int colour)
       : RowStage("gauss_seidel",
-                 (damps ? "damping in" : "") +
+                 (damps ? "damping in " : "") +
                      std::string("cells of the membrane, rows of colour ") +
                      std::to_string(colour + 1),
                  1, std::int64_t(parts.lattice.columns - 1) * ((parts.lattice.rows - colour) / 2),
@@ -92,15 +93,6 @@ class SweepCells final : public RowStage {
   std::vector<float> scale_;
   MembraneSweep sweep_{};
 };
-
-}  // namespace
-
-SubstepStart start_of(const LatticeParts& parts, double dt) {
-  if (parts.scene.solver.order == 2) return {parts.lattice.previous.row(0), {}, 0};
-  return {{}, parts.lattice.v.row(0), float(dt)};
-}
-
-namespace {
 
 void append(const LatticeParts& parts, const SweepOptions& options, bool damps, Stages& stages) {
   for (int colour = 0; colour < 2; ++colour)

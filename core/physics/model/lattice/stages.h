@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "physics/kernels/membrane.h"
 #include "physics/kernels/tear.h"
 #include "physics/model/cloth_model.h"
 #include "physics/model/lattice/lattice.h"

@@ -307,6 +307,11 @@ class Jacobi final : public RowStage {
 
 }  // namespace
 
+SubstepStart start_of(const LatticeParts& parts, double dt) {
+  if (parts.scene.solver.order == 2) return {parts.lattice.previous.row(0), {}, 0};
+  return {{}, parts.lattice.v.row(0), float(dt)};
+}
+
 float compliance_of(const LatticeParts& parts, const Stencil& f, int j, double dt) {
   const double k = f.stiffness * row_factor(parts.cloth, f, j);
   const double h = dt * implicit_share(parts.scene.solver);
