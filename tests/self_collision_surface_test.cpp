@@ -137,11 +137,10 @@ class Surfaces : public testing::TestWithParam<Simd> {
     return room;
   }
   static std::vector<int> not_apart(const Squares& s, Simd simd, float range) {
-    std::vector<std::int32_t> owner(s.owner.size()), neighbour(s.owner.size()),
-        number(s.owner.size());
+    std::vector<std::int32_t> owner(s.owner.size()), neighbour(s.owner.size());
     const int count = kernel_table(simd).sheets.squares_not_apart(
         {s.place.data(), s.moved.data(), s.square.data(), s.pairs, s.owner.data(),
-         s.neighbour.data(), number.data(), range, owner.data(), neighbour.data(), number.data()});
+         s.neighbour.data(), range, owner.data(), neighbour.data()});
     std::vector<int> pairs;
     for (int k = 0, at = 0; k < s.pairs && at < count; ++k)
       if (s.owner[std::size_t(k)] == owner[std::size_t(at)] &&

@@ -113,8 +113,8 @@ void add_idle(const Simulation::State& s, Report& r) {
                   double(of.contacts) / runs, double(of.sweeps) / runs);
     r.skipped.push_back({"self_collision", why});
     if (s.contact->pairs().surfaces()) {
-      std::snprintf(why, sizeof why, "pairs listed %.1f times; %lld moves of particles cut short",
-                    s.contact->pairs().listed(), static_cast<long long>(of.held));
+      std::snprintf(why, sizeof why, "%lld moves of particles cut short",
+                    static_cast<long long>(of.held));
       r.skipped.push_back({"self_surface", why});
     }
   }

@@ -214,6 +214,7 @@ struct ContactKernels {
 struct SquaresWithin;  // kernels/surface.h
 struct SquaresApart;
 struct SquaresAwake;
+struct SquaresAlike;
 struct SquareGaps;
 struct SurfacePairs;
 
@@ -232,6 +233,7 @@ struct SurfacePairs;
   KERNEL(int, squares_not_apart, (const SquaresApart&))   \
   KERNEL(int, squares_awake, (const SquaresAwake&))       \
   KERNEL(void, square_gaps, (const SquareGaps&))          \
+  KERNEL(void, squares_alike, (const SquaresAlike&))      \
   KERNEL(int, surface_pairs, (const SurfacePairs&))
 
 // Of contact between sheets.

@@ -51,6 +51,20 @@ WEFT_INLINE WideInt kept_apart(const Corners& p, const Corners& q, float range) 
          ((beyond(normal, q.start, p.start) > least) & (beyond(normal, q.end, p.end) > least));
 }
 
+// Between boxes, squared.
+WEFT_INLINE Wide box_gap(const physics::SquareBox* boxes, const std::int32_t* owner,
+                         const std::int32_t* neighbour) {
+  constexpr int kStride = sizeof(physics::SquareBox) / sizeof(float);
+  const auto low = [&](const std::int32_t* of) { return records_at(boxes->low, kStride, of).xyz; };
+  const auto high = [&](const std::int32_t* of) {
+    return records_at(boxes->high, kStride, of).xyz;
+  };
+  const Wide3 a = low(owner) - high(neighbour), b = low(neighbour) - high(owner);
+  const Wide3 gap{max(max(a.x, b.x), Wide{}), max(max(a.y, b.y), Wide{}),
+                  max(max(a.z, b.z), Wide{})};
+  return dot(gap, gap);
+}
+
 }  // namespace
 
 int squares_not_apart(const SquaresApart& given) {
@@ -61,7 +75,6 @@ int squares_not_apart(const SquaresApart& given) {
     const WideInt apart = kept_apart(p, q, s.range) | kept_apart(q, p, s.range);
     const unsigned near = bits(~apart & lanes_below(s.pairs - k));
     const WideInt neighbours = lanes_at(s.neighbour + k), owners = lanes_at(s.owner + k);
-    store_lanes(s.near_number + count, near, lanes_at(s.number + k));
     store_lanes(s.near_owner + count, near, owners);
     count += store_lanes(s.near_neighbour + count, near, neighbours);
   }
@@ -74,31 +87,29 @@ int squares_awake(const SquaresAwake& given) {
   int count = 0;
   for (int k = 0; k < s.pairs; k += kLanes) {
     const Wide ways = gathered(s.way, s.owner + k) + gathered(s.way, s.neighbour + k);
-    const WideInt awake = (ways >= load(s.until + k)) & lanes_below(s.pairs - k);
-    count += store_lanes(s.awake + count, bits(awake), lane_numbers() + k);
+    const Wide until = load(s.until + k);
+    const WideInt awake = (ways >= until) & lanes_below(s.pairs - k);
+    if (!any(awake)) continue;
+    const Wide beyond = sqrt(box_gap(s.boxes, s.owner + k, s.neighbour + k)) - s.range;
+    const WideInt far = beyond > 0.0f;
+    store(s.until + k, select(awake & far, (ways + beyond) * physics::kRoundedDown, until));
+    const unsigned near = bits(awake & ~far);
+    const WideInt neighbours = lanes_at(s.neighbour + k), owners = lanes_at(s.owner + k);
+    store_lanes(s.near_owner + count, near, owners);
+    count += store_lanes(s.near_neighbour + count, near, neighbours);
   }
+  for (int l = 0; l < kLanes; ++l) s.near_owner[count + l] = s.near_neighbour[count + l] = 0;
   return count;
 }
 
 int squares_within(const SquaresWithin& given) {
   const SquaresWithin s = given;
-  constexpr int kStride = sizeof(physics::SquareBox) / sizeof(float);
   int count = 0;
   for (int k = 0; k < s.pairs; k += kLanes) {
-    const auto low = [&](const std::int32_t* of) {
-      return records_at(s.boxes->low, kStride, of + k);
-    };
-    const auto high = [&](const std::int32_t* of) {
-      return records_at(s.boxes->high, kStride, of + k).xyz;
-    };
-    const Wide4 p = low(s.owner), q = low(s.neighbour);
-    const Wide3 a = p.xyz - high(s.neighbour), b = q.xyz - high(s.owner);
-    const Wide3 gap{max(max(a.x, b.x), Wide{}), max(max(a.y, b.y), Wide{}),
-                    max(max(a.z, b.z), Wide{})};
-    const WideInt within =
-        (dot(gap, gap) < s.range * s.range) & (p.last + q.last > 0.0f) & lanes_below(s.pairs - k);
-    store_lanes(s.within_owner + count, bits(within), lanes_at(s.owner + k));
-    count += store_lanes(s.within_neighbour + count, bits(within), lanes_at(s.neighbour + k));
+    const Wide square = box_gap(s.boxes, s.owner + k, s.neighbour + k);
+    const unsigned within = bits((square < s.range * s.range) & lanes_below(s.pairs - k));
+    store_lanes(s.within_owner + count, within, lanes_at(s.owner + k));
+    count += store_lanes(s.within_neighbour + count, within, lanes_at(s.neighbour + k));
   }
   for (int l = 0; l < kLanes; ++l) s.within_owner[count + l] = s.within_neighbour[count + l] = 0;
   return count;

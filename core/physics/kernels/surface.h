@@ -20,12 +20,11 @@ struct alignas(16) RestPlace {
 
 // Box about a square, through an interval.
 struct SquareBox {
-  float low[3], asked;    // m; 1 where all pairs of the square are asked for, else 0
-  float high[3], unused;  // m
+  float low[3], none;      // m
+  float high[3], nothing;  // m
 };
 
-// Pairs of squares, and where those of them go whose boxes are within a range, and one of which is
-// asked for.
+// Pairs of squares, and where those of them go whose boxes are within a range.
 struct SquaresWithin {
   const SquareBox* boxes;
   int pairs;
@@ -35,14 +34,31 @@ struct SquaresWithin {
   std::int32_t *within_owner, *within_neighbour;
 };
 
-// Pairs of squares, and where the places of those of them go whose ways together are no less than `until`
-// (contact/self/square_ways.h).
+// Times that, sums of two ways are not above what they are in truth.
+inline constexpr float kRoundedDown = 1 - 16 * 6e-8f;
+
+// Pairs of squares, and where those of them go that are awake, as ways tell (contact/self/square_ways.h), and whose
+// boxes in an interval are within a range. What is awake and farther off falls asleep.
 struct SquaresAwake {
+  const SquareBox* boxes;
+  int pairs;
+  const std::int32_t *owner, *neighbour;      // and 16 lanes of numbers of squares
+  float* until;                               // m, in ways, of every pair, and 16 lanes; in and out
+  const float* way;                           // m, of every square
+  float range;                                // m
+  std::int32_t *near_owner, *near_neighbour;  // out, and 16 lanes of padding
+};
+
+// Pairs of squares of one grid that share a corner, or are one square (squares_alike.cpp).
+struct SquaresAlike {
+  const Place* place;
+  const Square* squares;
   int pairs;
   const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
-  const float* until;                     // m, of every pair, and 16 lanes
-  const float* way;                       // m, of every square
-  std::int32_t* awake;                    // out, and 16 lanes of padding: places in the list
+  float uu, uv, vv;                       // m², of the edges at rest
+  // By how much corners may come from each other at least before the two lie so that they may touch, negative where
+  // they may [m]. Out, and 16 lanes of padding.
+  float* change;
 };
 
 // How far two squares are from each other at least, without what they have in common.
@@ -62,10 +78,9 @@ struct SquaresApart {
   const Square* squares;
   int pairs;
   const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
-  const std::int32_t* number;             // of every pair, and 16 lanes: goes along
   float range;                            // m
   // Out, and 16 lanes of padding; may be the same as above.
-  std::int32_t *near_owner, *near_neighbour, *near_number;
+  std::int32_t *near_owner, *near_neighbour;
 };
 
 // A vertex and a triangle, or two edges, of a pair of squares: bodies and their shares, positive where

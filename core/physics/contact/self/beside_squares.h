@@ -16,44 +16,46 @@ class BesideSquares {
  public:
   // Squares have the names of the particles that they begin with.
   BesideSquares(const std::vector<Sheet>& sheets, const std::vector<NamedSheet>& named,
-                const std::vector<Square>& squares);
+                const std::vector<Square>& squares, const KernelTable& kernels);
 
   // None sleeps.
   void wake();
-  // Lists those that are awake, or all; leaves out squares with a corner that is marked.
-  void list(const Ways& ways, bool all, const std::vector<std::uint8_t>& marked, Threads& threads);
+  // Lists those that are awake; leaves out squares with a corner that is marked.
+  void list(const Ways& ways, const std::vector<std::uint8_t>& marked, Threads& threads);
+  // Lists those of squares asked for, whether they sleep or not.
+  void list_asked(const std::vector<std::uint8_t>& asked, const std::vector<std::uint8_t>& marked,
+                  Threads& threads);
   // Of every square of a row and those beyond it there and in the next row, rows of all sheets in turn.
   const std::vector<SquarePairs>& pairs() const { return pairs_; }
   // Until when a listed pair sleeps, by its number.
   float& until(std::int32_t number) {
     return until_[std::size_t(number) % kPairs][std::size_t(number) / kPairs];
   }
-  // By how much the two of a listed pair may come at least, in ways, before they lie so that they may touch; negative
-  // where they may [m].
-  float alike(std::int32_t number, const Place* place) const;
+  // Of listed pairs, one after another: by how much their squares may come at least, in ways, before they lie so that
+  // they may touch; negative where they may [m]. `pairs` and `change`: and SquarePairs::kPadding more.
+  void alike(const std::int32_t* owner, const std::int32_t* neighbour, std::size_t pairs,
+             const Place* place, float* change) const;
   std::size_t bytes() const;
 
  private:
   // A square's pairs: with itself, the next along the row, and those of the next row from the one before it to the
   // one after.
   static constexpr std::size_t kPairs = 5;
-  struct Lie {
-    float u[4], v[4];  // m, mean edges along the row and the column, three floats of each
-    float uu, vv;      // m², their squares
-    float warp;        // m, how far edges are off them
-  };
 
   std::ptrdiff_t step(std::size_t sheet, std::size_t pair) const;
-  Lie lie_of(std::size_t n, const Place* place) const;
-  void find_awake(std::size_t sheet, int row, const Ways& ways, bool all);
+  template <class Pick>
+  void list_picked(const Pick& pick, const std::vector<std::uint8_t>& marked, Threads& threads);
+  template <class Pick>
+  void pick_row(std::size_t sheet, int row, const Pick& pick);
   void list_row(std::size_t sheet, int row, const std::vector<std::uint8_t>& marked,
                 SquarePairs& found);
 
   const std::vector<Sheet>& sheets_;
   const std::vector<NamedSheet>& named_;
   const std::vector<Square>& squares_;
+  const KernelTable& kernels_;
   std::array<std::vector<float>, kPairs> until_;  // m, of every square's pairs
-  std::vector<std::uint8_t> awake_;               // a bit for each pair of a square
+  std::vector<std::uint8_t> picked_;              // a bit for each pair of a square
   std::vector<std::size_t> first_row_;            // of every sheet
   std::vector<SquarePairs> pairs_;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace weft::physics {
 namespace {
@@ -26,6 +27,11 @@ Spread both(const Spread& a, const Spread& b) {
     s.high[k] = std::max(a.high[k], b.high[k]);
   }
   return s;
+}
+
+void widen(Spread& s, int k, float value) {
+  s.low[k] = std::min(s.low[k], value);
+  s.high[k] = std::max(s.high[k], value);
 }
 
 // The greatest difference of two values: no two differ by more than the box's diagonal.
@@ -84,8 +90,10 @@ void Blocks::cut(const std::vector<Sheet>& sheets) {
   for (std::size_t s = 0; s < sheets.size(); ++s) {
     const Particles& p = *sheets[s].points;
     const bool mesh = sheets[s].mesh != nullptr;
-    const int wide = mesh ? sheets[s].columns : block_columns(sheets[s]),
-              tall = mesh ? 1 : wide / 2;
+    // Boxes of grids among surfaces go one particle farther, and are whole groups of lanes all the same.
+    const int beyond = surfaces() && !mesh ? 1 : 0;
+    const int wide = mesh ? sheets[s].columns : block_columns(sheets[s]) - beyond,
+              tall = mesh ? 1 : (wide + beyond) / 2;
     const Extent e{int(blocks_.size()), (sheets[s].columns + wide - 1) / wide,
                    (p.rows + tall - 1) / tall};
     extents_.push_back(e);
@@ -95,9 +103,31 @@ void Blocks::cut(const std::vector<Sheet>& sheets) {
                             : nullptr);
     flat_patches_.emplace_back(mesh ? patches_.back()->pairs().size() : 0);
     for (int j = 0; j < e.down; ++j)
-      for (int i = 0; i < e.across; ++i)
-        blocks_.push_back({int(s), j * tall, i * wide, std::min(tall, p.rows - j * tall),
-                           std::min(wide, p.count(j * tall) - i * wide), i, j, false});
+      for (int i = 0; i < e.across; ++i) {
+        const int row = j * tall, column = i * wide, below = p.rows - row,
+                  right = p.count(row) - column;
+        blocks_.push_back({int(s), row, column, std::min(tall, below), std::min(wide, right), i, j,
+                           std::min(tall + beyond, below), std::min(wide + beyond, right), false});
+      }
+  }
+  borders_.resize(blocks_.size());
+  for (std::size_t s = 0; s < sheets.size(); ++s)
+    if (surfaces() && sheets[s].mesh) list_borders(s);
+}
+
+void Blocks::list_borders(std::size_t sheet) {
+  const Particles& p = *sheets_[sheet].points;
+  const auto first = std::size_t(extents_[sheet].first);
+  for (const auto& triangle : sheets_[sheet].mesh->triangles())
+    for (const int vertex : triangle)
+      for (const int other : triangle)
+        if (p.place(vertex).j != p.place(other).j)
+          borders_[first + std::size_t(p.place(vertex).j)].push_back(p.place(other));
+  for (std::size_t b = first; b < first + std::size_t(p.rows); ++b) {
+    const auto at = [](const Particles::Place& place) { return std::pair(place.j, place.i); };
+    std::ranges::sort(borders_[b], {}, at);
+    const auto twice = std::ranges::unique(borders_[b], {}, at);
+    borders_[b].erase(twice.begin(), twice.end());
   }
 }
 
@@ -170,8 +200,8 @@ BlockRows Blocks::rows_of(std::size_t b) {
   const Sheet& sheet = sheets_[std::size_t(block.sheet)];
   Particles& l = *sheet.points;
   BlockRows rows{};
-  rows.columns = block.columns;
-  rows.rows = block.rows;
+  rows.columns = block.box_columns;
+  rows.rows = block.box_rows;
   rows.edges_along = std::min(block.columns, sheet.columns - 1 - block.column);
   rows.edges_across = std::min(block.rows, l.rows - 1 - block.row);
   rows.stride = l.stride;
@@ -185,6 +215,7 @@ BlockRows Blocks::rows_of(std::size_t b) {
 
 void Blocks::measure_block(std::size_t b) {
   kernels_.sheets.block_bounds(rows_of(b));
+  if (!borders_[b].empty()) measure_border(b);
   const Spread now = bounds_[b].x;
   bounds_[b].x = both(before_[b], now);
   before_[b] = now;
@@ -192,6 +223,18 @@ void Blocks::measure_block(std::size_t b) {
     low_[k][b] = bounds_[b].x.low[k];
     high_[k][b] = bounds_[b].x.high[k];
   }
+}
+
+void Blocks::measure_border(std::size_t b) {
+  const auto sheet = std::size_t(blocks_[b].sheet);
+  const Particles& p = *sheets_[sheet].points;
+  BlockBounds& bounds = bounds_[b];
+  for (const auto& [j, i] : borders_[b])
+    for (int k = 0; k < 3; ++k) {
+      widen(bounds.x, k, p.x.at(k, j, i));
+      widen(bounds.v, k, p.v.at(k, j, i));
+      if (blocks_[b].active) widen(bounds.moved, k, p.x.at(k, j, i) - then_[sheet].at(k, j, i));
+    }
 }
 
 // ρ and its rate over a block and those beyond it, whose edges lead from any particle of the four to
@@ -330,13 +373,16 @@ void Blocks::remember() {
   for (const Block& b : blocks_) {
     if (!b.active) continue;
     active_ += std::size_t(b.rows) * std::size_t(b.columns);
-    Particles& l = *sheets_[std::size_t(b.sheet)].points;
-    for (int j = b.row; j < b.row + b.rows; ++j) {
-      const Row3 from = l.x.row(j), to = then_[std::size_t(b.sheet)].row(j);
-      std::copy_n(from.x + b.column, b.columns, to.x + b.column);
-      std::copy_n(from.y + b.column, b.columns, to.y + b.column);
-      std::copy_n(from.z + b.column, b.columns, to.z + b.column);
+    const auto sheet = std::size_t(b.sheet);
+    Particles& l = *sheets_[sheet].points;
+    for (int j = b.row; j < b.row + b.box_rows; ++j) {
+      const Row3 from = l.x.row(j), to = then_[sheet].row(j);
+      std::copy_n(from.x + b.column, b.box_columns, to.x + b.column);
+      std::copy_n(from.y + b.column, b.box_columns, to.y + b.column);
+      std::copy_n(from.z + b.column, b.box_columns, to.z + b.column);
     }
+    for (const auto& [j, i] : borders_[std::size_t(&b - blocks_.data())])
+      for (int k = 0; k < 3; ++k) then_[sheet].at(k, j, i) = l.x.at(k, j, i);
   }
 }
 

@@ -1,6 +1,7 @@
 // The blocks that sheets are cut into for self-collision, and which of them may touch.
 //
-// Blocks are far from each other when the boxes about them are. A block and those beside it always
+// Blocks are far from each other when the boxes about them are: about their particles, and among surfaces about
+// all squares or triangles that these are corners of. A block and those beside it always
 // meet; they are known not to touch when the sheet is nearly flat there: with every edge along the
 // rows within ε_u of one vector U, and every edge across within ε_v of V, two particles a columns and
 // b rows apart are at least
@@ -60,7 +61,9 @@ inline Spread nothing() {
 struct Block {
   int sheet, row, column, rows, columns;
   int across, down;  // its place among the sheet's blocks
-  bool active;       // searched for pairs the last time
+  int box_rows,
+      box_columns;  // of the particles that its box is about, beyond its own where surfaces meet
+  bool active;      // searched for pairs the last time
 };
 
 // A block's first particle in the rows of its sheet.
@@ -71,8 +74,9 @@ inline Row3 first_of(const Block& block, Rows& rows) {
 
 class Blocks {
  public:
-  // A sheet does not touch itself where it is nearly flat: where ρ is above `least_ratio`, or, where that is
-  // 0, such that pairs come no nearer than a thickness that are no neighbours at rest (Sheet::neighbour).
+  // A sheet does not touch itself where it is nearly flat: among surfaces where ρ is above `least_ratio`; among
+  // particles that is 0, and it must be such that pairs come no nearer than a thickness that are no neighbours at
+  // rest (Sheet::neighbour).
   Blocks(const std::vector<Sheet>& sheets, float least_ratio, const KernelTable& kernels);
 
   const std::vector<Block>& all() const { return blocks_; }
@@ -111,7 +115,10 @@ class Blocks {
   };
   void cut(const std::vector<Sheet>& sheets);
   BlockRows rows_of(std::size_t b);
+  bool surfaces() const { return least_ratio_ > 0; }
+  void list_borders(std::size_t sheet);
   void measure_block(std::size_t b);
+  void measure_border(std::size_t b);
   void measure_flat(bool all);
   Flat flat(std::size_t b) const;
   Flat flat(const Sheet& sheet, const BlockBounds& all) const;
@@ -136,6 +143,8 @@ class Blocks {
     int first, across, down;
   };
   std::vector<Extent> extents_;  // of every sheet, in blocks
+  // Of every block of a mesh among surfaces: vertices of other patches that its triangles have.
+  std::vector<std::vector<Particles::Place>> borders_;
   std::vector<BlockBounds> bounds_;
   std::vector<Spread> before_;  // boxes at the interval's start
   std::vector<Flat> flat_;

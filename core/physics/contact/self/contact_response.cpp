@@ -1,6 +1,5 @@
 // Self-contact (self_contact.h): the contacts of an interval, and what comes of them.
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "physics/contact/self/held.h"
@@ -12,6 +11,7 @@ namespace {
 
 constexpr std::size_t kAtOnce = 256;  // pairs of squares that are measured in one go
 constexpr std::size_t kFewLists = 8;  // that one thread does faster
+constexpr int kFirstOfKey = 36;       // bits of a contact's key that follow its first number
 
 bool is_none(const Displacement& d) {
   return d.u[0] == 0 && d.u[1] == 0 && d.u[2] == 0;
@@ -23,20 +23,20 @@ float SelfContact::friction_of(std::int32_t a, std::int32_t b) const {
   return 0.5f * (friction_[std::size_t(a)] + friction_[std::size_t(b)]);
 }
 
-// By their keys' upper halves, numbers of bodies, then by all of them.
-void SelfContact::sort_spheres() {
-  std::vector<Contact<2>>& contacts = spheres_->contacts();
-  std::vector<Contact<2>>& to = unsorted_spheres_;
+// By what is first in their keys, the number of a body or square, then by all of them.
+template <int N>
+void SelfContact::sort(std::vector<Contact<N>>& contacts, std::vector<Contact<N>>& to) {
+  const auto first = [](const Contact<N>& c) { return std::size_t(c.key >> kFirstOfKey); };
   std::fill(begin_.begin(), begin_.end(), 0);
-  for (const Contact<2>& c : contacts) ++begin_[std::size_t(c.key >> 32) + 1];
+  for (const Contact<N>& c : contacts) ++begin_[first(c) + 1];
   for (std::size_t n = 1; n < begin_.size(); ++n) begin_[n] += begin_[n - 1];
   to.resize(contacts.size());
-  for (const Contact<2>& c : contacts) to[std::size_t(begin_[std::size_t(c.key >> 32)]++)] = c;
+  for (const Contact<N>& c : contacts) to[std::size_t(begin_[first(c)]++)] = c;
   for (std::size_t i = 0; i < to.size();) {
     std::size_t end = i + 1;
-    while (end < to.size() && to[end].key >> 32 == to[i].key >> 32) ++end;
+    while (end < to.size() && first(to[end]) == first(to[i])) ++end;
     std::sort(to.begin() + std::ptrdiff_t(i), to.begin() + std::ptrdiff_t(end),
-              [](const Contact<2>& a, const Contact<2>& b) { return a.key < b.key; });
+              [](const Contact<N>& a, const Contact<N>& b) { return a.key < b.key; });
     i = end;
   }
   std::swap(contacts, to);
@@ -69,13 +69,13 @@ void SelfContact::find_among_particles(Threads& threads) {
       const auto [a, b] = std::minmax(meeting_[k].owner[i], meeting_[k].neighbour[i]);
       if (course_ && by_course(a, b)) continue;
       Contact<2> c{};
-      c.key = std::uint64_t(a) << 32 | std::uint64_t(b);
+      c.key = std::uint64_t(a) << kFirstOfKey | std::uint64_t(b);
       c.body = {a, b};
       c.held = place_[std::size_t(a)].x[3] + place_[std::size_t(b)].x[3];
       c.friction = friction_of(a, b);
       contacts.push_back(c);
     }
-  sort_spheres();
+  sort(contacts, unsorted_spheres_);
 }
 
 // Of what squares of meshes have in common, one owns each vertex and edge. `first`: of the piece's pairs.
@@ -114,8 +114,6 @@ void SelfContact::measure_surfaces(const SquarePairs& pairs, SurfaceSearch searc
 }
 
 void SelfContact::find_among_surfaces(Threads& threads) {
-  near_->update(!squares_listed_, now_.data(), threads);
-  squares_listed_ = true;
   measure_surfaces(
       near_->within(kReach * kHeld * thickness_, place_.data(), moved_.data(), threads),
       SurfaceSearch::contacts, kReach, threads);
@@ -124,7 +122,7 @@ void SelfContact::find_among_surfaces(Threads& threads) {
     for (const SurfaceContact& found : measured_[k].found()) {
       const std::size_t pair = k * kAtOnce + std::size_t(found.pair);
       Contact<4> c;
-      c.key = std::uint64_t(pairs_->owner[pair]) << 34 |
+      c.key = std::uint64_t(pairs_->owner[pair]) << kFirstOfKey |
               std::uint64_t(pairs_->neighbour[pair]) << 4 | std::uint64_t(found.kind);
       std::copy_n(found.body, 4, c.body.begin());
       std::copy_n(found.share, 4, c.share.begin());
@@ -134,13 +132,7 @@ void SelfContact::find_among_surfaces(Threads& threads) {
       c.friction = friction_of(found.body[0], found.body[3]);
       contacts.push_back(c);
     }
-  // Those of squares that share a corner come first; each part is in order.
-  const auto less = [](const Contact<4>& a, const Contact<4>& b) { return a.key < b.key; };
-  const auto part = std::is_sorted_until(contacts.begin(), contacts.end(), less);
-  unsorted_surfaces_.resize(contacts.size());
-  std::merge(contacts.begin(), part, part, contacts.end(), unsorted_surfaces_.begin(), less);
-  assert(std::is_sorted(unsorted_surfaces_.begin(), unsorted_surfaces_.end(), less));
-  std::swap(contacts, unsorted_surfaces_);
+  sort(contacts, unsorted_surfaces_);
 }
 
 // Velocities change with displacements; positions also by what is put apart. Contacts that nothing presses change
@@ -198,7 +190,7 @@ void SelfContact::respond(const ContactInterval& interval, Threads& threads) {
   touched_ = false;
   record_.contacts_now = 0;
   if (blocks_.active() == 0) {
-    squares_listed_ = false;
+    if (near_) near_->wake();
     return;
   }
   if (surfaces()) {

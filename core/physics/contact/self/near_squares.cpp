@@ -12,7 +12,7 @@
 namespace weft::physics {
 namespace {
 
-constexpr float kBeyond = 0.8f;      // spacings that listed pairs may be farther apart than is held
+constexpr float kSkin = 0.8f;        // spacings that listed pairs may be farther apart than is held
 constexpr float kOverstretched = 3;  // half-diagonals at rest: larger squares are torn and left out
 
 void widen(Spread& spread, int k, float value) {
@@ -42,7 +42,7 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<Nam
       squares_(rest.size()),
       seams_(sheets, named, rest.size()),
       ways_(squares_, rest.size()),
-      beside_(sheets, named, squares_),
+      beside_(sheets, named, squares_, kernels),
       search_(count_squares(sheets_), {}, kernels) {
   const std::size_t bodies = rest.size();
   float spacing = 0;
@@ -50,20 +50,16 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<Nam
     spacing = std::max({spacing, std::sqrt(s.uu), std::sqrt(s.vv)});
     most_ = std::max(most_, kReach * held(s));
   }
-  beyond_ = kBeyond * spacing;
-  origins_.resize(bodies);
-  chosen_.resize(bodies);
+  skin_ = kSkin * spacing;
   stride_.resize(bodies);
   make_squares();
   make_parts(rest);
   ways_.forget();
   asked_.resize(squares_.size());
   boxes_.resize(squares_.size());
-  begin_.resize(squares_.size() + 1);
   for_each_square([&](std::size_t) { ++all_squares_; });
   sorted_.resize(all_squares_);
   left_out_.reserve(all_squares_);
-  joined_.reserve(all_squares_);
 }
 
 // visit(number, sheet, row, column).
@@ -81,7 +77,7 @@ void NearSquares::for_each_square(const Visit& visit) const {
   for (std::size_t s = 0; s < sheets_.size(); ++s)
     for (int j = 0; j < sheets_[s].points->rows && !sheets_[s].mesh; ++j)
       for (int i = 0; i < sheets_[s].columns; ++i) visit(std::size_t(named_[s].name(j, i)));
-  for (std::size_t n = origins_.size(); n < squares_.size(); ++n) visit(n);
+  for (std::size_t n = stride_.size(); n < squares_.size(); ++n) visit(n);
 }
 
 // Those of grids.
@@ -140,7 +136,7 @@ void NearSquares::make_parts(const std::vector<RestPlace>& rest) {
 
 void NearSquares::leave_out(const std::vector<std::uint8_t>& marked) {
   std::size_t first = 0;
-  passing_.assign(origins_.size(), 0);
+  passing_.assign(stride_.size(), 0);
   bool any = false;
   for (std::size_t s = 0; s < sheets_.size(); ++s) {
     const Particles& p = *sheets_[s].points;
@@ -154,107 +150,35 @@ void NearSquares::leave_out(const std::vector<std::uint8_t>& marked) {
   if (!any) passing_.clear();
 }
 
-void NearSquares::update(bool all, const Place* now, Threads& threads) {
-  now_ = now;
-  joined_.clear();
-  if (all) {
-    wake();
-  } else {
-    look_how_far();
-    look_who_joined();
-  }
-  if (all || !joined_.empty() || left() <= 0) list(all, threads);
-}
-
-// The common part of all motion is the middle of what all have moved.
-void NearSquares::look_how_far() {
-  Spread moved = nothing();
-  const auto off = [&](std::size_t n, int k) {
-    return now_[n].x[k] - frame_[k] - origins_[n].x[k];
-  };
-  for_each_body([&](std::size_t n, std::size_t, int, int) {
-    for (int k = 0; k < 3; ++k) widen(moved, k, off(n, k));
-  });
-  for (int k = 0; k < 3; ++k) frame_[k] += 0.5f * (moved.low[k] + moved.high[k]);
-  float gone_squared = 0;
-  for_each_body([&](std::size_t n, std::size_t, int, int) {
-    Origin& origin = origins_[n];
-    origin.gone_squared = 0;
-    for (int k = 0; k < 3; ++k) origin.gone_squared += off(n, k) * off(n, k);
-    gone_squared = std::max(gone_squared, origin.gone_squared);
-  });
-  gone_ = std::sqrt(gone_squared);
-}
-
-// Squares that were left out and have come together again: their pairs are to be listed.
-void NearSquares::look_who_joined() {
-  for (const LeftOut& square : left_out_) {
+bool NearSquares::any_joined(const Place* now) const {
+  return std::ranges::any_of(left_out_, [&](const LeftOut& square) {
     float middle[3];
-    const auto number = std::size_t(square.number);
-    if (!(middle_of(number, middle) <= square.most_squared)) continue;
-    joined_.push_back(square.number);
-    for (const std::int32_t c : squares_[number].corner)
-      origins_[std::size_t(c)].gone_squared = std::numeric_limits<float>::max();
-  }
+    return middle_of(std::size_t(square.number), now, middle) <= square.most_squared;
+  });
 }
 
-// The pairs of those squares that have a vertex which has gone far; of all where that are many.
-//
-// Vertices that are chosen start anew: they have gone nowhere. The others may have gone kFar beyond_
-// before, so much less is left of what pairs that are not listed are apart (left()).
-void NearSquares::list(bool all, Threads& threads) {
-  std::size_t asked = all ? all_squares_ : choose(false);
-  before_.count = 0;
-  if (asked > all_squares_ / 2) {
-    asked = choose(true);
-    std::swap(listed_, before_);
-    std::swap(until_, before_until_);
-    listed_.count = 0;
-  }
-  squares_listed_ += double(asked);
+void NearSquares::list(const Place* now, Threads& threads) {
   Spread box;
   std::size_t whole = 0;
-  const float range = most_ + beyond_ + 2 * list_whole(box, whole);
+  const float range = most_ + skin_ + 2 * list_whole(now, box, whole);
   search_.sort(whole, box, range, threads);
   threads.share(search_.chunks(), search_.few(), [&](std::size_t k) {
-    for (std::size_t p = search_.begin(k); p < search_.begin(k + 1); ++p) fill_box(p);
+    for (std::size_t p = search_.begin(k); p < search_.begin(k + 1); ++p) fill_box(p, now);
   });
   search_.find(range, threads);
   if (found_.size() < search_.chunks()) found_.resize(search_.chunks());
   threads.share(search_.chunks(), search_.few(), [&](std::size_t k) { find_in(k); });
-  take_found();
-  sort_listed();
-  sleep_as_before();
-}
-
-// Vertices that start anew, and the squares that they are corners of; returns how many these are.
-std::size_t NearSquares::choose(bool all) {
-  const float far = kFar * beyond_;
-  float gone_squared = 0;
-  for_each_body([&](std::size_t n, std::size_t, int, int) {
-    Origin& origin = origins_[n];
-    chosen_[n] = all || origin.gone_squared > far * far;
-    if (chosen_[n]) {
-      for (int k = 0; k < 3; ++k) origin.x[k] = now_[n].x[k] - frame_[k];
-      origin.gone_squared = 0;
-    }
-    gone_squared = std::max(gone_squared, origin.gone_squared);
-  });
-  gone_ = std::sqrt(gone_squared);
-  std::size_t asked = 0;
-  for_each_square([&](std::size_t n) {
-    asked_[n] = has_corner_in(squares_[n], chosen_);
-    asked += asked_[n];
-  });
-  return asked;
+  listed_.count = 0;
+  listed_.add(found_, search_.chunks());
+  until_.assign(listed_.count + SquarePairs::kPadding, SquareWays::kAtOnce);
 }
 
 // The middle of a square's corners, and how far from it they are at most, squared.
-float NearSquares::middle_of(std::size_t square, float (&middle)[3]) const {
+float NearSquares::middle_of(std::size_t square, const Place* now, float (&middle)[3]) const {
   float off[4] = {};
   for (int k = 0; k < 3; ++k) {
     float x[4];
-    for (int c = 0; c < 4; ++c) x[c] = now_[std::size_t(squares_[square].corner[c])].x[k];
+    for (int c = 0; c < 4; ++c) x[c] = now[squares_[square].corner[c]].x[k];
     middle[k] = 0.25f * (x[0] + x[1] + x[2] + x[3]);
     for (int c = 0; c < 4; ++c) off[c] += (x[c] - middle[k]) * (x[c] - middle[k]);
   }
@@ -263,7 +187,7 @@ float NearSquares::middle_of(std::size_t square, float (&middle)[3]) const {
 
 // The middles of all squares that are whole, for the search; returns the greatest distance of a corner
 // from the middle.
-float NearSquares::list_whole(Spread& box, std::size_t& count) {
+float NearSquares::list_whole(const Place* now, Spread& box, std::size_t& count) {
   box = nothing();
   left_out_.clear();
   float widest_squared = 0;
@@ -271,7 +195,7 @@ float NearSquares::list_whole(Spread& box, std::size_t& count) {
   for_each_square([&](std::size_t n) {
     if (has_corner_in(squares_[n], passing_)) return;
     float middle[3];
-    const float radius_squared = middle_of(n, middle);
+    const float radius_squared = middle_of(n, now, middle);
     if (!(radius_squared <= most_squared_[n])) {
       left_out_.push_back({std::int32_t(n), most_squared_[n]});
       return;
@@ -287,18 +211,17 @@ float NearSquares::list_whole(Spread& box, std::size_t& count) {
 }
 
 // The box about one square.
-void NearSquares::fill_box(std::size_t sorted) {
+void NearSquares::fill_box(std::size_t sorted, const Place* now) {
   const auto n = std::size_t(search_.name(sorted));
   sorted_[sorted] = std::int32_t(n);
   SquareBox& box = boxes_[sorted];
   for (int c = 0; c < 4; ++c) {
-    const float* const x = now_[std::size_t(squares_[n].corner[c])].x;
+    const float* const x = now[squares_[n].corner[c]].x;
     for (int k = 0; k < 3; ++k) {
       box.low[k] = c == 0 ? x[k] : std::min(box.low[k], x[k]);
       box.high[k] = c == 0 ? x[k] : std::max(box.high[k], x[k]);
     }
   }
-  box.asked = asked_[n];
 }
 
 // Whether two squares share a corner, p < q: names of a grid's squares differ as their places do.
@@ -311,15 +234,14 @@ bool NearSquares::beside(std::int32_t p, std::int32_t q) const {
   return apart <= 1 || (apart >= stride - 1 && apart <= stride + 1);
 }
 
-// The pairs of a chunk of the search that are asked for and within reach, but for those that share a
-// corner.
+// The pairs of a chunk of the search that are within reach, but for those that share a corner.
 void NearSquares::find_in(std::size_t chunk) {
   const PairSearch::Pairs near = search_.pairs(chunk);
   SquarePairs& found = found_[chunk];
   found.reserve(near.count);
-  found.count = std::size_t(kernels_.sheets.squares_within(
-      {boxes_.data(), int(near.count), near.owner, near.neighbour, most_ + beyond_,
-       found.owner.data(), found.neighbour.data()}));
+  found.count = std::size_t(
+      kernels_.sheets.squares_within({boxes_.data(), int(near.count), near.owner, near.neighbour,
+                                      most_ + skin_, found.owner.data(), found.neighbour.data()}));
   std::size_t kept = 0;
   for (std::size_t i = 0; i < found.count; ++i) {
     const auto [p, q] =
@@ -332,23 +254,20 @@ void NearSquares::find_in(std::size_t chunk) {
 }
 
 void NearSquares::wake() {
+  if (awake_) return;
+  awake_ = true;
   ways_.forget();
   beside_.wake();
   std::fill(until_.begin(), until_.end(), SquareWays::kAtOnce);
 }
 
-double NearSquares::listed() const {
-  return squares_listed_ / double(std::max<std::size_t>(all_squares_, 1));
-}
-
 std::size_t NearSquares::bytes() const {
   std::size_t bytes = search_.bytes();
-  bytes += squares_.size() * (sizeof(Square) + sizeof(SquareBox) + 9);
-  bytes += origins_.size() * (sizeof(Origin) + 6);
+  bytes += squares_.size() * (sizeof(Square) + sizeof(SquareBox) + 9) + 4 * stride_.size();
   for (const auto& part : parts_) bytes += part->beside.bytes();
-  bytes += all_squares_ * (sizeof(LeftOut) + 8) + 4 * begin_.size();
-  bytes += listed_.bytes() + within_.bytes() + still_.bytes() + before_.bytes();
-  bytes += 12 * until_.capacity();
+  bytes += all_squares_ * (sizeof(LeftOut) + 4);
+  bytes += listed_.bytes() + within_.bytes() + still_.bytes() + corner_pairs_.bytes();
+  bytes += 4 * until_.capacity();
   bytes += ways_.bytes();
   for (const SquarePairs& p : found_) bytes += p.bytes();
   return bytes + beside_.bytes() + seams_.bytes();

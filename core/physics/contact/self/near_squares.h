@@ -1,9 +1,8 @@
 // Which squares of sheets are near each other: the pairs that contact among surfaces measures.
 //
-// Pairs are listed whose distance is less than what they are kept apart by, and somewhat beyond. As long
-// as nothing has moved half as far as that, no others can touch. Then pairs are found again, by the same
-// search as particles (pair_search.h), for those squares alone that have moved far; for all where these
-// are many. Motion that is common to all is left out of account.
+// Pairs are listed whose distance is less than what they are kept apart by, and a skin beyond. As long as no two that
+// may touch have moved so far against each other (blocks.h), no others can touch. Then all are found again, by the
+// same search as particles (pair_search.h).
 //
 // Of the listed pairs, and of those that share a corner, most sleep: how far apart they are is measured when they
 // are looked at, and they are not looked at again before they may have come within range (square_ways.h). So what is
@@ -36,12 +35,15 @@ class NearSquares {
   // What each of them owns; empty: all own all.
   const std::vector<std::uint8_t>& owned() const { return owned_; }
 
-  // Squares with a particle that is marked, by its number, sheet after sheet, are left out from the next
-  // update of all on.
+  // m; that squares whose pairs were not listed may move against each other before they can touch.
+  float skin() const { return skin_; }
+  // Squares with a particle that is marked, by its number, sheet after sheet, are left out from the next list on.
   void leave_out(const std::vector<std::uint8_t>& marked);
-  // Lists pairs anew where need be, or all, with the bodies where they are now.
-  void update(bool all, const Place* now, Threads& threads);
-  // No pair sleeps: bodies are elsewhere than where they were left.
+  // Lists pairs anew, with the bodies where they are now.
+  void list(const Place* now, Threads& threads);
+  // Whether squares that were torn when pairs were listed are whole now, so that pairs are to be listed anew.
+  bool any_joined(const Place* now) const;
+  // No pair sleeps: bodies are elsewhere than where within() left them.
   void wake();
   // A body that was where it is now has been put elsewhere, so far [m].
   void shift(std::int32_t body, float way) { ways_.shift(body, way); }
@@ -49,34 +51,28 @@ class NearSquares {
   // that share a corner what does not lie flat. Once an interval, always with the same range: pairs sleep.
   const SquarePairs& within(float range, const Place* place, const Displacement* moved,
                             Threads& threads);
-  // The same for other displacements in an interval, with all pairs, whether they sleep or not.
-  const SquarePairs& all_within(float range, const Place* place, const Displacement* moved,
-                                Threads& threads);
   // Of those found last what comes within a shorter range in the same interval, when nothing moves
   // otherwise by more than half of the difference.
   const SquarePairs& still_within(float range, const Place* place, const Displacement* moved,
                                   Threads& threads);
+  // Of all pairs, whether they sleep or not, those of squares with a body that is marked; the others have come to
+  // move otherwise by no more than `most` [m] since within().
+  const SquarePairs& strayed_within(float range, float most,
+                                    const std::vector<std::uint8_t>& strayed, const Place* place,
+                                    const Displacement* moved, Threads& threads);
 
-  // Squares whose pairs were listed so far, in times all of them.
-  double listed() const;
   std::size_t bytes() const;
 
  private:
-  // Of beyond_: vertices that have gone that far when others must be listed are listed anew, too.
-  static constexpr float kFar = 1.0f / 6;
-
-  struct Origin {
-    float x[3], gone_squared;  // m, m²: where it was when its pairs were listed, how far off it is
-  };
   struct LeftOut {
     std::int32_t number;
     float most_squared;  // m², of a corner's distance from the middle: nearer, it is whole
   };
 
-  struct Room {  // of one piece of a list
-    std::vector<std::int32_t> owner, neighbour, awake;
-    std::vector<std::size_t> asked;
-    std::vector<float> gap;
+  struct Room {                   // of one piece of a list
+    SquarePairs asked;            // numbers: of pairs
+    std::vector<float> measured;  // of those asked for
+    std::vector<std::uint8_t> away;
   };
 
   // The squares of a mesh.
@@ -92,37 +88,28 @@ class NearSquares {
   void share_squares(Threads& threads, const Visit& visit) const;
   void bound(const Place* place, const Displacement* moved, Threads& threads);
   void bound_square(std::size_t n, const Place* place, const Displacement* moved);
-  void add_ways(const Displacement* moved, Threads& threads);
-  void list_beside(bool all, const Place* place, Threads& threads);
-  void drop_alike(const Place* place);
-  float& until(std::size_t pair);
-  bool stays_away(std::size_t pair, float gap, float range, const Place* place);
-  void take_awake(std::size_t first, std::size_t count, float range, Room& room,
-                  SquarePairs& found);
+  bool sleeps(std::size_t pair, float farther);
   float box_gap(std::int32_t a, std::int32_t b) const;
-  void put_to_sleep(std::size_t first, std::size_t count, float range, const Place* place,
-                    Room& room, SquarePairs& kept);
+  void take_beside(std::size_t first, std::size_t count, float range, const Place* place,
+                   Room& room, SquarePairs& kept);
+  template <class Work>
+  void add_pieces(std::size_t pairs, SquarePairs& to, Threads& threads, const Work& work);
+  void find_not_apart(const SquarePairs& pairs, std::size_t first, std::size_t count, float range,
+                      const Place* place, const Displacement* moved, SquarePairs& found) const;
   void keep_not_apart(float range, const Place* place, const Displacement* moved,
                       SquarePairs& found) const;
-  void make_room(std::size_t pieces);
+  void add_asked_beside(float range, float box_range, const Place* place, const Displacement* moved,
+                        Threads& threads);
+  void add_asked(const SquarePairs& pairs, float range, float box_range, const Place* place,
+                 const Displacement* moved, Threads& threads);
   template <class Visit>
   void for_each_body(const Visit& visit) const;
   template <class Visit>
   void for_each_square(const Visit& visit) const;
-  void look_how_far();
-  void look_who_joined();
-  // What pairs that are not listed are apart, at least, less what they are kept apart [m].
-  float left() const { return (1 - 2 * kFar) * beyond_ - 2 * gone_; }
-  void list(bool all, Threads& threads);
-  std::size_t choose(bool all);
-  float middle_of(std::size_t square, float (&middle)[3]) const;
-  float list_whole(Spread& box, std::size_t& count);
-  void fill_box(std::size_t sorted);
+  float middle_of(std::size_t square, const Place* now, float (&middle)[3]) const;
+  float list_whole(const Place* now, Spread& box, std::size_t& count);
+  void fill_box(std::size_t sorted, const Place* now);
   void find_in(std::size_t chunk);
-  void take_found();
-  void sort_listed();
-  void sort_by(std::vector<std::int32_t> SquarePairs::*number);
-  void sleep_as_before();
 
   const std::vector<Sheet>& sheets_;
   const std::vector<NamedSheet>& named_;
@@ -135,32 +122,23 @@ class NearSquares {
   const OverSeams seams_;
   SquareWays ways_;
   BesideSquares beside_;
-  const Place* now_ = nullptr;
-  std::vector<Origin> origins_;
-  float frame_[3] = {};  // m: what has been common so far
-  float gone_ = 0;       // m, the farthest
 
   PairSearch search_;                  // among the middles of squares that are whole
-  std::vector<std::uint8_t> chosen_;   // vertices, and
-  std::vector<std::uint8_t> asked_;    // squares whose pairs are listed anew
+  std::vector<std::uint8_t> asked_;    // squares whose pairs are looked at anew
   std::vector<std::int32_t> sorted_;   // numbers of squares as sorted by the search
   std::vector<SquareBox> boxes_;       // as sorted, or of all in an interval
   std::vector<SquarePairs> found_;     // of every chunk of the search, or of the list
   std::vector<LeftOut> left_out_;      // squares that are torn
   std::vector<std::uint8_t> passing_;  // vertices of squares that are left out; empty: none
-  std::vector<std::int32_t>
-      joined_;  // squares that were torn at the last update and are whole at this
-  SquarePairs listed_, within_, still_, before_;
-  // m, of every listed pair, until when it sleeps; and of those that were listed before.
-  std::vector<float> until_, sorted_until_, before_until_;
-  std::vector<Room> rooms_;       // of every piece of a list
-  std::size_t beside_count_ = 0;  // of within_, the first are those of beside_
+  SquarePairs listed_, within_, still_;
+  SquarePairs corner_pairs_;  // those that share a corner, before they are looked at
+  std::vector<float> until_;  // m, of every listed pair, until when it sleeps
+  std::vector<Room> rooms_;   // of every piece of a list
   std::size_t turn_ = 0;
-  std::vector<std::int32_t> begin_;  // of every owner's pairs, to sort them
-  float within_range_ = 0;           // m: of within_
-  float most_ = 0, beyond_ = 0;      // m: the most that any pair is kept apart
-  double squares_listed_ = 0;
+  float within_range_ = 0;     // m: of within_
+  float most_ = 0, skin_ = 0;  // m: most_ is what any pair is kept apart at most
   std::size_t all_squares_ = 0;
+  bool awake_ = true;  // all pairs are
 };
 
 }  // namespace weft::physics

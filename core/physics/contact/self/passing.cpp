@@ -83,11 +83,10 @@ void SelfContact::move_zones(const std::vector<std::int32_t>& members) {
   }
 }
 
-// What may pass in the interval: of what was found for contacts, unless those have moved things so far that
-// others may have come near.
-const SquarePairs& SelfContact::near_passing(Threads& threads) {
-  const float held = kHeld * thickness_, most = kMostChange * held;
-  float farthest = 0;
+// Marks what contacts have moved so far that others may have come near than were found for contacts. Returns whether
+// anything is.
+bool SelfContact::mark_strayed(float most) {
+  bool any = false;
   for (const std::int32_t body : surfaces_->touched()) {
     const Displacement &change = surfaces_->change(body), &lift = surfaces_->lift(body);
     float square = 0;
@@ -95,32 +94,47 @@ const SquarePairs& SelfContact::near_passing(Threads& threads) {
       const float by = change.u[k] + lift.u[k];
       square += by * by;
     }
-    farthest = std::max(farthest, square);
+    const bool far = square >= most * most;
+    strayed_[std::size_t(body)] = far;
+    any |= far;
   }
-  return farthest < most * most
-             ? near_->still_within(kNear * held, place_.data(), moved_.data(), threads)
-             : near_->all_within(kNear * held, place_.data(), moved_.data(), threads);
+  return any;
 }
 
-// (From here on `moved_` is what bodies do move, not what they would.)
+// Of all pairs those that may pass now: of what was found for contacts, and of what has strayed from there. Then of what
+// zones have moved, until nothing may. (From here on `moved_` is what bodies do move, not what they would.)
 void SelfContact::hold_together(Threads& threads) {
   for (const std::int32_t body : surfaces_->touched()) {
     Displacement& u = moved_[std::size_t(body)];
     if (!(u.u[3] > 0)) continue;
     for (int k = 0; k < 3; ++k) u.u[k] += surfaces_->change(body).u[k] + surfaces_->lift(body).u[k];
   }
+  const float held = kHeld * thickness_, near = kNear * held, most = kMostChange * held;
   std::vector<std::int32_t> members;
+  const auto join = [&](const SquarePairs& pairs) {
+    measure_surfaces(pairs, SurfaceSearch::passing, 1, threads);
+    return join_zones(members);
+  };
+  bool strayed = mark_strayed(most);
+  bool passing = join(near_->still_within(near, place_.data(), moved_.data(), threads));
   for (int round = 0;; ++round) {
-    measure_surfaces(near_passing(threads), SurfaceSearch::passing, 1, threads);
-    if (!join_zones(members)) break;
+    if (strayed)
+      passing |=
+          join(near_->strayed_within(near, most, strayed_, place_.data(), moved_.data(), threads));
+    if (!passing) break;
     if (round == kRounds) {
       forced_ = true;
       break;
     }
     move_zones(members);
+    std::fill(strayed_.begin(), strayed_.end(), std::uint8_t(0));
+    for (const std::int32_t body : members) strayed_[std::size_t(body)] = 1;
+    strayed = true;
+    passing = false;
   }
   record_.held += std::int64_t(members.size());
   for (const std::int32_t body : members) zone_[std::size_t(body)] = body;
+  if (strayed) std::fill(strayed_.begin(), strayed_.end(), std::uint8_t(0));
 }
 
 }  // namespace weft::physics

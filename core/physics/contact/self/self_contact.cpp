@@ -29,6 +29,7 @@ constexpr int kRunsToEdges = 16;  // until what was not flat is looked at again
 constexpr float kMotion = 0.03f;
 constexpr int kMostSubsteps = 32;   // between two looks
 constexpr std::size_t kFew = 4096;  // particles that one thread does faster
+constexpr int kRowsOfBand = 8;
 
 // Their names are still to be given. Rows are whole groups of lanes.
 std::vector<NamedSheet> named(const std::vector<Sheet>& sheets) {
@@ -110,19 +111,24 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool sur
   moved_.resize(bodies_ + kPacket);
   rest_.resize(bodies_);
   friction_.resize(bodies_);
-  for (std::size_t n = 0; n < sheets_.size(); ++n) place_at_rest(n);
+  for (std::size_t n = 0; n < sheets_.size(); ++n) {
+    place_at_rest(n);
+    const int rows = sheets_[n].points->rows, step = sheets_[n].mesh ? 1 : kRowsOfBand;
+    for (int j = 0; j < rows; j += step) bands_.push_back({n, j, std::min(step, rows - j)});
+  }
   if (surfaces) {
     near_ = std::make_unique<NearSquares>(sheets_, named_, rest_, kernels);
     surfaces_ =
         std::make_unique<ContactSolver<4>>(bodies_, answer_, kernels.sheets.contacts_of_four);
     zone_.resize(bodies_);
+    strayed_.resize(bodies_);
     std::iota(zone_.begin(), zone_.end(), 0);
   } else {
     for (std::size_t n = 0; n < sheets_.size(); ++n)
       if (sheets_[n].mesh) list_neighbours(n);
     spheres_ = std::make_unique<ContactSolver<2>>(bodies_, answer_, kernels.sheets.contacts_of_two);
   }
-  begin_.resize(bodies_ + 1);
+  begin_.resize((near_ ? near_->squares().size() : bodies_) + 1);
 }
 
 // A grid lies flat, its first particle at zero; a mesh as its file has it.
@@ -170,18 +176,17 @@ Site SelfContact::site(std::int32_t body) const {
   return {std::uint16_t(sheet), std::uint16_t(at / stride), std::uint16_t(at % stride)};
 }
 
-BodyBlock SelfContact::bodies_of(const Block& block) {
-  const auto sheet = std::size_t(block.sheet);
-  Particles& l = *sheets_[sheet].points;
+BodyBlock SelfContact::bodies_of(const Band& band) {
+  Particles& l = *sheets_[band.sheet].points;
   BodyBlock b{};
-  b.columns = block.columns;
-  b.rows = block.rows;
+  b.columns = sheets_[band.sheet].mesh ? l.count(band.row) : sheets_[band.sheet].columns;
+  b.rows = band.rows;
   b.stride = l.stride;
-  b.body_stride = named_[sheet].stride;
-  b.x = first_of(block, l.x);
-  b.w = l.w(block.row) + block.column;
-  b.half_held = 0.5f * held(sheets_[sheet]);
-  const std::size_t first = body(sheet, block.row, block.column);
+  b.body_stride = named_[band.sheet].stride;
+  b.x = l.x.row(band.row);
+  b.w = l.w(band.row);
+  b.half_held = 0.5f * held(sheets_[band.sheet]);
+  const std::size_t first = body(band.sheet, band.row, 0);
   b.before = place_.data() + first;
   b.now = now_.data() + first;
   b.moved = moved_.data() + first;
@@ -191,8 +196,8 @@ BodyBlock SelfContact::bodies_of(const Block& block) {
 // Where all is now, and how far it has moved in the interval.
 void SelfContact::gather(Threads& threads) {
   copy_meshes(sheets_, threads);
-  threads.share(blocks_.all().size(), particles_ < kFew,
-                [&](std::size_t b) { kernels_.sheets.gather_bodies(bodies_of(blocks_.all()[b])); });
+  threads.share(bands_.size(), particles_ < kFew,
+                [&](std::size_t b) { kernels_.sheets.gather_bodies(bodies_of(bands_[b])); });
 }
 
 void SelfContact::begin(Threads& threads) {
@@ -204,7 +209,7 @@ void SelfContact::begin(Threads& threads) {
 }
 
 void SelfContact::restart() {
-  begun_ = listed_ = squares_listed_ = false;
+  begun_ = listed_ = false;
   record_.contacts_now = 0;
   skin_ = 0;
   kept_runs_ = 0;
@@ -258,15 +263,17 @@ void SelfContact::search(double margin, Threads& threads) {
   listed_ = false;
 }
 
-// Chooses the blocks that may touch, and lists pairs within `reach` and `skin`, now.
-void SelfContact::list_pairs(float reach, float skin, Threads& threads) {
-  blocks_.choose(reach + skin);
+// Chooses the blocks that may touch, and lists pairs within `reach` and the skin, now.
+void SelfContact::list_pairs(float reach, Threads& threads) {
+  blocks_.choose(reach + skin());
   ++record_.searches;
   kept_runs_ = 0;
   listed_ = true;
-  if (!surfaces()) {
-    sort(reach - thickness_ + skin, threads);
-    find(reach - thickness_ + skin, threads);
+  if (surfaces()) {
+    if (blocks_.active() > 0) near_->list(now_.data(), threads);
+  } else {
+    sort(reach - thickness_ + skin(), threads);
+    find(reach - thickness_ + skin(), threads);
   }
 }
 
@@ -312,13 +319,13 @@ int SelfContact::run(const ContactInterval& interval, Threads& threads) {
   const bool edges = !listed_ || kept_runs_ % kRunsToEdges == 0;
   if (edges) blocks_.measure_edges(threads);
   const Blocks::Outlook now =
-      blocks_.look(reach, skin_ * thickness_, motion, (touches() ? 1 : kMostSubsteps) * dt);
-  if (!listed_ || !now.covered) {
+      blocks_.look(reach, skin(), motion, (touches() ? 1 : kMostSubsteps) * dt);
+  if (!listed_ || !now.covered || (near_ && near_->any_joined(now_.data()))) {
     if (kept_runs_ <= kFewRuns) skin_ *= 1.2f;
     if (kept_runs_ > kManyRuns) skin_ *= 0.8f;
     skin_ = std::clamp(skin_, kLeastSkin, kMostSkin);
     if (!edges) blocks_.measure_edges(threads);
-    list_pairs(reach, skin_ * thickness_, threads);
+    list_pairs(reach, threads);
   }
   record_.passed_over += double(particles_ - blocks_.active());
   respond(interval, threads);
@@ -339,7 +346,7 @@ SelfContact::Overlaps SelfContact::overlaps() {
   if (surfaces()) {
     begin(one);
     gather(one);
-    near_->update(true, now_.data(), one);
+    near_->list(now_.data(), one);
     measure_surfaces(near_->within(thickness_, place_.data(), moved_.data(), one),
                      SurfaceSearch::contacts, 1, one);
     for (const auto& piece : measured_)
@@ -379,8 +386,8 @@ void SelfContact::PairList::pad() {
 }
 
 std::size_t SelfContact::bytes() const {
-  std::size_t bytes =
-      search_.bytes() + blocks_.bytes() + answer_.bytes() + 4 * (begin_.size() + zone_.size());
+  std::size_t bytes = search_.bytes() + blocks_.bytes() + answer_.bytes() +
+                      4 * (begin_.size() + zone_.size()) + strayed_.size();
   bytes += bodies_ * (2 * sizeof(Place) + sizeof(Displacement) + sizeof(RestPlace) + sizeof(float));
   for (const Sheet& s : sheets_)
     if (s.mesh) bytes += s.mesh->bytes();

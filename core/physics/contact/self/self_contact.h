@@ -118,8 +118,6 @@ class SelfContact {
   const Record& record() const { return record_; }
   // Whether contact changed anything the last time.
   bool touched() const { return touched_; }
-  // Squares whose pairs were listed so far, in times all of them.
-  double listed() const { return near_ ? near_->listed() : 0; }
   std::size_t bytes() const;
 
  private:
@@ -140,6 +138,12 @@ class SelfContact {
     std::span<const SurfaceContact> found() const { return {room.data(), count}; }
   };
 
+  // Rows of a sheet that are gathered in one go.
+  struct Band {
+    std::size_t sheet;
+    int row, rows;
+  };
+
   // What contact changes of a sheet; `history` may be null.
   struct Moving {
     Particles* particles;
@@ -148,7 +152,7 @@ class SelfContact {
 
   std::size_t body(std::size_t sheet, int row, int column) const;
   Site site(std::int32_t body) const;
-  BodyBlock bodies_of(const Block& block);
+  BodyBlock bodies_of(const Band& band);
   void gather(Threads& threads);
   void place_at_rest(std::size_t sheet);
   void list_neighbours(std::size_t sheet);
@@ -156,7 +160,8 @@ class SelfContact {
 
   // self_contact.cpp: when, and the lists of pairs.
   void list_sites(Threads& threads);
-  void list_pairs(float reach, float skin, Threads& threads);
+  float skin() const { return near_ ? near_->skin() : skin_ * thickness_; }
+  void list_pairs(float reach, Threads& threads);
   void list_beside(std::size_t block, float range);
   bool touches() const { return record_.contacts_now > 0; }
 
@@ -167,7 +172,8 @@ class SelfContact {
   void measure_surfaces(const SquarePairs& pairs, SurfaceSearch search, float reach,
                         Threads& threads);
   void keep_owned(const SquarePairs& pairs, std::size_t first, Measured& found) const;
-  void sort_spheres();
+  template <int N>
+  void sort(std::vector<Contact<N>>& contacts, std::vector<Contact<N>>& to);
   template <int N>
   void solve(ContactSolver<N>& solver, const ContactInterval& interval, Threads& threads);
   template <int N>
@@ -175,7 +181,7 @@ class SelfContact {
   float friction_of(std::int32_t a, std::int32_t b) const;
 
   // passing.cpp
-  const SquarePairs& near_passing(Threads& threads);
+  bool mark_strayed(float most);
   void hold_together(Threads& threads);
   std::int32_t zone_of(std::int32_t body);
   bool join_zones(std::vector<std::int32_t>& members);
@@ -194,6 +200,7 @@ class SelfContact {
   const std::size_t bodies_;
   const float thickness_;  // greatest of the sheets [m]
   Blocks blocks_;
+  std::vector<Band> bands_;
   std::vector<std::vector<SheetStep>> steps_;  // of every sheet, to those beside each other
   PairSearch search_;                          // among the particles of active blocks
   std::unique_ptr<NearSquares> near_;          // null among particles
@@ -209,7 +216,7 @@ class SelfContact {
   std::vector<PairList> meeting_, beside_;  // of chunks of the search, of blocks
   std::vector<Measured> measured_;          // of pieces of the list of squares
   const SquarePairs* pairs_ = nullptr;      // as measured
-  std::vector<std::int32_t> begin_;         // of every key's contacts, to sort them
+  std::vector<std::int32_t> begin_;         // of every body's or square's contacts, to sort them
   BodyAnswer answer_;
   std::unique_ptr<ContactSolver<2>> spheres_;
   std::unique_ptr<ContactSolver<4>> surfaces_;
@@ -218,14 +225,14 @@ class SelfContact {
   std::vector<Moving> moving_;       // of every sheet
   std::vector<Displacement> asked_;  // of every body, by the course's rule: a sum, and of how many
   std::vector<std::int32_t> zone_;   // of every body, its own number outside of any (passing.cpp)
+  std::vector<std::uint8_t> strayed_;  // bodies
 
   bool course_ = false;  // whether any sheet has the course's rule, for neighbours at least
   bool begun_ = false;
   bool listed_ = false;  // whether lists of pairs are there
-  bool squares_listed_ = false;
   bool forced_ = false;
   bool touched_ = false;
-  float skin_ = 0;     // of the thickness
+  float skin_ = 0;     // among particles, of the thickness
   int kept_runs_ = 0;  // since the list of pairs was made
   Record record_;
 };

@@ -9,7 +9,7 @@ void SquarePairs::reserve(std::size_t pairs) {
   if (owner.size() >= pairs + kPadding) return;
   owner.resize(2 * pairs + kPadding);
   neighbour.resize(owner.size());
-  number.resize(owner.size(), kNone);
+  number.resize(owner.size());
 }
 
 void SquarePairs::pad() {

@@ -12,9 +12,8 @@ namespace weft::physics {
 struct SquarePairs {
   static constexpr std::size_t kPadding = 32;
   std::vector<std::int32_t> owner, neighbour;
-  std::vector<std::int32_t> number;  // of each where its bound is kept, kNone: nowhere
+  std::vector<std::int32_t> number;  // of each, of one's own
   std::size_t count = 0;
-  static constexpr std::int32_t kNone = -1;
   void reserve(std::size_t pairs);
   void pad();
   // One more, for which there is room.
@@ -22,6 +21,9 @@ struct SquarePairs {
     owner[count] = a;
     neighbour[count] = b;
     number[count++] = at;
+  }
+  void put(const SquarePairs& of, std::size_t pair) {
+    put(of.owner[pair], of.neighbour[pair], of.number[pair]);
   }
   // The pairs of so many pieces, piece after piece.
   void add(const std::vector<SquarePairs>& pieces, std::size_t how_many);

@@ -55,7 +55,7 @@ void SquareWays::add(std::size_t square, const Displacement* moved) {
   const auto add = [&](Ways& to, float last, float before) {
     float& all = to.all[square];
     to.last[square] = kMargin * last;
-    all = (all + kMargin * (last + before)) * (1 + 16 * Ways::kRounding);
+    all = (all + kMargin * (last + before)) / kRoundedDown;
   };
   add(anywhere_, std::sqrt(way), shift);
   add(beside_, std::sqrt(apart), 2 * shift);

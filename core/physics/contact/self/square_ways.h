@@ -20,9 +20,8 @@ struct Ways {
   }
   // Until when two squares sleep that come no nearer than what is asked before they have come so much farther.
   float until(std::int32_t a, std::int32_t b, float farther) const {
-    return (all[std::size_t(a)] + all[std::size_t(b)] + farther) * (1 - 16 * kRounding);
+    return (all[std::size_t(a)] + all[std::size_t(b)] + farther) * kRoundedDown;
   }
-  static constexpr float kRounding = 6e-8f;
 };
 
 class SquareWays {

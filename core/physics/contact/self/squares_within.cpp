@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::size_t kFewParticles = 4096;
 constexpr std::size_t kAtOnce = 1024;  // pairs that are looked through in one go
+constexpr std::size_t kFewPieces = 8;  // that one thread does faster
 // Runs after which a pair that was near is measured again, to sleep: that costs as much as to look for contacts.
 constexpr std::size_t kTurns = 8;
 
@@ -27,7 +28,7 @@ void NearSquares::bound_square(std::size_t n, const Place* place, const Displace
     low = low.min(from).min(to);
     high = high.max(from).max(to);
   }
-  boxes_[n] = {{low[0], low[1], low[2]}, 1, {high[0], high[1], high[2]}, 0};
+  boxes_[n] = {{low[0], low[1], low[2]}, 0, {high[0], high[1], high[2]}, 0};
 }
 
 // visit(square).
@@ -47,25 +48,15 @@ void NearSquares::share_squares(Threads& threads, const Visit& visit) const {
     });
 }
 
+// The boxes about all, and how far all have come.
 void NearSquares::bound(const Place* place, const Displacement* moved, Threads& threads) {
-  share_squares(threads, [&](std::size_t n) { bound_square(n, place, moved); });
-}
-
-void NearSquares::add_ways(const Displacement* moved, Threads& threads) {
   if (ways_.too_long()) wake();
   ways_.begin(moved);
-  share_squares(threads, [&](std::size_t n) { ways_.add(n, moved); });
+  share_squares(threads, [&](std::size_t n) {
+    bound_square(n, place, moved);
+    ways_.add(n, moved);
+  });
   ways_.end();
-}
-
-// Those that share a corner, first in within_.
-void NearSquares::list_beside(bool all, const Place* place, Threads& threads) {
-  beside_.list(ways_.beside(), all, passing_, threads);
-  for (const auto& part : parts_) part->beside.list(place, passing_, threads);
-  within_.count = 0;
-  within_.add(beside_.pairs(), beside_.pairs().size());
-  beside_count_ = within_.count;
-  for (const auto& part : parts_) within_.add(part->beside.pairs(), part->beside.pairs().size());
 }
 
 // Of two boxes.
@@ -79,172 +70,189 @@ float NearSquares::box_gap(std::int32_t a, std::int32_t b) const {
   return std::sqrt(gap[0] + gap[1] + gap[2]);
 }
 
-// Of so many listed pairs those that are awake and whose boxes are within the range; others fall asleep.
-void NearSquares::take_awake(std::size_t first, std::size_t count, float range, Room& room,
-                             SquarePairs& found) {
-  found.reserve(count);
-  found.count = 0;
-  room.awake.resize(kAtOnce + SquarePairs::kPadding);
-  const std::int32_t *const owner = listed_.owner.data() + first, *const neighbour =
-                                                                      listed_.neighbour.data() +
-                                                                      first;
-  float* const until = until_.data() + first;
-  const int awake = kernels_.sheets.squares_awake(
-      {int(count), owner, neighbour, until, ways_.anywhere().all.data(), room.awake.data()});
-  for (int k = 0; k < awake; ++k) {
-    const std::int32_t n = room.awake[std::size_t(k)], a = owner[n], b = neighbour[n];
-    const float beyond = box_gap(a, b) - range;
-    if (beyond > 0)
-      until[n] = ways_.anywhere().until(a, b, beyond);
-    else
-      found.put(a, b, std::int32_t(first) + n);
-  }
+// Whether a pair that shares a corner, and may come so much farther before it is near, comes nowhere near now. Tells
+// until when.
+bool NearSquares::sleeps(std::size_t pair, float farther) {
+  const std::int32_t a = corner_pairs_.owner[pair], b = corner_pairs_.neighbour[pair];
+  const float came = ways_.beside().of_last(a, b);
+  beside_.until(corner_pairs_.number[pair]) =
+      farther > came ? ways_.beside().until(a, b, farther - came) : SquareWays::kAlways;
+  return farther > came;
 }
 
-float& NearSquares::until(std::size_t pair) {
-  const std::int32_t number = within_.number[pair];
-  return pair < beside_count_ ? beside_.until(number) : until_[std::size_t(number)];
-}
-
-// Whether a pair of within_ comes nowhere near: `gap` is how far apart they are at least, 0 where that is not
-// measured. Tells until when.
-bool NearSquares::stays_away(std::size_t pair, float gap, float range, const Place* place) {
-  const std::int32_t a = within_.owner[pair], b = within_.neighbour[pair];
-  float& until = this->until(pair);
-  const Ways& ways = pair < beside_count_ ? ways_.beside() : ways_.anywhere();
-  const float came = ways.of_last(a, b);
-  const auto sleep = [&](float farther) {
-    until = farther > came ? ways.until(a, b, farther - came) : SquareWays::kAlways;
-    return farther > came;
+// Of a piece of the pairs that share a corner and are awake, those that may come near. Measured are those that have
+// slept, and others by turns; those that are near may lie alike. `first`: of the piece's pairs.
+void NearSquares::take_beside(std::size_t first, std::size_t count, float range, const Place* place,
+                              Room& room, SquarePairs& kept) {
+  const SquarePairs& pairs = corner_pairs_;
+  room.measured.resize(kAtOnce + SquarePairs::kPadding);
+  room.away.assign(count, 0);
+  room.asked.reserve(count);
+  // Those for which it holds.
+  const auto ask = [&](const auto& holds) {
+    room.asked.count = 0;
+    for (std::size_t pair = first; pair < first + count; ++pair)
+      if (holds(pair)) room.asked.put(pairs.owner[pair], pairs.neighbour[pair], std::int32_t(pair));
+    room.asked.pad();
   };
-  if (sleep(gap - range)) return true;
-  if (pair >= beside_count_) return false;
-  const float alike = beside_.alike(within_.number[pair], place);
-  sleep(alike);
-  return alike >= 0;
-}
-
-// Takes those out of a piece of within_ that come nowhere near. Measured are those that have slept, and others by
-// turns. `first`: of the piece's pairs.
-void NearSquares::put_to_sleep(std::size_t first, std::size_t count, float range,
-                               const Place* place, Room& room, SquarePairs& kept) {
-  for (auto* of : {&room.owner, &room.neighbour}) of->resize(kAtOnce + SquarePairs::kPadding);
-  room.gap.resize(kAtOnce + SquarePairs::kPadding);
-  room.asked.clear();
-  for (std::size_t pair = first; pair < first + count; ++pair) {
-    const std::int32_t number = within_.number[pair];
-    if (number == SquarePairs::kNone) continue;
-    if (until(pair) == SquareWays::kAlways && (std::size_t(number) + turn_) % kTurns != 0) continue;
-    room.owner[room.asked.size()] = within_.owner[pair];
-    room.neighbour[room.asked.size()] = within_.neighbour[pair];
-    room.asked.push_back(pair);
-  }
-  std::fill_n(room.owner.begin() + std::ptrdiff_t(room.asked.size()), SquarePairs::kPadding, 0);
-  std::fill_n(room.neighbour.begin() + std::ptrdiff_t(room.asked.size()), SquarePairs::kPadding, 0);
-  kernels_.sheets.square_gaps({place, squares_.data(), int(room.asked.size()), room.owner.data(),
-                               room.neighbour.data(), room.gap.data()});
+  const auto settle = [&](const auto& away) {
+    for (std::size_t k = 0; k < room.asked.count; ++k) {
+      const auto pair = std::size_t(room.asked.number[k]);
+      room.away[pair - first] = away(pair, room.measured[k]);
+    }
+  };
+  ask([&](std::size_t pair) {
+    const std::int32_t number = pairs.number[pair];
+    return beside_.until(number) != SquareWays::kAlways ||
+           (std::size_t(number) + turn_) % kTurns == 0;
+  });
+  kernels_.sheets.square_gaps({place, squares_.data(), int(room.asked.count),
+                               room.asked.owner.data(), room.asked.neighbour.data(),
+                               room.measured.data()});
+  settle([&](std::size_t pair, float gap) { return sleeps(pair, gap - range); });
+  ask([&](std::size_t pair) { return !room.away[pair - first]; });
+  beside_.alike(room.asked.owner.data(), room.asked.neighbour.data(), room.asked.count, place,
+                room.measured.data());
+  settle([&](std::size_t pair, float change) {
+    sleeps(pair, change);
+    return change >= 0;
+  });
   kept.reserve(count);
   kept.count = 0;
-  std::size_t next = 0;
-  for (std::size_t pair = first; pair < first + count; ++pair) {
-    const bool asked = next < room.asked.size() && room.asked[next] == pair;
-    const float gap = asked ? room.gap[next++] : 0;
-    if (within_.number[pair] != SquarePairs::kNone && stays_away(pair, gap, range, place)) continue;
-    kept.put(within_.owner[pair], within_.neighbour[pair], within_.number[pair]);
-  }
+  for (std::size_t pair = first; pair < first + count; ++pair)
+    if (!room.away[pair - first]) kept.put(pairs, pair);
+}
+
+// work(piece, its first, how many) for pieces of so many pairs; what each has found is added to a list.
+template <class Work>
+void NearSquares::add_pieces(std::size_t pairs, SquarePairs& to, Threads& threads,
+                             const Work& work) {
+  const std::size_t pieces = (pairs + kAtOnce - 1) / kAtOnce;
+  if (found_.size() < pieces) found_.resize(pieces);
+  if (rooms_.size() < pieces) rooms_.resize(pieces);
+  threads.share(pieces, pieces < kFewPieces, [&](std::size_t k) {
+    const std::size_t first = k * kAtOnce;
+    work(k, first, std::min(pairs - first, kAtOnce));
+  });
+  to.add(found_, pieces);
 }
 
 const SquarePairs& NearSquares::within(float range, const Place* place, const Displacement* moved,
                                        Threads& threads) {
   within_range_ = range;
   ++turn_;
-  add_ways(moved, threads);
   bound(place, moved, threads);
-  list_beside(false, place, threads);
-  until_.resize(listed_.count + SquarePairs::kPadding, SquareWays::kAtOnce);
-  std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
-  make_room(pieces);
-  threads.share(pieces, pieces < 8, [&](std::size_t k) {
-    const std::size_t first = k * kAtOnce, count = std::min(listed_.count - first, kAtOnce);
-    take_awake(first, count, range, rooms_[k], found_[k]);
-  });
-  within_.add(found_, pieces);
-  pieces = (within_.count + kAtOnce - 1) / kAtOnce;
-  make_room(pieces);
-  threads.share(pieces, pieces < 8, [&](std::size_t k) {
-    const std::size_t first = k * kAtOnce, count = std::min(within_.count - first, kAtOnce);
-    put_to_sleep(first, count, range, place, rooms_[k], found_[k]);
-    keep_not_apart(range, place, moved, found_[k]);
-  });
+  awake_ = false;
+  corner_pairs_.count = 0;
+  beside_.list(ways_.beside(), passing_, threads);
+  corner_pairs_.add(beside_.pairs(), beside_.pairs().size());
   within_.count = 0;
-  within_.add(found_, pieces);
-  return within_;
-}
-
-// Takes those out of within_, where so far are those that share a corner, that lie much alike.
-void NearSquares::drop_alike(const Place* place) {
-  std::size_t kept = 0;
-  for (std::size_t pair = 0; pair < within_.count; ++pair) {
-    if (pair < beside_count_ && beside_.alike(within_.number[pair], place) >= 0) continue;
-    within_.owner[kept] = within_.owner[pair];
-    within_.neighbour[kept] = within_.neighbour[pair];
-    within_.number[kept++] = within_.number[pair];
+  add_pieces(corner_pairs_.count, within_, threads,
+             [&](std::size_t k, std::size_t first, std::size_t count) {
+               take_beside(first, count, range, place, rooms_[k], found_[k]);
+               keep_not_apart(range, place, moved, found_[k]);
+             });
+  corner_pairs_.count = 0;
+  for (const auto& part : parts_) {
+    part->beside.list(place, passing_, threads);
+    corner_pairs_.add(part->beside.pairs(), part->beside.pairs().size());
   }
-  within_.count = kept;
-}
-
-const SquarePairs& NearSquares::all_within(float range, const Place* place,
-                                           const Displacement* moved, Threads& threads) {
-  within_range_ = range;
-  bound(place, moved, threads);
-  list_beside(true, place, threads);
-  drop_alike(place);
-  const std::size_t pieces = (listed_.count + kAtOnce - 1) / kAtOnce;
-  make_room(pieces);
-  threads.share(pieces, pieces < 8, [&](std::size_t k) {
-    const std::size_t first = k * kAtOnce, count = std::min(listed_.count - first, kAtOnce);
-    SquarePairs& found = found_[k];
-    found.reserve(count);
-    found.count = std::size_t(kernels_.sheets.squares_within(
-        {boxes_.data(), int(count), listed_.owner.data() + first, listed_.neighbour.data() + first,
-         range, found.owner.data(), found.neighbour.data()}));
-    keep_not_apart(range, place, moved, found);
-  });
-  within_.add(found_, pieces);
+  add_pieces(corner_pairs_.count, within_, threads,
+             [&](std::size_t k, std::size_t first, std::size_t count) {
+               find_not_apart(corner_pairs_, first, count, range, place, moved, found_[k]);
+             });
+  add_pieces(
+      listed_.count, within_, threads, [&](std::size_t k, std::size_t first, std::size_t count) {
+        SquarePairs& found = found_[k];
+        found.reserve(count);
+        found.count = std::size_t(kernels_.sheets.squares_awake(
+            {boxes_.data(), int(count), listed_.owner.data() + first,
+             listed_.neighbour.data() + first, until_.data() + first, ways_.anywhere().all.data(),
+             range, found.owner.data(), found.neighbour.data()}));
+        keep_not_apart(range, place, moved, found);
+      });
   return within_;
 }
 
-// But for pairs that a plane keeps apart.
+// Of a piece of a list, but for pairs that a plane keeps apart.
+void NearSquares::find_not_apart(const SquarePairs& pairs, std::size_t first, std::size_t count,
+                                 float range, const Place* place, const Displacement* moved,
+                                 SquarePairs& found) const {
+  found.reserve(count);
+  found.count = std::size_t(kernels_.sheets.squares_not_apart(
+      {place, moved, squares_.data(), int(count), pairs.owner.data() + first,
+       pairs.neighbour.data() + first, range, found.owner.data(), found.neighbour.data()}));
+}
+
 void NearSquares::keep_not_apart(float range, const Place* place, const Displacement* moved,
                                  SquarePairs& found) const {
-  std::int32_t *const owner = found.owner.data(), *const neighbour = found.neighbour.data(),
-                      *const number = found.number.data();
-  found.count = std::size_t(
-      kernels_.sheets.squares_not_apart({place, moved, squares_.data(), int(found.count), owner,
-                                         neighbour, number, range, owner, neighbour, number}));
+  find_not_apart(found, 0, found.count, range, place, moved, found);
 }
 
-void NearSquares::make_room(std::size_t pieces) {
-  if (found_.size() < pieces) found_.resize(pieces);
-  if (rooms_.size() < pieces) rooms_.resize(pieces);
+// Of pairs that share a corner, those of squares asked for.
+void NearSquares::add_asked_beside(float range, float box_range, const Place* place,
+                                   const Displacement* moved, Threads& threads) {
+  beside_.list_asked(asked_, passing_, threads);
+  corner_pairs_.count = 0;
+  corner_pairs_.add(beside_.pairs(), beside_.pairs().size());
+  add_pieces(corner_pairs_.count, still_, threads,
+             [&](std::size_t k, std::size_t first, std::size_t count) {
+               SquarePairs& found = found_[k];
+               std::vector<float>& change = rooms_[k].measured;
+               change.resize(kAtOnce + SquarePairs::kPadding);
+               beside_.alike(corner_pairs_.owner.data() + first,
+                             corner_pairs_.neighbour.data() + first, count, place, change.data());
+               found.reserve(count);
+               found.count = 0;
+               for (std::size_t i = first; i < first + count; ++i)
+                 if (!(change[i - first] >= 0)) found.put(corner_pairs_, i);
+               keep_not_apart(range, place, moved, found);
+             });
+  corner_pairs_.count = 0;
+  for (const auto& part : parts_)
+    corner_pairs_.add(part->beside.pairs(), part->beside.pairs().size());
+  add_asked(corner_pairs_, range, box_range, place, moved, threads);
+}
+
+// Of a list, those of squares asked for whose boxes are within a range.
+void NearSquares::add_asked(const SquarePairs& pairs, float range, float box_range,
+                            const Place* place, const Displacement* moved, Threads& threads) {
+  add_pieces(pairs.count, still_, threads,
+             [&](std::size_t k, std::size_t first, std::size_t count) {
+               SquarePairs& found = found_[k];
+               found.reserve(count);
+               found.count = 0;
+               for (std::size_t i = first; i < first + count; ++i) {
+                 const std::int32_t a = pairs.owner[i], b = pairs.neighbour[i];
+                 if ((asked_[std::size_t(a)] | asked_[std::size_t(b)]) && box_gap(a, b) < box_range)
+                   found.put(pairs, i);
+               }
+               keep_not_apart(range, place, moved, found);
+             });
 }
 
 const SquarePairs& NearSquares::still_within(float range, const Place* place,
                                              const Displacement* moved, Threads& threads) {
   assert(range <= within_range_);
-  const std::size_t pieces = (within_.count + kAtOnce - 1) / kAtOnce;
-  make_room(pieces);
-  threads.share(pieces, pieces < 8, [&](std::size_t k) {
-    const std::size_t first = k * kAtOnce, count = std::min(within_.count - first, kAtOnce);
-    SquarePairs& found = found_[k];
-    found.reserve(count);
-    found.count = std::size_t(kernels_.sheets.squares_not_apart(
-        {place, moved, squares_.data(), int(count), within_.owner.data() + first,
-         within_.neighbour.data() + first, within_.number.data() + first, range, found.owner.data(),
-         found.neighbour.data(), found.number.data()}));
+  still_.count = 0;
+  add_pieces(within_.count, still_, threads,
+             [&](std::size_t k, std::size_t first, std::size_t count) {
+               find_not_apart(within_, first, count, range, place, moved, found_[k]);
+             });
+  return still_;
+}
+
+const SquarePairs& NearSquares::strayed_within(float range, float most,
+                                               const std::vector<std::uint8_t>& strayed,
+                                               const Place* place, const Displacement* moved,
+                                               Threads& threads) {
+  share_squares(threads, [&](std::size_t n) {
+    asked_[n] = has_corner_in(squares_[n], strayed);
+    if (asked_[n]) bound_square(n, place, moved);
   });
   still_.count = 0;
-  still_.add(found_, pieces);
+  add_asked_beside(range, range + most, place, moved, threads);
+  add_asked(listed_, range, range + most, place, moved, threads);
   return still_;
 }
 
