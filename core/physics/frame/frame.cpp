@@ -92,7 +92,13 @@ void Simulation::State::end_frame() {
     greatest_strain = std::max(greatest_strain.value_or(-1), strain_of(cloths).max);
   if (sleeping)
     sleeping->end_frame([&](std::size_t c) -> const Rows& { return start_.rows()[c].x(); });
-  if (is_explicit(time_step.method) && !all_asleep()) follow_stretch(time_step.limit);
+  const bool longer = guard_.limits().accept();
+  if (is_explicit(time_step.method) && !all_asleep()) {
+    follow_stretch(time_step.limit);
+  } else if (longer) {
+    take_substeps(std::max(1, time_step.substeps / 2));
+    restart_stages();
+  }
 }
 
 namespace {

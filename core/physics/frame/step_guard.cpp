@@ -34,7 +34,10 @@ Verdict StepGuard::judge(const FrameRun& run) {
   const bool finest = finer_ == kFinest || run.dt < 2 * kLeastSubstep;
   bool failed = !run.finite || beyond_limit || !energy_.holds();
   if (!failed && lines) failed = (!finest && overshot(run)) || keeps_on(run);
-  if (!failed) return Verdict::accept;
+  if (!failed)
+    return run.scene.time.substeps == kAutoSubsteps && limits_.asks_again(run.cloths, run.sleeping)
+               ? Verdict::refine_for_limits
+               : Verdict::accept;
   const bool unresolved = beyond_limit && kLimitShare * run.limit < kLeastSubstep;
   const bool hopeless = unresolved || (!beyond_limit && finest);
   if (!(springs || lines) || (hopeless && flies_away(run))) {
@@ -64,6 +67,7 @@ bool StepGuard::interaction_has_passed(const Scene& scene, const Cloths& cloths,
 
 void StepGuard::begin_anew() {
   finer_ = 1;
+  limits_.begin_anew();
   upkeep_.restart();
   failed_by_interaction_ = failed_by_itself_ = false;
   since_interaction_ = kInteractionPasses;

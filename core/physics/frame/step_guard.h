@@ -2,8 +2,8 @@
 // method, or its energy is cut back.
 //
 // A frame is at fault where springs are stretched beyond what its substep allows, where springs or line
-// sweeps hold more energy than was put in (energy_guard.h), or where line sweeps stretch a sheet that
-// nothing pulls at. Simulation::State carries the verdict out.
+// sweeps hold more energy than was put in (energy_guard.h), where line sweeps stretch a sheet that
+// nothing pulls at, or where strain limits do not hold (limit_guard.h). Simulation::State carries the verdict out.
 #pragma once
 
 #include <span>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "physics/frame/energy_guard.h"
+#include "physics/frame/limit_guard.h"
 #include "physics/frame/rollback_buffer.h"
 #include "physics/frame/sleeping.h"
 #include "physics/frame/time_step.h"
@@ -40,9 +41,10 @@ struct FrameRun {
 
 enum class Verdict {
   accept,
-  refine_to_limit,  // run again within the stability limit
-  refine,           // run again with twice the substeps
-  change_method,    // run again by a method that loses energy
+  refine_to_limit,    // run again within the stability limit
+  refine,             // run again with twice the substeps
+  refine_for_limits,  // the same, so that strain limits hold
+  change_method,      // run again by a method that loses energy
   unstable,  // stands, though its substeps are longer than is stable, and none can be short enough
   clamp,     // velocities are reduced to what is left without the excess
   stop,      // not finite, and no substep helps
@@ -52,12 +54,13 @@ class StepGuard {
  public:
   // What is put in from outside counts there.
   EnergyGuard& energy() { return energy_; }
+  LimitGuard& limits() { return limits_; }
 
   // Judges a frame; after one that is to be run again the next call judges it anew. Every frame that
   // failed but for the stability limit makes those after it finer.
   Verdict judge(const FrameRun& run);
-  // How many times the substeps that are due frames take since one failed.
-  int finer() const { return finer_; }
+  // How many times the substeps that are due frames take.
+  int finer() const { return finer_ * limits_.finer(); }
 
   // A person did something, or goes on doing so; so much time has passed without.
   void interacted() { since_interaction_ = 0; }
@@ -74,6 +77,7 @@ class StepGuard {
   bool keeps_on(const FrameRun& run);
 
   EnergyGuard energy_;
+  LimitGuard limits_;
   Upkeep upkeep_;
   int finer_ = 1;
   // Frames that failed soon after a person did something say little of the frames to come.

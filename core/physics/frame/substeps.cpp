@@ -221,6 +221,12 @@ bool Simulation::State::carry_out(Verdict verdict) {
       take_substeps(2 * count);
       fall_back(which + " gained energy from nowhere; it and all after it run with more substeps");
       break;
+    case Verdict::refine_for_limits:
+      put_back();
+      take_substeps(2 * count);
+      add_once(plan.notes,
+               "frames in which strain limits would not hold run again with more substeps");
+      break;
   }
   restart_stages();
   return true;
