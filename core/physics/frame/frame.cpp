@@ -85,7 +85,7 @@ void Simulation::State::end_frame() {
     if (Tearing* tearing = step->model().tearing()) tearing->update();
   ++frame;
   total_substeps += time_step.substeps;
-  notes_.look({frame, time_step.method, time_step.dt, cloths, runner.threads(), sleeping.get(),
+  notes_.look({frame, time_step.method, time_step.dt, time(), cloths, runner.threads(), sleeping.get(),
                contact.get(), guard_.energy(), hands_.act() || is_driven(scene, cloths)},
               plan.notes);
   if (options.follow_strain)

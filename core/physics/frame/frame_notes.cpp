@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/contact/pinched.h"
 #include "physics/frame/projection_substep.h"
 #include "physics/model/number.h"
 
@@ -22,9 +23,11 @@ void FrameNotes::look(const EndedFrame& frame, std::vector<std::string>& notes) 
   check_strain_limits(frame);
   note_clamps(frame, notes);
   note_stretch(frame, notes);
+  note_pressed(frame, notes);
   driven_ |= frame.driven;
   // These looks take about as long as a sweep.
   if (frame.number % kFramesBetweenLooks != 0) return;
+  if (frame.number % (2 * kFramesBetweenLooks) == 0) note_pinched(frame, notes);
   note_left_strain(frame, notes);
   note_shaking(frame, notes);
 }
@@ -65,6 +68,37 @@ void FrameNotes::note_stretch(const EndedFrame& frame, std::vector<std::string>&
                     " is drawn against what it cannot pass, to " + number(1 + strain) +
                     " times its length (other ways of its pins, a strain limit or tear_strain "
                     "avoid that)");
+  }
+}
+
+// Sheets that something holds nearer than their thickness.
+void FrameNotes::note_pressed(const EndedFrame& frame, std::vector<std::string>& notes) {
+  constexpr double kPressed = 0.5;  // of the thickness, that is missing
+  constexpr int kLasting = 10;      // frames
+  if (!frame.contact || pressed_ == kLasting) return;
+  const double missing = frame.contact->pairs().record().missing_now;
+  pressed_ = missing > kPressed ? pressed_ + 1 : 0;
+  if (pressed_ == kLasting)
+    notes.push_back("frame " + std::to_string(frame.number) + ": for " + std::to_string(kLasting) +
+                    " frames sheets have been nearer to each other than half of their thickness (" +
+                    number(std::max(0.0, 1 - missing)) +
+                    " of it now): what presses them leaves less room than they need");
+}
+
+// Cloth between two bodies that leave no room for it lies in one of them, or in both.
+void FrameNotes::note_pinched(const EndedFrame& frame, std::vector<std::string>& notes) {
+  for (std::size_t c = 0; c < frame.cloths.size(); ++c) {
+    if (pinched_[c] || is_asleep(frame.sleeping, c)) continue;
+    const ClothStep& step = *frame.cloths[c];
+    const Pinched found = pinched_between(step.parts(), frame.time);
+    if (found.missing <= 0) continue;
+    pinched_[c] = 1;
+    notes.push_back("frame " + std::to_string(frame.number) + ": colliders " +
+                    std::to_string(found.colliders[0]) + " and " +
+                    std::to_string(found.colliders[1]) + " leave cloth " + std::to_string(c) + " " +
+                    number(found.missing) +
+                    " m less room than their offsets ask for; it lies in what they should keep "
+                    "clear");
   }
 }
 

@@ -18,7 +18,8 @@ void add_once(std::vector<std::string>& notes, const std::string& note);
 struct EndedFrame {
   std::int64_t number;  // from 1 on
   Method method;
-  double dt;  // s, of a substep
+  double dt;    // s, of a substep
+  double time;  // s, at its end
   const Cloths& cloths;
   Threads& threads;
   const Sleeping* sleeping;     // or null
@@ -29,7 +30,8 @@ struct EndedFrame {
 
 class FrameNotes {
  public:
-  explicit FrameNotes(std::size_t cloths) : overlong_(cloths), stretched_(cloths) {}
+  explicit FrameNotes(std::size_t cloths)
+      : overlong_(cloths), stretched_(cloths), pinched_(cloths) {}
 
   // The energy that is there is counted anew.
   void begin_anew() { driven_ = false; }
@@ -50,11 +52,15 @@ class FrameNotes {
   void check_strain_limits(const EndedFrame& frame);
   void note_clamps(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_stretch(const EndedFrame& frame, std::vector<std::string>& notes);
+  void note_pressed(const EndedFrame& frame, std::vector<std::string>& notes);
+  void note_pinched(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_left_strain(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_shaking(const EndedFrame& frame, std::vector<std::string>& notes);
 
   std::vector<Overlong> overlong_;       // of every cloth
   std::vector<std::uint8_t> stretched_;  // of every cloth: told of
+  std::vector<std::uint8_t> pinched_;    // the same
+  int pressed_ = 0;                      // frames in which sheets were pressed, one after another
   bool clamps_ = false, left_strain_ = false, shaking_ = false;
   bool driven_ = false;  // in any frame since the energy was counted anew
   std::vector<std::string> told_;

@@ -183,12 +183,14 @@ void SelfContact::solve(ContactSolver<N>& solver, const ContactInterval& interva
   const std::int64_t swept = solver.sweeps();
   const double missing = solver.solve(place_.data(), now_.data(), moved_.data(), interval, threads);
   record_.least_distance = std::min(record_.least_distance, 1 - missing);
+  record_.missing_now = missing;
   record_.sweeps += solver.sweeps() - swept;
 }
 
 void SelfContact::respond(const ContactInterval& interval, Threads& threads) {
   touched_ = false;
   record_.contacts_now = 0;
+  record_.missing_now = 0;
   if (blocks_.active() == 0) {
     if (near_) near_->wake();
     return;

@@ -114,6 +114,7 @@ class SelfContact {
     std::int64_t held = 0;      // particles whose motion was cut so that nothing passes,
     double greatest_held = 0;   // by how much at most [m]
     double least_distance = 1;  // of two that touched, of the distance held
+    double missing_now = 0;     // of the distance held, at most, after the last run
   };
   const Record& record() const { return record_; }
   // Whether contact changed anything the last time.
