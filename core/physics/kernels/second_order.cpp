@@ -12,6 +12,10 @@
 // free flight, x_{n-1} = x_n - h v_n + ½h² a, v_{n-1} = v_n - h a, a = g - c v_n. Both kinds go through the
 // same sweeps: the constraints are solved with ⅔h and inverse masses scaled by 1/(1 + ⅔h c), or by
 // 9/4/(1 + h c). Zeros become positive, as in advance.cpp.
+//
+// In fine substeps positions move by a few units in the last place only. What rounding leaves of a step goes into the
+// next (Kahan 1965): else what moves at one speed would lose the same share of every step, and velocities would tell
+// of a motion that is not there.
 #include "physics/kernels/second_order.h"
 
 #include "physics/kernels/row_kernels.h"
@@ -35,82 +39,117 @@ struct Slowed {
       : smooth(1.0f / (1.0f + r.dt * kTwoThirds * r.drag)), euler(1.0f / (1.0f + r.dt * r.drag)) {}
 };
 
+// A place or a velocity, and what rounding has left of its steps.
+struct Kept {
+  Wide3 value, left{};
+  // By a step and what was left of those before.
+  template <bool kFine>
+  WEFT_INLINE void move(Wide3 step) {
+    const Wide3 by = kFine ? step + left : step, to = value + by;
+    if constexpr (kFine) left = by - (to - value);
+    value = to;
+  }
+};
+template <bool kFine>
+WEFT_INLINE Kept kept_at(ConstRow3 row, ConstRow3 left, int i) {
+  return {positive_zeros(load3(row, i)), kFine ? load3(left, i) : Wide3{}};
+}
+
 // Takes the corrections that sweeps have gathered. Velocities have them over ⅔h until then; those of an Euler step
 // belong over h. Which kind the substep was its inverse masses tell.
-WEFT_INLINE void take(const SecondOrderRow& r, const Slowed& slowed, Wide mass, int i, Wide3& x,
-                      Wide3& v) {
+template <bool kFine>
+WEFT_INLINE void take(const SecondOrderRow& r, const Slowed& slowed, Wide mass, int i, Kept& x,
+                      Kept& v) {
   if (r.u.x) {
     const Wide3 by = positive_zeros(load3(r.u, i));
-    x = x + by;
-    v = fma(by, wide(1.5f / r.dt), v);
+    x.move<kFine>(by);
+    v.move<kFine>(by * wide(1.5f / r.dt));
     store3(r.u, i, Wide3{});  // for the next sweeps
   }
   const WideInt euler = load(r.w + i) > mass * slowed.smooth;
-  v = v * select(euler, wide(kTwoThirds), wide(1));
+  v.value = v.value * select(euler, wide(kTwoThirds), wide(1));
 }
 
 // kKnown: x and v are what they are; else they lack the corrections, and nobody else has touched them.
-template <bool kKnown>
+template <bool kKnown, bool kFine>
 WEFT_INLINE void predict(const SecondOrderRow& given) {
   const SecondOrderRow r = given;
   const float h = r.dt, h2 = h * kTwoThirds;
   const Slowed slowed(r);
   const Wide3 g{wide(r.gx), wide(r.gy), wide(r.gz)};
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    Wide3 x = positive_zeros(load3(r.x, i)), v = positive_zeros(load3(r.v, i));
+    Kept x = kept_at<kFine>(r.x, r.left, i), v = kept_at<kFine>(r.v, r.v_left, i);
     const Wide mass = load(r.mass + i);
     const WideInt free = mass > 0.0f;
     // Of the others that are free, too; those that are not are held in the end.
     WideInt smooth = ~WideInt{};
     if constexpr (kKnown) {
       smooth = free;
-      if (!r.fresh) smooth = smooth & equal(v, load3(r.v_end, i));
+      if (!r.fresh) smooth = smooth & equal(v.value, load3(r.v_end, i));
     } else {
-      take(r, slowed, mass, i, x, v);
+      take<kFine>(r, slowed, mass, i, x, v);
     }
     const auto either = [&](auto if_smooth, auto if_euler) {
       return kKnown ? select(smooth, if_smooth, if_euler) : if_smooth;
     };
     Wide3 by_x, by_v;  // in the substep before
     if (r.fresh) {
-      by_v = (g - v * wide(r.drag)) * wide(h);
-      by_x = v * wide(h) - by_v * wide(0.5f * h);
+      by_v = (g - v.value * wide(r.drag)) * wide(h);
+      by_x = v.value * wide(h) - by_v * wide(0.5f * h);
+      x.left = v.left = Wide3{};
     } else {
-      by_x = x - load3(r.previous, i);
-      by_v = v - load3(r.v_before, i);
+      by_x = x.value - load3(r.previous, i);
+      by_v = v.value - load3(r.v_before, i);
     }
-    const Wide3 x_star = fma(by_x, wide(kThird), x);
-    const Wide3 v_star = fma(by_v, wide(kThird), v);
+    store3(r.previous, i, x.value);
+    store3(r.v_before, i, v.value);
     const Wide step = either(wide(h2), wide(h));
     const Wide slow = either(wide(slowed.smooth), wide(slowed.euler));
-    const Wide3 velocity = fma(g, step, either(v_star, v)) * slow;
-    store3(r.previous, i, x);
-    store3(r.v_before, i, v);
-    store3(r.x, i, select(free, fma(velocity, step, either(x_star, x)), x));
+    Kept to = x, velocity = v;
+    velocity.move<kFine>(fma(g, step, either(by_v * wide(kThird), Wide3{})));
+    velocity.value = velocity.value * slow;
+    to.move<kFine>(fma(velocity.value, step, either(by_x * wide(kThird), Wide3{})));
+    store3(r.x, i, select(free, to.value, x.value));
     // Corrections will be added to v over ⅔h; an Euler step's belong over h.
-    store3(r.v, i, select(free, velocity * either(wide(1), wide(1.5f)), v));
+    store3(r.v, i, select(free, velocity.value * either(wide(1), wide(1.5f)), v.value));
+    if constexpr (kFine) {
+      store3(r.left, i, select(free, to.left, Wide3{}));
+      store3(r.v_left, i, select(free, velocity.left, Wide3{}));
+    }
     store(r.w + i, mass * either(wide(slowed.smooth), wide(slowed.euler * 2.25f)));
+  }
+}
+
+template <bool kFine>
+WEFT_INLINE void find_velocity(const SecondOrderRow& given) {
+  const SecondOrderRow r = given;
+  const Slowed slowed(r);
+  for (int i = 0; i < padded(r.columns); i += kLanes) {
+    const Wide mass = load(r.mass + i);
+    Kept x = kept_at<kFine>(r.x, r.left, i), v = kept_at<kFine>(r.v, r.v_left, i);
+    take<kFine>(r, slowed, mass, i, x, v);
+    store3(r.x, i, x.value);
+    store3(r.v, i, v.value);
+    if constexpr (kFine) {
+      store3(r.left, i, x.left);
+      store3(r.v_left, i, v.left);
+    }
+    store3(r.v_end, i, v.value);
+    store(r.w + i, mass);
   }
 }
 
 }  // namespace
 
 void predict_second_order(const SecondOrderRow& r) {
-  r.v_waits ? predict<false>(r) : predict<true>(r);
+  if (r.left.x)
+    r.v_waits ? predict<false, true>(r) : predict<true, true>(r);
+  else
+    r.v_waits ? predict<false, false>(r) : predict<true, false>(r);
 }
 
-void velocity_second_order(const SecondOrderRow& given) {
-  const SecondOrderRow r = given;
-  const Slowed slowed(r);
-  for (int i = 0; i < padded(r.columns); i += kLanes) {
-    const Wide mass = load(r.mass + i);
-    Wide3 x = positive_zeros(load3(r.x, i)), v = positive_zeros(load3(r.v, i));
-    take(r, slowed, mass, i, x, v);
-    store3(r.x, i, x);
-    store3(r.v, i, v);
-    store3(r.v_end, i, v);
-    store(r.w + i, mass);
-  }
+void velocity_second_order(const SecondOrderRow& r) {
+  r.left.x ? find_velocity<true>(r) : find_velocity<false>(r);
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -15,6 +15,8 @@ struct SecondOrderRow {
   Row3 u;        // corrections, which x and v lack, then zero [m]; or null: sweeps have put them in
   bool v_waits;  // predict: x and v lack them still
   Row3 v_end;    // v as the substep before left it [m/s]
+  Row3 left;     // what x lacks by rounding [m]; null, as v_left: is left aside
+  Row3 v_left;   // and v [m/s]
   float* w;      // inverse mass, scaled while the constraints are solved [1/kg]
   const float* mass;  // inverse mass proper [1/kg]
   bool fresh;         // nothing is known of the substep before

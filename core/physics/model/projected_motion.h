@@ -29,7 +29,8 @@ std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& correc
 struct History {
   explicit History(const Particles& particles);
   std::size_t bytes() const {
-    return v_before.bytes() + v_end.bytes() + inverse_mass.size() * sizeof(float);
+    return v_before.bytes() + v_end.bytes() + left.bytes() + v_left.bytes() +
+           inverse_mass.size() * sizeof(float);
   }
   // Whether a particle's velocity is what the last substep left, so that it has a smooth past.
   bool goes_on(const Particles& particles, int row, int column) const;
@@ -37,6 +38,7 @@ struct History {
   // component of the position before [m].
   void shift(Particles& particles, int component, int row, int column, float previous, float v);
   Rows v_before, v_end;
+  Rows left, v_left;  // what positions and velocities lack by rounding [m, m/s], in fine substeps
   AlignedArray<float> inverse_mass;
 };
 std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,
