@@ -70,11 +70,11 @@ TEST_P(LimitGuard, LimitsHoldWhateverPresses) {
   const auto [mode, method] = GetParam();
   for (const Stuff& stuff : {Stuff{1, 1000, 0.05}, Stuff{3, 500, 0.02}, Stuff{0.3, 500, 0.01}}) {
     Scene scene = sheets_on_a_ball(stuff, mode, method);
-    const Strains automatic = run(scene, 40);
+    const Strains automatic = run(scene, 30);
     EXPECT_LT(automatic.greatest, 1.25 * stuff.limit) << stuff.density;
     EXPECT_GT(automatic.most, automatic.fewest) << stuff.density;
     scene.time.substeps = automatic.fewest;
-    const Strains fixed = run(scene, 40);
+    const Strains fixed = run(scene, 30);
     EXPECT_LT(automatic.greatest, fixed.greatest) << stuff.density;
     EXPECT_EQ(fixed.most, fixed.fewest) << "fixed substeps stay what they are";
   }
