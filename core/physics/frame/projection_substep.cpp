@@ -29,6 +29,7 @@ double sweeps_of(const Solver& solver) {
 struct Fineness {
   double points_over_spacing;  // 1/m; along the longer side
   double mass, stiffness;      // kg, N/m
+  double spacing, particles;   // m, of the closer ones; how many
 };
 
 // m²; of a mesh, as its file has it.
@@ -43,7 +44,8 @@ double area_of(const TriangleMesh& mesh) {
 Fineness fineness_of(const Cloth& c, const Solver& solver) {
   if (!c.mesh.given())
     return {std::max(c.grid.nx / spacing_u(c.grid), c.grid.ny / spacing_v(c.grid)),
-            lightest_mass(c), spring_repeats(solver) * greatest_stiffness(c)};
+            lightest_mass(c), spring_repeats(solver) * greatest_stiffness(c),
+            std::min(spacing_u(c.grid), spacing_v(c.grid)), double(c.grid.nx) * c.grid.ny};
   // As if its triangles were halves of squares of their mean area.
   const std::vector<Vec3>& x = c.mesh.shape->vertices;
   double longest = 0;
@@ -57,7 +59,8 @@ Fineness fineness_of(const Cloth& c, const Solver& solver) {
       scale * scale * 2 * area_of(*c.mesh.shape) / double(c.mesh.shape->triangles.size());
   const Membrane& m = c.membrane;
   const double stiffness = m.given() ? std::max({m.warp, m.weft, m.shear}) : c.stiffness.structural;
-  return {scale * longest / square, c.density * square, stiffness};
+  return {scale * longest / square, c.density * square, stiffness, std::sqrt(square),
+          double(x.size())};
 }
 
 constexpr double kOverstretch = 0.7, kGrows = 0.8;  // of overstretch()
@@ -93,19 +96,27 @@ double spread_by(const Cloth& cloth, Sweep sweep) {
 double projection_substep(const Scene& scene) {
   constexpr double kSag = 0.02;
   constexpr double kLines = 10;  // the same, against a gas; 15 on balls of 270 vertices
+  constexpr double kMoved =
+      0.15;  // spacings, that the load of a pin may move a particle by in a substep
   const Solver& solver = scene.solver;
   const bool lines = solver.sweep == Sweep::line;
-  const double g = lines || solver.tethers ? 0 : greatest_gravity(scene);
+  const double g = solver.tethers ? 0 : greatest_gravity(scene);
   const double sweeps = sweeps_of(solver);
   double dt = kLongestProjection;
   for (const Cloth& c : scene.cloths) {
-    const double pull = g + push_of_gas(c) / (lines ? kLines : 1);
-    if (!(pull > 0)) continue;
     const Fineness f = fineness_of(c, solver);
-    double needed = std::sqrt(kSag * sweeps / (2 * pull * f.points_over_spacing));
-    if (solver.method != Method::positional)
-      needed = std::max(needed, std::sqrt(f.mass / std::max(f.stiffness, 1e-12)));
-    dt = std::min(dt, needed);
+    const auto hold = [&](double needed) {
+      // Or what the material asks for by itself.
+      if (solver.method != Method::positional)
+        needed = std::max(needed, std::sqrt(f.mass / std::max(f.stiffness, 1e-12)));
+      dt = std::min(dt, needed);
+    };
+    const double pull = (lines ? 0 : g) + push_of_gas(c) / (lines ? kLines : 1);
+    if (pull > 0) hold(std::sqrt(kSag * sweeps / (2 * pull * f.points_over_spacing)));
+    const auto pins = double(single_pins(c).size());
+    if (lines && g > 0 && pins > 0)
+      hold(std::sqrt(kMoved * sweeps * f.spacing * pins / (g * f.particles)) /
+           implicit_share(solver));
   }
   return dt;
 }

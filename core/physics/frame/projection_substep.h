@@ -15,6 +15,10 @@ inline constexpr double kLongestProjection = 1.0 / 960;
 // points, h apart, that hangs by its edge stretches there by 2 n g dt²/h. A gas of pressure p in a mesh of
 // density ρ stretches it as such a pull of g = p/ρ does. The longest substep that keeps this to 2 %, or lets one
 // sweep do all that the material's own stiffness asks for, k dt² = m; at most kLongestProjection.
+//
+// Line sweeps pass a pull on along a whole line, but from line to line as the others do. Where n points hang by few, P,
+// each of these bears g n/P as many particles: substeps are so short that this moves one by 0.12 spacings. (Sheets of
+// 32 to 100 points a side by a corner, two, four, or the middle; strain within 1.2 of springs', or told.)
 double projection_substep(const Scene& scene);
 
 // How many times as much as its stiffness says a cloth stretches that hangs by its pins, in substeps of dt of compliant

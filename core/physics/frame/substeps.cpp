@@ -29,7 +29,8 @@ void note_projection(const Scene& scene, int count, std::vector<std::string>& no
   const double needed = projection_substep(scene), dt = scene.time.frame / count;
   if (scene.time.substeps == kAutoSubsteps && needed < kLongestProjection)
     notes.push_back("substeps of " + number(dt) +
-                    " s, so that sweeps hold up a sheet that hangs by an edge" +
+                    " s, so that sweeps hold up a sheet that hangs by " +
+                    (scene.solver.sweep == Sweep::line ? "few points" : "an edge") +
                     (holds_gas(scene) ? ", or hold a gas" : ""));
   if (scene.time.substeps != kAutoSubsteps && holds_gas(scene) && dt > needed)
     notes.push_back("sweeps hold a gas in substeps of " + number(needed) + " s; in those of " +
