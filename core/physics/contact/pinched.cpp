@@ -6,46 +6,27 @@
 #include <variant>
 
 #include "physics/contact/start_inside.h"
-#include "physics/contact/triangle_shape.h"
-#include "physics/model/placement.h"
 
 namespace weft::physics {
-namespace {
 
-// A collider at a time, to be asked for many points.
-class Posed {
- public:
-  Posed(const Collider& collider, double time)
-      : offset_(collider.offset),
-        placement_(collider, time),
-        upright_(at_time(collider.shape, time)) {}
-  // m; how deep a point lies in it and its offset.
-  double depth_of(const Vec3& point) const {
-    const Vec3 seen = upright_.into(placement_.seen(point));
-    return offset_ - std::visit([&](const auto& shape) { return nearest_of(shape, seen).distance; },
-                                upright_.shape);
-  }
+double PinchedSearch::Body::depth_of(const Vec3& point) const {
+  const Vec3 seen = upright.into(placement.seen(point));
+  return offset - std::visit([&](const auto& shape) { return nearest_of(shape, seen).distance; },
+                             upright.shape);
+}
 
- private:
-  double offset_;
-  Placement placement_;
-  Upright upright_;
-};
+PinchedSearch::PinchedSearch(const Scene& scene) {
+  bodies_.reserve(scene.colliders.size());
+}
 
-struct Body {
-  int number;
-  Posed posed;
-};
-
-}  // namespace
-
-Pinched pinched_between(const ClothParts& parts, double time) {
+Pinched PinchedSearch::look(const ClothParts& parts, double time) {
   const std::vector<Collider>& colliders = parts.scene.colliders;
   Pinched found;
   if (std::ranges::count(colliders, false, &Collider::cuts) < 2) return found;
-  std::vector<Body> bodies;
+  bodies_.clear();
   for (std::size_t k = 0; k < colliders.size(); ++k)
-    if (!colliders[k].cuts) bodies.push_back({int(k), Posed(colliders[k], time)});
+    if (const Collider& c = colliders[k]; !c.cuts)
+      bodies_.push_back({int(k), c.offset, Placement(c, time), Upright(at_time(c.shape, time))});
   const Particles& l = parts.particles;
   l.for_each([&](int j, int i) {
     if (!(l.w(j, i) > 0)) return;
@@ -54,9 +35,9 @@ Pinched pinched_between(const ClothParts& parts, double time) {
       double depth = -kTouchingStart;
       int number = -1;
     } first, second;
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-      if (k + 1 == bodies.size() && first.number < 0) return;
-      const Touched one{bodies[k].posed.depth_of(l.position(j, i)), bodies[k].number};
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      if (k + 1 == bodies_.size() && first.number < 0) return;
+      const Touched one{bodies_[k].depth_of(l.position(j, i)), bodies_[k].number};
       if (one.depth > first.depth)
         second = std::exchange(first, one);
       else if (one.depth > second.depth)

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/contact/pinched.h"
 #include "physics/frame/projection_substep.h"
 #include "physics/model/number.h"
 
@@ -90,7 +89,7 @@ void FrameNotes::note_pinched(const EndedFrame& frame, std::vector<std::string>&
   for (std::size_t c = 0; c < frame.cloths.size(); ++c) {
     if (pinched_[c] || is_asleep(frame.sleeping, c)) continue;
     const ClothStep& step = *frame.cloths[c];
-    const Pinched found = pinched_between(step.parts(), frame.time);
+    const Pinched found = pinched_search_.look(step.parts(), frame.time);
     if (found.missing <= 0) continue;
     pinched_[c] = 1;
     notes.push_back("frame " + std::to_string(frame.number) + ": colliders " +

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "physics/contact/pinched.h"
 #include "physics/frame/cloth_step.h"
 #include "physics/frame/energy_guard.h"
 #include "physics/frame/sheet_contact.h"
@@ -30,8 +31,11 @@ struct EndedFrame {
 
 class FrameNotes {
  public:
-  explicit FrameNotes(std::size_t cloths)
-      : overlong_(cloths), stretched_(cloths), pinched_(cloths) {}
+  explicit FrameNotes(const Scene& scene)
+      : overlong_(scene.cloths.size()),
+        stretched_(scene.cloths.size()),
+        pinched_(scene.cloths.size()),
+        pinched_search_(scene) {}
 
   // The energy that is there is counted anew.
   void begin_anew() { driven_ = false; }
@@ -60,7 +64,8 @@ class FrameNotes {
   std::vector<Overlong> overlong_;       // of every cloth
   std::vector<std::uint8_t> stretched_;  // of every cloth: told of
   std::vector<std::uint8_t> pinched_;    // the same
-  int pressed_ = 0;                      // frames in which sheets were pressed, one after another
+  PinchedSearch pinched_search_;
+  int pressed_ = 0;  // frames in which sheets were pressed, one after another
   bool clamps_ = false, left_strain_ = false, shaking_ = false;
   bool driven_ = false;  // in any frame since the energy was counted anew
   std::vector<std::string> told_;

@@ -41,7 +41,7 @@ Simulation::State::State(Scene given, const Options& given_options, const Vec3& 
       times(frames_of(scene.time)),
       make_model_(make),
       hands_(cloths, scene.cloths.size()),
-      notes_(scene.cloths.size()) {
+      notes_(scene) {
   const std::string changed = placed.steady();
   build_cloths();
   for (const auto& cloth : cloths)

@@ -20,8 +20,8 @@ struct alignas(16) RestPlace {
 
 // Box about a square, through an interval.
 struct SquareBox {
-  float low[3], none;      // m
-  float high[3], nothing;  // m
+  float low[3], unused;        // m
+  float high[3], also_unused;  // m
 };
 
 // Pairs of squares, and where those of them go whose boxes are within a range.

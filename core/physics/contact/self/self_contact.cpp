@@ -320,7 +320,8 @@ int SelfContact::run(const ContactInterval& interval, Threads& threads) {
   if (edges) blocks_.measure_edges(threads);
   const Blocks::Outlook now =
       blocks_.look(reach, skin(), motion, (touches() ? 1 : kMostSubsteps) * dt);
-  if (!listed_ || !now.covered || (near_ && near_->any_joined(now_.data()))) {
+  const bool joined = near_ && blocks_.active() > 0 && near_->any_joined(now_.data());
+  if (!listed_ || !now.covered || joined) {
     if (kept_runs_ <= kFewRuns) skin_ *= 1.2f;
     if (kept_runs_ > kManyRuns) skin_ *= 0.8f;
     skin_ = std::clamp(skin_, kLeastSkin, kMostSkin);
