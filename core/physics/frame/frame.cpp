@@ -85,9 +85,10 @@ void Simulation::State::end_frame() {
     if (Tearing* tearing = step->model().tearing()) tearing->update();
   ++frame;
   total_substeps += time_step.substeps;
-  notes_.look({frame, time_step.method, time_step.dt, time(), cloths, runner.threads(), sleeping.get(),
-               contact.get(), guard_.energy(), hands_.act() || is_driven(scene, cloths)},
-              plan.notes);
+  notes_.look(
+      {frame, time_step.method, time_step.dt, time(), cloths, runner.threads(), sleeping.get(),
+       contact.get(), guard_.energy(), hands_.act() || is_driven(scene, cloths)},
+      plan.notes);
   if (options.follow_strain)
     greatest_strain = std::max(greatest_strain.value_or(-1), strain_of(cloths).max);
   if (sleeping)
@@ -96,8 +97,7 @@ void Simulation::State::end_frame() {
   if (is_explicit(time_step.method) && !all_asleep()) {
     follow_stretch(time_step.limit);
   } else if (longer) {
-    take_substeps(std::max(1, time_step.substeps / 2));
-    restart_stages();
+    take_substeps(projection_substeps(scene) * guard_.finer());
   }
 }
 
