@@ -123,11 +123,14 @@ void Blocks::list_borders(std::size_t sheet) {
       for (const int other : triangle)
         if (p.place(vertex).j != p.place(other).j)
           borders_[first + std::size_t(p.place(vertex).j)].push_back(p.place(other));
+  const auto at = [](const Particles::Place& place) { return std::pair(place.j, place.i); };
   for (std::size_t b = first; b < first + std::size_t(p.rows); ++b) {
-    const auto at = [](const Particles::Place& place) { return std::pair(place.j, place.i); };
-    std::ranges::sort(borders_[b], {}, at);
-    const auto twice = std::ranges::unique(borders_[b], {}, at);
-    borders_[b].erase(twice.begin(), twice.end());
+    std::vector<Particles::Place>& border = borders_[b];
+    std::sort(border.begin(), border.end(),
+              [&](const auto& x, const auto& y) { return at(x) < at(y); });
+    border.erase(std::unique(border.begin(), border.end(),
+                             [&](const auto& x, const auto& y) { return at(x) == at(y); }),
+                 border.end());
   }
 }
 
