@@ -32,11 +32,15 @@ WEFT_INLINE WideInt equal(Wide3 a, Wide3 b) {
   return (a.x == b.x) & (a.y == b.y) & (a.z == b.z);
 }
 
-// What corrections are scaled by in a smooth step, and in one of implicit Euler.
+// What corrections are scaled by in a smooth step, and in one of implicit Euler; and what velocities lose by drag, which
+// in fine substeps is too little to be told by what is left of 1.
 struct Slowed {
-  float smooth, euler;
+  float smooth, euler, smooth_lost, euler_lost;
   explicit Slowed(const SecondOrderRow& r)
-      : smooth(1.0f / (1.0f + r.dt * kTwoThirds * r.drag)), euler(1.0f / (1.0f + r.dt * r.drag)) {}
+      : smooth(1.0f / (1.0f + r.dt * kTwoThirds * r.drag)),
+        euler(1.0f / (1.0f + r.dt * r.drag)),
+        smooth_lost(r.dt * kTwoThirds * r.drag * smooth),
+        euler_lost(r.dt * r.drag * euler) {}
 };
 
 // A place or a velocity, and what rounding has left of its steps.
@@ -104,10 +108,10 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
     store3(r.previous, i, x.value);
     store3(r.v_before, i, v.value);
     const Wide step = either(wide(h2), wide(h));
-    const Wide slow = either(wide(slowed.smooth), wide(slowed.euler));
+    const Wide lost = either(wide(slowed.smooth_lost), wide(slowed.euler_lost));
     Kept to = x, velocity = v;
-    velocity.move<kFine>(fma(g, step, either(by_v * wide(kThird), Wide3{})));
-    velocity.value = velocity.value * slow;
+    const Wide3 gain = fma(g, step, either(by_v * wide(kThird), Wide3{}));
+    velocity.move<kFine>(gain - (v.value + gain) * lost);
     to.move<kFine>(fma(velocity.value, step, either(by_x * wide(kThird), Wide3{})));
     store3(r.x, i, select(free, to.value, x.value));
     // Corrections will be added to v over ⅔h; an Euler step's belong over h.
