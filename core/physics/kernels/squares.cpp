@@ -96,6 +96,7 @@ int squares_awake(const SquaresAwake& given) {
     const unsigned near = bits(awake & ~far);
     const WideInt neighbours = lanes_at(s.neighbour + k), owners = lanes_at(s.owner + k);
     store_lanes(s.near_owner + count, near, owners);
+    store_lanes(s.near_number + count, near, lane_numbers() + (s.number + k));
     count += store_lanes(s.near_neighbour + count, near, neighbours);
   }
   for (int l = 0; l < kLanes; ++l) s.near_owner[count + l] = s.near_neighbour[count + l] = 0;

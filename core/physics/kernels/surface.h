@@ -42,11 +42,12 @@ inline constexpr float kRoundedDown = 1 - 16 * 6e-8f;
 struct SquaresAwake {
   const SquareBox* boxes;
   int pairs;
-  const std::int32_t *owner, *neighbour;      // and 16 lanes of numbers of squares
-  float* until;                               // m, in ways, of every pair, and 16 lanes; in and out
-  const float* way;                           // m, of every square
-  float range;                                // m
-  std::int32_t *near_owner, *near_neighbour;  // out, and 16 lanes of padding
+  const std::int32_t *owner, *neighbour;  // and 16 lanes of numbers of squares
+  float* until;                           // m, in ways, of every pair, and 16 lanes; in and out
+  const float* way;                       // m, of every square
+  float range;                            // m
+  std::int32_t number;                    // of the first pair
+  std::int32_t *near_owner, *near_neighbour, *near_number;  // out, and 16 lanes of padding
 };
 
 // Pairs of squares of one grid that share a corner, or are one square (squares_alike.cpp).

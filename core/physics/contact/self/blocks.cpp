@@ -112,26 +112,8 @@ void Blocks::cut(const std::vector<Sheet>& sheets) {
   }
   borders_.resize(blocks_.size());
   for (std::size_t s = 0; s < sheets.size(); ++s)
-    if (surfaces() && sheets[s].mesh) list_borders(s);
-}
-
-void Blocks::list_borders(std::size_t sheet) {
-  const Particles& p = *sheets_[sheet].points;
-  const auto first = std::size_t(extents_[sheet].first);
-  for (const auto& triangle : sheets_[sheet].mesh->triangles())
-    for (const int vertex : triangle)
-      for (const int other : triangle)
-        if (p.place(vertex).j != p.place(other).j)
-          borders_[first + std::size_t(p.place(vertex).j)].push_back(p.place(other));
-  const auto at = [](const Particles::Place& place) { return std::pair(place.j, place.i); };
-  for (std::size_t b = first; b < first + std::size_t(p.rows); ++b) {
-    std::vector<Particles::Place>& border = borders_[b];
-    std::sort(border.begin(), border.end(),
-              [&](const auto& x, const auto& y) { return at(x) < at(y); });
-    border.erase(std::unique(border.begin(), border.end(),
-                             [&](const auto& x, const auto& y) { return at(x) == at(y); }),
-                 border.end());
-  }
+    if (surfaces() && sheets[s].mesh)
+      std::ranges::move(sheets[s].mesh->borders(), borders_.begin() + extents_[s].first);
 }
 
 // visit(block) for a block, and those beyond it along the row, the column and both.

@@ -116,7 +116,6 @@ class Blocks {
   void cut(const std::vector<Sheet>& sheets);
   BlockRows rows_of(std::size_t b);
   bool surfaces() const { return least_ratio_ > 0; }
-  void list_borders(std::size_t sheet);
   void measure_block(std::size_t b);
   void measure_border(std::size_t b);
   void measure_flat(bool all);

@@ -1,4 +1,4 @@
-// Self-contact (self_contact.h): the contacts of an interval, and what comes of them.
+// Self-contact (self_contact.h): the contacts of an interval, and what comes of them; pairs too near now.
 #include <algorithm>
 #include <cmath>
 
@@ -209,6 +209,41 @@ void SelfContact::respond(const ContactInterval& interval, Threads& threads) {
     if (course_)
       record_.contacts_now += std::int64_t(push_by_course(interval.dt, interval.substeps));
   }
+}
+
+SelfContact::Overlaps SelfContact::overlaps() {
+  Threads one(1);
+  Overlaps found;
+  const auto add = [&](double missing) {
+    if (missing <= 0) return;
+    ++found.pairs;
+    found.deepest = std::max(found.deepest, missing);
+  };
+  if (surfaces()) {
+    begin(one);
+    gather(one);
+    near_->list(now_.data(), one);
+    measure_surfaces(near_->within(thickness_, place_.data(), moved_.data(), one),
+                     SurfaceSearch::contacts, 1, one);
+    for (const auto& piece : measured_)
+      for (const SurfaceContact& c : piece.found())
+        add(double(c.held) / kHeld - double(c.distance));
+    restart();
+    return found;
+  }
+  search(0, one);
+  for_each_pair([&](const Site& p, const Site& q) {
+    const Sheet &sheet = sheets_[p.cloth], &other = sheets_[q.cloth];
+    if (only_neighbours(p, q)) return;
+    double square = 0;
+    for (int i = 0; i < 3; ++i) {
+      const double d =
+          double(sheet.points->x.at(i, p.row, p.column)) - other.points->x.at(i, q.row, q.column);
+      square += d * d;
+    }
+    add(0.5 * (double(sheet.thickness) + other.thickness) - std::sqrt(square));
+  });
+  return found;
 }
 
 }  // namespace weft::physics

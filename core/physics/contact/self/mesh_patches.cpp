@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <queue>
+#include <set>
 #include <span>
 
 #include "weft/vec3.h"
@@ -83,6 +84,24 @@ void MeshPatches::copy(Threads& threads) {
       points_->w(j)[i] = particles_.w(from.j, from.i);
     }
   });
+}
+
+std::vector<std::vector<Particles::Place>> MeshPatches::borders() const {
+  using At = std::pair<int, int>;
+  std::vector<std::set<At>> beyond(std::size_t(points_->rows));
+  for (const auto& triangle : triangles())
+    for (const int vertex : triangle)
+      for (const int other : triangle) {
+        const auto [row, column] = points_->place(other);
+        const int patch = points_->place(vertex).j;
+        if (row != patch) beyond[std::size_t(patch)].insert({row, column});
+      }
+  std::vector<std::vector<Particles::Place>> borders;
+  for (const std::set<At>& of : beyond) {
+    borders.emplace_back();
+    for (const auto& [row, column] : of) borders.back().push_back({row, column});
+  }
+  return borders;
 }
 
 // The shortest ways from each vertex (Dijkstra 1959), as far as they matter.

@@ -37,6 +37,9 @@ class MeshPatches {
     return points_->first[std::size_t(row)] + column;
   }
 
+  // Of every patch, the points of others that its vertices have triangles with, row after row.
+  std::vector<std::vector<Particles::Place>> borders() const;
+
   // Vertices that are less than `range` apart at rest, straight, and by the mesh's edges no more than twice
   // that: neighbours on the surface, by their numbers. Two layers that lie on each other at rest are none. Seams
   // are edges of no length, and what is nearer by them than straight is neighbours.

@@ -72,7 +72,6 @@ class NearSquares {
   struct Room {                   // of one piece of a list
     SquarePairs asked;            // numbers: of pairs
     std::vector<float> measured;  // of those asked for
-    std::vector<std::uint8_t> away;
   };
 
   // The squares of a mesh.
@@ -88,10 +87,15 @@ class NearSquares {
   void share_squares(Threads& threads, const Visit& visit) const;
   void bound(const Place* place, const Displacement* moved, Threads& threads);
   void bound_square(std::size_t n, const Place* place, const Displacement* moved);
-  bool sleeps(std::size_t pair, float farther);
+  static bool sleeps(const SquarePairs& pairs, std::size_t pair, const Ways& ways, float farther,
+                     float& until);
+  template <class Drop>
+  static void drop_pairs(SquarePairs& pairs, const Drop& drop);
+  template <class Until>
+  void drop_far(SquarePairs& pairs, const Ways& ways, const Until& until, float range,
+                const Place* place, Room& room);
+  void drop_alike(SquarePairs& pairs, const Place* place, Room& room);
   float box_gap(std::int32_t a, std::int32_t b) const;
-  void take_beside(std::size_t first, std::size_t count, float range, const Place* place,
-                   Room& room, SquarePairs& kept);
   template <class Work>
   void add_pieces(std::size_t pairs, SquarePairs& to, Threads& threads, const Work& work);
   void find_not_apart(const SquarePairs& pairs, std::size_t first, std::size_t count, float range,

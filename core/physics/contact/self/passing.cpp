@@ -101,8 +101,8 @@ bool SelfContact::mark_strayed(float most) {
   return any;
 }
 
-// Of all pairs those that may pass now: of what was found for contacts, and of what has strayed from there. Then of what
-// zones have moved, until nothing may. (From here on `moved_` is what bodies do move, not what they would.)
+// Of all pairs those that may pass now: of what was found for contacts, and of what has strayed from there. Then of
+// what zones have moved, until nothing may. (From here on `moved_` is what bodies do move, not what they would.)
 void SelfContact::hold_together(Threads& threads) {
   for (const std::int32_t body : surfaces_->touched()) {
     Displacement& u = moved_[std::size_t(body)];

@@ -18,6 +18,15 @@ void SquarePairs::pad() {
     std::fill_n(of->data() + count, kPadding, 0);
 }
 
+void SquarePairs::take(const SquarePairs& from, std::size_t first, std::size_t how_many) {
+  reserve(how_many);
+  std::copy_n(from.owner.data() + first, how_many, owner.data());
+  std::copy_n(from.neighbour.data() + first, how_many, neighbour.data());
+  std::copy_n(from.number.data() + first, how_many, number.data());
+  count = how_many;
+  pad();
+}
+
 void SquarePairs::add(const std::vector<SquarePairs>& pieces, std::size_t how_many) {
   for (std::size_t k = 0; k < how_many; ++k) {
     const SquarePairs& found = pieces[k];

@@ -25,6 +25,8 @@ struct SquarePairs {
   void put(const SquarePairs& of, std::size_t pair) {
     put(of.owner[pair], of.neighbour[pair], of.number[pair]);
   }
+  // Becomes so many pairs of another list.
+  void take(const SquarePairs& from, std::size_t first, std::size_t how_many);
   // The pairs of so many pieces, piece after piece.
   void add(const std::vector<SquarePairs>& pieces, std::size_t how_many);
   std::size_t bytes() const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "physics/contact/self/near_squares.h"
 
@@ -70,57 +71,63 @@ float NearSquares::box_gap(std::int32_t a, std::int32_t b) const {
   return std::sqrt(gap[0] + gap[1] + gap[2]);
 }
 
-// Whether a pair that shares a corner, and may come so much farther before it is near, comes nowhere near now. Tells
-// until when.
-bool NearSquares::sleeps(std::size_t pair, float farther) {
-  const std::int32_t a = corner_pairs_.owner[pair], b = corner_pairs_.neighbour[pair];
-  const float came = ways_.beside().of_last(a, b);
-  beside_.until(corner_pairs_.number[pair]) =
-      farther > came ? ways_.beside().until(a, b, farther - came) : SquareWays::kAlways;
+// Whether a pair that may come so much farther before it is near comes nowhere near now. Tells until when it sleeps.
+bool NearSquares::sleeps(const SquarePairs& pairs, std::size_t pair, const Ways& ways,
+                         float farther, float& until) {
+  const std::int32_t a = pairs.owner[pair], b = pairs.neighbour[pair];
+  const float came = ways.of_last(a, b);
+  until = farther > came ? ways.until(a, b, farther - came) : SquareWays::kAlways;
   return farther > came;
 }
 
-// Of a piece of the pairs that share a corner and are awake, those that may come near. Measured are those that have
-// slept, and others by turns; those that are near may lie alike. `first`: of the piece's pairs.
-void NearSquares::take_beside(std::size_t first, std::size_t count, float range, const Place* place,
-                              Room& room, SquarePairs& kept) {
-  const SquarePairs& pairs = corner_pairs_;
-  room.measured.resize(kAtOnce + SquarePairs::kPadding);
-  room.away.assign(count, 0);
-  room.asked.reserve(count);
-  // Those for which it holds.
-  const auto ask = [&](const auto& holds) {
-    room.asked.count = 0;
-    for (std::size_t pair = first; pair < first + count; ++pair)
-      if (holds(pair)) room.asked.put(pairs.owner[pair], pairs.neighbour[pair], std::int32_t(pair));
-    room.asked.pad();
-  };
-  const auto settle = [&](const auto& away) {
-    for (std::size_t k = 0; k < room.asked.count; ++k) {
-      const auto pair = std::size_t(room.asked.number[k]);
-      room.away[pair - first] = away(pair, room.measured[k]);
-    }
-  };
-  ask([&](std::size_t pair) {
+// Takes those out of a list for which drop(pair) holds.
+template <class Drop>
+void NearSquares::drop_pairs(SquarePairs& pairs, const Drop& drop) {
+  const std::size_t count = std::exchange(pairs.count, 0);
+  for (std::size_t pair = 0; pair < count; ++pair)
+    if (!drop(pair)) pairs.put(pairs, pair);
+  pairs.pad();
+}
+
+// Takes those out that come nowhere near by how far apart they are. Measured are those that have slept, and others by
+// turns, where they could sleep for a while: what moves fast is as far apart at most as the skin. until(number): of a
+// pair.
+template <class Until>
+void NearSquares::drop_far(SquarePairs& pairs, const Ways& ways, const Until& until, float range,
+                           const Place* place, Room& room) {
+  SquarePairs& asked = room.asked;
+  asked.count = 0;
+  asked.reserve(pairs.count);
+  for (std::size_t pair = 0; pair < pairs.count; ++pair) {
     const std::int32_t number = pairs.number[pair];
-    return beside_.until(number) != SquareWays::kAlways ||
-           (std::size_t(number) + turn_) % kTurns == 0;
+    const bool due =
+        until(number) != SquareWays::kAlways || (std::size_t(number) + turn_) % kTurns == 0;
+    if (due && kTurns * ways.of_last(pairs.owner[pair], pairs.neighbour[pair]) < skin_)
+      asked.put(pairs.owner[pair], pairs.neighbour[pair], std::int32_t(pair));
+  }
+  if (asked.count == 0) return;
+  asked.pad();
+  room.measured.resize(std::max(room.measured.size(), asked.count + SquarePairs::kPadding));
+  kernels_.sheets.square_gaps({place, squares_.data(), int(asked.count), asked.owner.data(),
+                               asked.neighbour.data(), room.measured.data()});
+  std::size_t next = 0;
+  drop_pairs(pairs, [&](std::size_t pair) {
+    if (next == asked.count || asked.number[next] != std::int32_t(pair)) return false;
+    const float farther = room.measured[next++] - range;
+    return sleeps(pairs, pair, ways, farther, until(pairs.number[pair]));
   });
-  kernels_.sheets.square_gaps({place, squares_.data(), int(room.asked.count),
-                               room.asked.owner.data(), room.asked.neighbour.data(),
-                               room.measured.data()});
-  settle([&](std::size_t pair, float gap) { return sleeps(pair, gap - range); });
-  ask([&](std::size_t pair) { return !room.away[pair - first]; });
-  beside_.alike(room.asked.owner.data(), room.asked.neighbour.data(), room.asked.count, place,
+}
+
+// Takes those out that share a corner and lie alike; they sleep.
+void NearSquares::drop_alike(SquarePairs& pairs, const Place* place, Room& room) {
+  room.measured.resize(std::max(room.measured.size(), pairs.count + SquarePairs::kPadding));
+  beside_.alike(pairs.owner.data(), pairs.neighbour.data(), pairs.count, place,
                 room.measured.data());
-  settle([&](std::size_t pair, float change) {
-    sleeps(pair, change);
+  drop_pairs(pairs, [&](std::size_t pair) {
+    const float change = room.measured[pair];
+    sleeps(pairs, pair, ways_.beside(), change, beside_.until(pairs.number[pair]));
     return change >= 0;
   });
-  kept.reserve(count);
-  kept.count = 0;
-  for (std::size_t pair = first; pair < first + count; ++pair)
-    if (!room.away[pair - first]) kept.put(pairs, pair);
 }
 
 // work(piece, its first, how many) for pieces of so many pairs; what each has found is added to a list.
@@ -149,8 +156,14 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
   within_.count = 0;
   add_pieces(corner_pairs_.count, within_, threads,
              [&](std::size_t k, std::size_t first, std::size_t count) {
-               take_beside(first, count, range, place, rooms_[k], found_[k]);
-               keep_not_apart(range, place, moved, found_[k]);
+               SquarePairs& found = found_[k];
+               found.take(corner_pairs_, first, count);
+               drop_far(
+                   found, ways_.beside(),
+                   [&](std::int32_t number) -> float& { return beside_.until(number); }, range,
+                   place, rooms_[k]);
+               drop_alike(found, place, rooms_[k]);
+               keep_not_apart(range, place, moved, found);
              });
   corner_pairs_.count = 0;
   for (const auto& part : parts_) {
@@ -161,16 +174,21 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
              [&](std::size_t k, std::size_t first, std::size_t count) {
                find_not_apart(corner_pairs_, first, count, range, place, moved, found_[k]);
              });
-  add_pieces(
-      listed_.count, within_, threads, [&](std::size_t k, std::size_t first, std::size_t count) {
-        SquarePairs& found = found_[k];
-        found.reserve(count);
-        found.count = std::size_t(kernels_.sheets.squares_awake(
-            {boxes_.data(), int(count), listed_.owner.data() + first,
-             listed_.neighbour.data() + first, until_.data() + first, ways_.anywhere().all.data(),
-             range, found.owner.data(), found.neighbour.data()}));
-        keep_not_apart(range, place, moved, found);
-      });
+  add_pieces(listed_.count, within_, threads,
+             [&](std::size_t k, std::size_t first, std::size_t count) {
+               SquarePairs& found = found_[k];
+               found.reserve(count);
+               found.count = std::size_t(kernels_.sheets.squares_awake(
+                   {boxes_.data(), int(count), listed_.owner.data() + first,
+                    listed_.neighbour.data() + first, until_.data() + first,
+                    ways_.anywhere().all.data(), range, std::int32_t(first), found.owner.data(),
+                    found.neighbour.data(), found.number.data()}));
+               drop_far(
+                   found, ways_.anywhere(),
+                   [&](std::int32_t number) -> float& { return until_[std::size_t(number)]; },
+                   range, place, rooms_[k]);
+               keep_not_apart(range, place, moved, found);
+             });
   return within_;
 }
 
