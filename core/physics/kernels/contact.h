@@ -129,6 +129,16 @@ struct BodyBlock {
   Displacement* moved;                 // and how far they have come
 };
 
+// Rows of bodies, where they were once with their allowances, and how they move in an interval; what is common to all
+// is taken off, before the interval and in it.
+struct StrayedBodies {
+  int columns, rows;
+  std::ptrdiff_t stride;  // from row to row
+  const Place *from, *place;
+  const Displacement* moved;
+  float before[3], common[3];  // m
+};
+
 // Room for pairs, and 16 lanes of padding.
 struct PairRoom {
   std::int32_t *owner, *neighbour;
@@ -215,11 +225,14 @@ struct SquaresWithin;  // kernels/surface.h
 struct SquaresApart;
 struct SquaresAwake;
 struct SquaresAlike;
+struct CornerWaysOfRow;
+struct BesideAwake;
 struct SquareGaps;
 struct SurfacePairs;
 
-// block_bounds: how a block lies and moves; block_edges: and its edges. near_boxes, meeting_pairs, squares_…:
-// return how many are. near_pairs: who is in range of whom. surface_pairs: returns how many contacts there are.
+// block_bounds: how a block lies and moves; block_edges: and its edges. near_boxes, meeting_pairs, squares_…,
+// beside_awake: return how many are. near_pairs: who is in range of whom. any_strayed: returns whether any has left its
+// allowance. surface_pairs: returns how many contacts there are.
 #define WEFT_SHEET_KERNELS(KERNEL)                        \
   KERNEL(void, block_bounds, (const BlockRows&))          \
   KERNEL(void, block_edges, (const BlockRows&))           \
@@ -228,10 +241,13 @@ struct SurfacePairs;
   KERNEL(NearFound, near_pairs, (const NearSearch&))      \
   KERNEL(BesideFound, beside_pairs, (const BesidePairs&)) \
   KERNEL(void, gather_bodies, (const BodyBlock&))         \
+  KERNEL(bool, any_strayed, (const StrayedBodies&))       \
   KERNEL(int, meeting_pairs, (const MeetingPairs&))       \
   KERNEL(int, squares_within, (const SquaresWithin&))     \
   KERNEL(int, squares_not_apart, (const SquaresApart&))   \
   KERNEL(int, squares_awake, (const SquaresAwake&))       \
+  KERNEL(void, corner_ways, (const CornerWaysOfRow&))     \
+  KERNEL(int, beside_awake, (const BesideAwake&))         \
   KERNEL(void, square_gaps, (const SquareGaps&))          \
   KERNEL(void, squares_alike, (const SquaresAlike&))      \
   KERNEL(int, surface_pairs, (const SurfacePairs&))

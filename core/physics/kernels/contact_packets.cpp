@@ -24,6 +24,7 @@ using physics::Displacement;
 using physics::kPacket;
 using physics::MeetingPairs;
 using physics::Place;
+using physics::StrayedBodies;
 
 constexpr float kTiny = 1e-12f;
 constexpr int kRecord = 4;  // floats of a place, and of a displacement
@@ -198,6 +199,25 @@ void gather_bodies(const BodyBlock& given) {
       put_records(b.now[body].x, kRecord, {x, wide(b.half_held)});
       put_records(b.moved[body].u, kRecord, {x - before, load(b.w + at)});
     }
+}
+
+bool any_strayed(const StrayedBodies& given) {
+  const StrayedBodies b = given;
+  const Wide3 before = wide3(b.before[0], b.before[1], b.before[2]);
+  const Wide3 common = wide3(b.common[0], b.common[1], b.common[2]);
+  for (int j = 0; j < b.rows; ++j) {
+    WideInt strayed{};
+    for (int i = 0; i < b.columns; i += kLanes) {
+      const std::ptrdiff_t at = j * b.stride + i;
+      const Wide4 from = records_in_row(b.from[at].x, kRecord);
+      const Wide3 start = records_in_row(b.place[at].x, kRecord).xyz - from.xyz - before;
+      const Wide3 end = start + (records_in_row(b.moved[at].u, kRecord).xyz - common);
+      const Wide farthest = max(dot(start, start), dot(end, end)), most = from.last * from.last;
+      strayed = strayed | (~(farthest <= most) & lanes_below(b.columns - i));
+    }
+    if (any(strayed)) return true;
+  }
+  return false;
 }
 
 int meeting_pairs(const MeetingPairs& given) {

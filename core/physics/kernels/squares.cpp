@@ -8,6 +8,8 @@ namespace weft::WEFT_KERNELS {
 
 namespace {
 
+using physics::BesideAwake;
+using physics::CornerWaysOfRow;
 using physics::SquaresApart;
 using physics::SquaresAwake;
 using physics::SquaresWithin;
@@ -20,16 +22,23 @@ struct Corners {
   Wide3 start[4], end[4];
 };
 
+// visit(corner, its bodies) of kLanes squares.
+template <class Visit>
+WEFT_INLINE void for_each_corner(Wide4 squares, const Visit& visit) {
+  const WideInt corner[4] = {(WideInt)squares.xyz.x, (WideInt)squares.xyz.y, (WideInt)squares.xyz.z,
+                             (WideInt)squares.last};
+  for (int n = 0; n < 4; ++n) visit(n, (const std::int32_t*)&corner[n]);
+}
+WEFT_INLINE Wide4 squares_at(const physics::Square* squares, const std::int32_t* numbers) {
+  return records_at((const float*)squares->corner, kRecord, numbers);
+}
+
 WEFT_INLINE Corners corners_of(const SquaresApart& s, const std::int32_t* numbers) {
-  const Wide4 square = records_at((const float*)s.squares->corner, kRecord, numbers);
-  const WideInt corner[4] = {(WideInt)square.xyz.x, (WideInt)square.xyz.y, (WideInt)square.xyz.z,
-                             (WideInt)square.last};
   Corners c;
-  for (int n = 0; n < 4; ++n) {
-    const auto* const number = (const std::int32_t*)&corner[n];
-    c.start[n] = records_at(s.place->x, kRecord, number).xyz;
-    c.end[n] = c.start[n] + records_at(s.moved->u, kRecord, number).xyz;
-  }
+  for_each_corner(squares_at(s.squares, numbers), [&](int n, const std::int32_t* bodies) {
+    c.start[n] = records_at(s.place->x, kRecord, bodies).xyz;
+    c.end[n] = c.start[n] + records_at(s.moved->u, kRecord, bodies).xyz;
+  });
   return c;
 }
 
@@ -51,7 +60,28 @@ WEFT_INLINE WideInt kept_apart(const Corners& p, const Corners& q, float range) 
          ((beyond(normal, q.start, p.start) > least) & (beyond(normal, q.end, p.end) > least));
 }
 
+struct Box {
+  Wide3 low, high;
+};
+
+// About the corners of squares all through an interval.
+WEFT_INLINE Box box_of(const Corners& c) {
+  Box box{c.start[0], c.start[0]};
+  const auto add = [&](const Wide3& x) {
+    box.low = {min(box.low.x, x.x), min(box.low.y, x.y), min(box.low.z, x.z)};
+    box.high = {max(box.high.x, x.x), max(box.high.y, x.y), max(box.high.z, x.z)};
+  };
+  for (int n = 0; n < 4; ++n) add(c.start[n]), add(c.end[n]);
+  return box;
+}
+
 // Between boxes, squared.
+WEFT_INLINE Wide box_gap(const Box& p, const Box& q) {
+  const Wide3 a = p.low - q.high, b = q.low - p.high;
+  const Wide3 gap{max(max(a.x, b.x), Wide{}), max(max(a.y, b.y), Wide{}),
+                  max(max(a.z, b.z), Wide{})};
+  return dot(gap, gap);
+}
 WEFT_INLINE Wide box_gap(const physics::SquareBox* boxes, const std::int32_t* owner,
                          const std::int32_t* neighbour) {
   constexpr int kStride = sizeof(physics::SquareBox) / sizeof(float);
@@ -59,10 +89,7 @@ WEFT_INLINE Wide box_gap(const physics::SquareBox* boxes, const std::int32_t* ow
   const auto high = [&](const std::int32_t* of) {
     return records_at(boxes->high, kStride, of).xyz;
   };
-  const Wide3 a = low(owner) - high(neighbour), b = low(neighbour) - high(owner);
-  const Wide3 gap{max(max(a.x, b.x), Wide{}), max(max(a.y, b.y), Wide{}),
-                  max(max(a.z, b.z), Wide{})};
-  return dot(gap, gap);
+  return box_gap(Box{low(owner), high(owner)}, Box{low(neighbour), high(neighbour)});
 }
 
 }  // namespace
@@ -72,7 +99,8 @@ int squares_not_apart(const SquaresApart& given) {
   int count = 0;
   for (int k = 0; k < s.pairs; k += kLanes) {
     const Corners p = corners_of(s, s.owner + k), q = corners_of(s, s.neighbour + k);
-    const WideInt apart = kept_apart(p, q, s.range) | kept_apart(q, p, s.range);
+    const WideInt apart = kept_apart(p, q, s.range) | kept_apart(q, p, s.range) |
+                          (box_gap(box_of(p), box_of(q)) > s.range * s.range);
     const unsigned near = bits(~apart & lanes_below(s.pairs - k));
     const WideInt neighbours = lanes_at(s.neighbour + k), owners = lanes_at(s.owner + k);
     store_lanes(s.near_owner + count, near, owners);
@@ -100,6 +128,39 @@ int squares_awake(const SquaresAwake& given) {
     count += store_lanes(s.near_neighbour + count, near, neighbours);
   }
   for (int l = 0; l < kLanes; ++l) s.near_owner[count + l] = s.near_neighbour[count + l] = 0;
+  return count;
+}
+
+void corner_ways(const CornerWaysOfRow& given) {
+  const CornerWaysOfRow s = given;
+  for (int k = 0; k < s.count; k += kLanes) {
+    Wide3 u[4];
+    for_each_corner(records_in_row((const float*)s.squares[k].corner, kRecord),
+                    [&](int n, const std::int32_t* bodies) {
+                      u[n] = records_at(s.moved->u, kRecord, bodies).xyz;
+                    });
+    Wide apart{};
+    for (int n = 0; n < 4; ++n)
+      for (int m = 0; m < n; ++m) apart = max(apart, dot(u[n] - u[m], u[n] - u[m]));
+    const Wide way = sqrt(apart);
+    store(s.last + k, way);
+    store(s.all + k, (load(s.all + k) + way) / physics::kRoundedDown);
+  }
+}
+
+int beside_awake(const BesideAwake& given) {
+  const BesideAwake s = given;
+  int count = 0;
+  for (int k = 0; k < s.pairs; k += kLanes) {
+    const WideInt awake =
+        (load(s.way + k) + load(s.other_way + k) >= load(s.until + k)) & lanes_below(s.pairs - k);
+    if (!any(awake)) continue;
+    const unsigned which = bits(awake);
+    const WideInt number = lane_numbers() + k;
+    store_lanes(s.awake_owner + count, which, number + s.owner);
+    store_lanes(s.awake_number + count, which, number * s.and_so_on + s.number);
+    count += store_lanes(s.awake_neighbour + count, which, number + s.neighbour);
+  }
   return count;
 }
 

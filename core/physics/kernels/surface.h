@@ -37,8 +37,8 @@ struct SquaresWithin {
 // Times that, sums of two ways are not above what they are in truth.
 inline constexpr float kRoundedDown = 1 - 16 * 6e-8f;
 
-// Pairs of squares, and where those of them go that are awake, as ways tell (contact/self/square_ways.h), and whose
-// boxes in an interval are within a range. What is awake and farther off falls asleep.
+// Pairs of squares, and where those of them go that are awake, as ways tell (contact/self/near_squares.h), and whose
+// boxes are within a range. What is awake and farther off falls asleep.
 struct SquaresAwake {
   const SquareBox* boxes;
   int pairs;
@@ -48,6 +48,25 @@ struct SquaresAwake {
   float range;                            // m
   std::int32_t number;                    // of the first pair
   std::int32_t *near_owner, *near_neighbour, *near_number;  // out, and 16 lanes of padding
+};
+
+// Squares of a row, in whole groups of lanes: how far their corners come from each other in an interval.
+struct CornerWaysOfRow {
+  const Displacement* moved;
+  const Square* squares;  // the first,
+  int count;              // and how many
+  float *all, *last;      // m, of the first: added to; out
+};
+
+// Pairs of the squares of a row with others that follow each other likewise, and where those of them go that are awake,
+// as ways tell (contact/self/corner_ways.h).
+struct BesideAwake {
+  int pairs;
+  const float *way, *other_way;    // m, of the first pair's squares
+  const float* until;              // m, in ways, of the first pair
+  std::int32_t owner, neighbour;   // of the first pair: squares,
+  std::int32_t number, and_so_on;  // its own number, and from number to number
+  std::int32_t *awake_owner, *awake_neighbour, *awake_number;  // out, and 16 lanes of padding
 };
 
 // Pairs of squares of one grid that share a corner, or are one square (squares_alike.cpp).
@@ -71,8 +90,8 @@ struct SquareGaps {
   float* gap;                             // out, and 16 lanes of padding [m]
 };
 
-// Pairs of squares, and where those of them go that no plane along one of the two keeps more than a range
-// apart all through an interval: the others come nowhere nearer.
+// Pairs of squares, and where those of them go that neither boxes about them nor a plane along one of the two keep more
+// than a range apart all through an interval: the others come nowhere nearer.
 struct SquaresApart {
   const Place* place;
   const Displacement* moved;

@@ -1,8 +1,6 @@
 // Squares beside each other (beside_squares.h).
 #include "physics/contact/self/beside_squares.h"
 
-#include <algorithm>
-#include <bit>
 #include <utility>
 
 namespace weft::physics {
@@ -19,11 +17,7 @@ int rows_of(const Sheet& sheet) {
 
 BesideSquares::BesideSquares(const std::vector<Sheet>& sheets, const std::vector<NamedSheet>& named,
                              const std::vector<Square>& squares, const KernelTable& kernels)
-    : sheets_(sheets),
-      named_(named),
-      squares_(squares),
-      kernels_(kernels),
-      picked_(squares.size()) {
+    : sheets_(sheets), named_(named), squares_(squares), kernels_(kernels) {
   for (const Sheet& s : sheets) {
     first_row_.push_back(pairs_.size());
     pairs_.resize(pairs_.size() + std::size_t(rows_of(s)));
@@ -32,7 +26,8 @@ BesideSquares::BesideSquares(const std::vector<Sheet>& sheets, const std::vector
 }
 
 void BesideSquares::wake() {
-  for (auto& until : until_) until.assign(squares_.size(), SquareWays::kAtOnce);
+  for (auto& until : until_)
+    until.assign(squares_.size() + SquarePairs::kPadding, CornerWays::kAtOnce);
 }
 
 // From a square's number to that of the other one of a pair.
@@ -40,63 +35,66 @@ std::ptrdiff_t BesideSquares::step(std::size_t sheet, std::size_t pair) const {
   return pair < 2 ? std::ptrdiff_t(pair) : named_[sheet].stride + std::ptrdiff_t(pair) - 3;
 }
 
-// pick(square, other square, pair).
-template <class Pick>
-void BesideSquares::pick_row(std::size_t sheet, int row, const Pick& pick) {
+auto BesideSquares::range(std::size_t sheet, int row, std::size_t pair) const -> Range {
   const auto first = std::size_t(named_[sheet].name(row, 0));
-  const int columns = sheets_[sheet].columns;
-  const std::size_t pairs = row + 1 < sheets_[sheet].points->rows ? kPairs : 2;
-  std::uint8_t* const picked = picked_.data() + first;
-  std::fill_n(picked, columns, std::uint8_t(0));
-  for (std::size_t pair = 0; pair < pairs; ++pair) {
-    const int begin = pair == 2 ? 1 : 0, end = columns - (pair == 1 || pair == 4 ? 1 : 0);
-    const std::size_t other = first + std::size_t(step(sheet, pair));
-    const auto bit = std::uint8_t(1 << pair);
-    for (int i = begin; i < end; ++i)
-      picked[i] = std::uint8_t(
-          picked[i] | (pick(first + std::size_t(i), other + std::size_t(i), pair) ? bit : 0));
-  }
+  const bool last_row = row + 1 == sheets_[sheet].points->rows;
+  const int columns = sheets_[sheet].columns, end = columns - (pair == 1 || pair == 4 ? 1 : 0);
+  return {pair == 2 ? 1 : 0, pair >= 2 && last_row ? 0 : end, first,
+          first + std::size_t(step(sheet, pair))};
 }
 
-template <class Pick>
-void BesideSquares::list_picked(const Pick& pick, const std::vector<std::uint8_t>& marked,
-                                Threads& threads) {
+// visit(sheet, row, its list).
+template <class Visit>
+void BesideSquares::for_each_row(Threads& threads, const Visit& visit) {
   for (std::size_t s = 0; s < sheets_.size(); ++s)
     threads.share(std::size_t(rows_of(sheets_[s])), squares_.size() < kFewSquares,
                   [&](std::size_t j) {
-                    pick_row(s, int(j), pick);
-                    list_row(s, int(j), marked, pairs_[first_row_[s] + j]);
+                    SquarePairs& found = pairs_[first_row_[s] + j];
+                    found.count = 0;
+                    found.reserve(kPairs * std::size_t(sheets_[s].columns));
+                    visit(s, int(j), found);
                   });
 }
 
-void BesideSquares::list(const Ways& ways, const std::vector<std::uint8_t>& marked,
+void BesideSquares::leave_out(const std::vector<std::uint8_t>& marked, SquarePairs& pairs) const {
+  if (marked.empty()) return;
+  const std::size_t count = std::exchange(pairs.count, 0);
+  for (std::size_t k = 0; k < count; ++k)
+    if (!has_corner_in(squares_[std::size_t(pairs.owner[k])], marked) &&
+        !has_corner_in(squares_[std::size_t(pairs.neighbour[k])], marked))
+      pairs.put(pairs, k);
+}
+
+void BesideSquares::list(const CornerWays& ways, const std::vector<std::uint8_t>& marked,
                          Threads& threads) {
-  const float* const way = ways.all.data();
-  list_picked([&](std::size_t p, std::size_t q,
-                  std::size_t pair) { return way[p] + way[q] >= until_[pair][p]; },
-              marked, threads);
+  for_each_row(threads, [&](std::size_t sheet, int row, SquarePairs& found) {
+    for (std::size_t pair = 0; pair < kPairs; ++pair) {
+      const Range r = range(sheet, row, pair);
+      if (r.end <= r.begin) continue;
+      const std::size_t p = r.first + std::size_t(r.begin), q = r.other + std::size_t(r.begin);
+      found.count += std::size_t(kernels_.sheets.beside_awake(
+          {r.end - r.begin, ways.all() + p, ways.all() + q, until_[pair].data() + p,
+           std::int32_t(p), std::int32_t(q), std::int32_t(kPairs * p + pair), std::int32_t(kPairs),
+           found.owner.data() + found.count, found.neighbour.data() + found.count,
+           found.number.data() + found.count}));
+    }
+    leave_out(marked, found);
+  });
 }
 
 void BesideSquares::list_asked(const std::vector<std::uint8_t>& asked,
                                const std::vector<std::uint8_t>& marked, Threads& threads) {
-  list_picked([&](std::size_t p, std::size_t q, std::size_t) { return (asked[p] | asked[q]) != 0; },
-              marked, threads);
-}
-
-void BesideSquares::list_row(std::size_t sheet, int row, const std::vector<std::uint8_t>& marked,
-                             SquarePairs& found) {
-  const int columns = sheets_[sheet].columns;
-  found.count = 0;
-  found.reserve(kPairs * std::size_t(columns));
-  for (int i = 0; i < columns; ++i) {
-    const auto p = std::size_t(named_[sheet].name(row, i));
-    for (unsigned left = picked_[p]; left != 0; left &= left - 1) {
-      const auto pair = std::size_t(std::countr_zero(left));
-      const std::size_t q = p + std::size_t(step(sheet, pair));
-      if (has_corner_in(squares_[p], marked) || has_corner_in(squares_[q], marked)) continue;
-      found.put(std::int32_t(p), std::int32_t(q), std::int32_t(kPairs * p + pair));
+  for_each_row(threads, [&](std::size_t sheet, int row, SquarePairs& found) {
+    for (std::size_t pair = 0; pair < kPairs; ++pair) {
+      const Range r = range(sheet, row, pair);
+      for (int i = r.begin; i < r.end; ++i) {
+        const std::size_t p = r.first + std::size_t(i), q = r.other + std::size_t(i);
+        if (asked[p] | asked[q])
+          found.put(std::int32_t(p), std::int32_t(q), std::int32_t(kPairs * p + pair));
+      }
     }
-  }
+    leave_out(marked, found);
+  });
 }
 
 // Sheet by sheet: owners come in their order.
@@ -115,7 +113,7 @@ void BesideSquares::alike(const std::int32_t* owner, const std::int32_t* neighbo
 }
 
 std::size_t BesideSquares::bytes() const {
-  std::size_t bytes = squares_.size() * (4 * kPairs + 1);
+  std::size_t bytes = squares_.size() * 4 * kPairs;
   for (const SquarePairs& p : pairs_) bytes += p.bytes();
   return bytes;
 }

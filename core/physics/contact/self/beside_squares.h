@@ -1,14 +1,14 @@
 // Pairs of squares of one sheet that share a corner, and each square with itself (folded along its diagonal,
-// its A comes near its own BDC), but for those that sleep (square_ways.h). Those that lie much alike cannot touch.
+// its A comes near its own BDC), but for those that sleep (corner_ways.h). Those that lie much alike cannot touch.
 #pragma once
 
 #include <array>
 #include <vector>
 
 #include "physics/contact/self/blocks.h"
+#include "physics/contact/self/corner_ways.h"
 #include "physics/contact/self/pair_search.h"
 #include "physics/contact/self/square_pairs.h"
-#include "physics/contact/self/square_ways.h"
 
 namespace weft::physics {
 
@@ -21,7 +21,7 @@ class BesideSquares {
   // None sleeps.
   void wake();
   // Lists those that are awake; leaves out squares with a corner that is marked.
-  void list(const Ways& ways, const std::vector<std::uint8_t>& marked, Threads& threads);
+  void list(const CornerWays& ways, const std::vector<std::uint8_t>& marked, Threads& threads);
   // Lists those of squares asked for, whether they sleep or not.
   void list_asked(const std::vector<std::uint8_t>& asked, const std::vector<std::uint8_t>& marked,
                   Threads& threads);
@@ -43,19 +43,22 @@ class BesideSquares {
   static constexpr std::size_t kPairs = 5;
 
   std::ptrdiff_t step(std::size_t sheet, std::size_t pair) const;
-  template <class Pick>
-  void list_picked(const Pick& pick, const std::vector<std::uint8_t>& marked, Threads& threads);
-  template <class Pick>
-  void pick_row(std::size_t sheet, int row, const Pick& pick);
-  void list_row(std::size_t sheet, int row, const std::vector<std::uint8_t>& marked,
-                SquarePairs& found);
+  template <class Visit>
+  void for_each_row(Threads& threads, const Visit& visit);
+  // Pairs of a row that lead to squares so far on, all in one way.
+  struct Range {
+    int begin, end;     // columns
+    std::size_t first;  // square of column 0,
+    std::size_t other;  // and the other one
+  };
+  Range range(std::size_t sheet, int row, std::size_t pair) const;
+  void leave_out(const std::vector<std::uint8_t>& marked, SquarePairs& pairs) const;
 
   const std::vector<Sheet>& sheets_;
   const std::vector<NamedSheet>& named_;
   const std::vector<Square>& squares_;
   const KernelTable& kernels_;
   std::array<std::vector<float>, kPairs> until_;  // m, of every square's pairs
-  std::vector<std::uint8_t> picked_;              // a bit for each pair of a square
   std::vector<std::size_t> first_row_;            // of every sheet
   std::vector<SquarePairs> pairs_;
 };

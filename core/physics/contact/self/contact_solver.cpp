@@ -29,7 +29,7 @@ ContactSolver<N>::ContactSolver(std::size_t bodies, BodyAnswer& answer,
       kernels_(kernels),
       bodies_(bodies),
       colours_(bodies),
-      is_touched_(bodies),
+      is_touched_(bodies + kPacket),
       change_(bodies + kPacket),
       lift_(bodies + kPacket) {}
 
@@ -68,6 +68,14 @@ void ContactSolver<N>::colour() {
       colours_[std::size_t(body)] |= std::uint64_t(1) << colour;
   }
   for (const std::int32_t body : touched_) colours_[std::size_t(body)] = 0;
+  // In order, so that what is done with them goes through memory once.
+  touched_.clear();
+  for (std::size_t n = 0; n < bodies_; n += kPacket) {
+    if (std::none_of(&is_touched_[n], &is_touched_[n] + kPacket, [](auto t) { return t != 0; }))
+      continue;
+    for (std::size_t body = n; body < n + kPacket; ++body)
+      if (is_touched_[body]) touched_.push_back(std::int32_t(body));
+  }
 }
 
 template <int N>
@@ -212,10 +220,7 @@ float ContactSolver<N>::solve(const Place* place, const Place* now, const Displa
     kernels_.prepare({&packets_[std::size_t(from)], count, places_, moved_, change_.data(), 0, 0});
   });
   if (answer_.given()) {
-    in_order_.clear();
-    for (std::size_t n = 0; n < bodies_; ++n)
-      if (is_touched_[n]) in_order_.push_back(std::int32_t(n));
-    answer_.find(in_order_, now, moved, interval, threads);
+    answer_.find(touched_, now, moved, interval, threads);
     answer_.begin(change_.data());
   }
   sweep(change_.data(), kEnoughOfHeld * held_, kSweeps);

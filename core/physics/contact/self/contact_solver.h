@@ -88,7 +88,7 @@ class ContactSolver {
   const std::size_t bodies_;
   std::vector<Contact<N>> contacts_;
   std::vector<std::uint64_t> colours_;  // of every body, a bit each
-  std::vector<std::int32_t> touched_, in_order_;
+  std::vector<std::int32_t> touched_;
   std::vector<std::uint8_t> is_touched_;
   std::vector<std::uint8_t> colour_;  // of every contact
   std::vector<std::int32_t> place_;   // of every contact: packet * 16 + lane

@@ -12,7 +12,9 @@
 namespace weft::physics {
 namespace {
 
-constexpr float kSkin = 0.8f;        // spacings that listed pairs may be farther apart than is held
+constexpr float kSkin = 0.8f;  // spacings that listed pairs may be farther apart than is held
+// Of the distance at which pairs are kept apart: the most that an allowance is for several intervals.
+constexpr float kMostAllowed = 0.3f;
 constexpr float kOverstretched = 3;  // half-diagonals at rest: larger squares are torn and left out
 
 void widen(Spread& spread, int k, float value) {
@@ -35,13 +37,15 @@ float half_diagonal(const Sheet& s) {
 }  // namespace
 
 NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<NamedSheet>& named,
-                         const std::vector<RestPlace>& rest, const KernelTable& kernels)
+                         const Blocks& blocks, const std::vector<RestPlace>& rest,
+                         const KernelTable& kernels)
     : sheets_(sheets),
       named_(named),
       kernels_(kernels),
       squares_(rest.size()),
       seams_(sheets, named, rest.size()),
-      ways_(squares_, rest.size()),
+      ways_(squares_, kernels),
+      allowances_(blocks, named, rest.size(), kernels),
       beside_(sheets, named, squares_, kernels),
       search_(count_squares(sheets_), {}, kernels) {
   const std::size_t bodies = rest.size();
@@ -51,12 +55,15 @@ NearSquares::NearSquares(const std::vector<Sheet>& sheets, const std::vector<Nam
     most_ = std::max(most_, kReach * held(s));
   }
   skin_ = kSkin * spacing;
+  allowances_.limit(kMostAllowed * most_);
   stride_.resize(bodies);
   make_squares();
   make_parts(rest);
   ways_.forget();
   asked_.resize(squares_.size());
   boxes_.resize(squares_.size());
+  allowance_.resize(squares_.size());
+  way_.resize(squares_.size());
   for_each_square([&](std::size_t) { ++all_squares_; });
   sorted_.resize(all_squares_);
   left_out_.reserve(all_squares_);
@@ -170,7 +177,15 @@ void NearSquares::list(const Place* now, Threads& threads) {
   threads.share(search_.chunks(), search_.few(), [&](std::size_t k) { find_in(k); });
   listed_.count = 0;
   listed_.add(found_, search_.chunks());
-  until_.assign(listed_.count + SquarePairs::kPadding, SquareWays::kAtOnce);
+  wake_listed();
+}
+
+// They begin without ways.
+void NearSquares::wake_listed() {
+  allowances_.forget();
+  until_.assign(listed_.count + SquarePairs::kPadding, CornerWays::kAtOnce);
+  std::fill(allowance_.begin(), allowance_.end(), 0.0f);
+  std::fill(way_.begin(), way_.end(), 0.0f);
 }
 
 // The middle of a square's corners, and how far from it they are at most, squared.
@@ -256,21 +271,29 @@ void NearSquares::find_in(std::size_t chunk) {
 void NearSquares::wake() {
   if (awake_) return;
   awake_ = true;
+  wake_listed();
   ways_.forget();
   beside_.wake();
-  std::fill(until_.begin(), until_.end(), SquareWays::kAtOnce);
+}
+
+// Of a grid, the squares that a particle is a corner of are those that begin with it, or before it along the row, the
+// column or both. (Another one may be shifted in vain.)
+void NearSquares::shift(std::int32_t body, float way) {
+  const std::int32_t stride = stride_[std::size_t(body)];
+  for (const std::int32_t square : {body, body - 1, body - stride, body - stride - 1})
+    if (square >= 0) ways_.shift(std::size_t(square), way);
 }
 
 std::size_t NearSquares::bytes() const {
   std::size_t bytes = search_.bytes();
-  bytes += squares_.size() * (sizeof(Square) + sizeof(SquareBox) + 9) + 4 * stride_.size();
+  bytes += squares_.size() * (sizeof(Square) + sizeof(SquareBox) + 17) + 4 * stride_.size();
   for (const auto& part : parts_) bytes += part->beside.bytes();
   bytes += all_squares_ * (sizeof(LeftOut) + 4);
-  bytes += listed_.bytes() + within_.bytes() + still_.bytes() + corner_pairs_.bytes();
-  bytes += 4 * until_.capacity();
-  bytes += ways_.bytes();
+  for (const SquarePairs* of : {&listed_, &pruned_, &within_, &still_, &corner_pairs_})
+    bytes += of->bytes();
+  bytes += 4 * until_.capacity() + ways_.bytes();
   for (const SquarePairs& p : found_) bytes += p.bytes();
-  return bytes + beside_.bytes() + seams_.bytes();
+  return bytes + beside_.bytes() + seams_.bytes() + allowances_.bytes();
 }
 
 }  // namespace weft::physics

@@ -4,9 +4,10 @@
 // may touch have moved so far against each other (blocks.h), no others can touch. Then all are found again, by the
 // same search as particles (pair_search.h).
 //
-// Of the listed pairs, and of those that share a corner, most sleep: how far apart they are is measured when they
-// are looked at, and they are not looked at again before they may have come within range (square_ways.h). So what is
-// measured in an interval are those that may touch in it.
+// From this list a shorter one is pruned, of what may come within range while bodies keep to their allowances
+// (allowances.h). Most of the others sleep: how far apart they are is measured when they are looked at, and they are not
+// looked at again before their squares have come as far. Pairs that share a corner sleep until their corners have come far enough from each other
+// (corner_ways.h). So what is measured in an interval are those that may touch in it, and few others.
 //
 // Those that share a corner are looked at apart (beside_squares.h; of meshes beside_triangles.h). Triangles
 // that seams bring beside each other are no pairs (over_seams.h).
@@ -15,12 +16,13 @@
 #include <memory>
 #include <vector>
 
+#include "physics/contact/self/allowances.h"
 #include "physics/contact/self/beside_squares.h"
 #include "physics/contact/self/beside_triangles.h"
+#include "physics/contact/self/corner_ways.h"
 #include "physics/contact/self/mesh_squares.h"
 #include "physics/contact/self/over_seams.h"
 #include "physics/contact/self/pair_search.h"
-#include "physics/contact/self/square_ways.h"
 
 namespace weft::physics {
 
@@ -29,7 +31,7 @@ class NearSquares {
   // Particles of sheets are bodies, named as in pair_search.h, and so are the squares of grids that begin
   // with them; those of meshes (mesh_squares.h) have the numbers beyond. `rest`: of every body.
   NearSquares(const std::vector<Sheet>& sheets, const std::vector<NamedSheet>& named,
-              const std::vector<RestPlace>& rest, const KernelTable& kernels);
+              const Blocks& blocks, const std::vector<RestPlace>& rest, const KernelTable& kernels);
 
   const std::vector<Square>& squares() const { return squares_; }
   // What each of them owns; empty: all own all.
@@ -46,7 +48,7 @@ class NearSquares {
   // No pair sleeps: bodies are elsewhere than where within() left them.
   void wake();
   // A body that was where it is now has been put elsewhere, so far [m].
-  void shift(std::int32_t body, float way) { ways_.shift(body, way); }
+  void shift(std::int32_t body, float way);
   // Of the listed pairs those that come within `range` of each other in an interval [m], and of those
   // that share a corner what does not lie flat. Once an interval, always with the same range: pairs sleep.
   const SquarePairs& within(float range, const Place* place, const Displacement* moved,
@@ -55,7 +57,7 @@ class NearSquares {
   // otherwise by more than half of the difference.
   const SquarePairs& still_within(float range, const Place* place, const Displacement* moved,
                                   Threads& threads);
-  // Of all pairs, whether they sleep or not, those of squares with a body that is marked; the others have come to
+  // Of all listed pairs, whether they sleep or not, those of squares with a body that is marked; the others have come to
   // move otherwise by no more than `most` [m] since within().
   const SquarePairs& strayed_within(float range, float most,
                                     const std::vector<std::uint8_t>& strayed, const Place* place,
@@ -85,15 +87,16 @@ class NearSquares {
   bool beside(std::int32_t p, std::int32_t q) const;
   template <class Visit>
   void share_squares(Threads& threads, const Visit& visit) const;
-  void bound(const Place* place, const Displacement* moved, Threads& threads);
+  void come_apart(const Displacement* moved, Threads& threads);
   void bound_square(std::size_t n, const Place* place, const Displacement* moved);
-  static bool sleeps(const SquarePairs& pairs, std::size_t pair, const Ways& ways, float farther,
-                     float& until);
   template <class Drop>
   static void drop_pairs(SquarePairs& pairs, const Drop& drop);
-  template <class Until>
-  void drop_far(SquarePairs& pairs, const Ways& ways, const Until& until, float range,
-                const Place* place, Room& room);
+  void prune(float range, const Place* place, const Displacement* moved, Threads& threads);
+  void widen_boxes(const Place* place, Threads& threads);
+  void drop_beyond_allowances(SquarePairs& pairs, float range, const Place* place, Room& room);
+  void measure_gaps(const SquarePairs& pairs, const Place* place, Room& room) const;
+  bool sleeps(const SquarePairs& pairs, std::size_t pair, float farther);
+  void drop_far(SquarePairs& pairs, float range, const Place* place, Room& room);
   void drop_alike(SquarePairs& pairs, const Place* place, Room& room);
   float box_gap(std::int32_t a, std::int32_t b) const;
   template <class Work>
@@ -114,6 +117,7 @@ class NearSquares {
   float list_whole(const Place* now, Spread& box, std::size_t& count);
   void fill_box(std::size_t sorted, const Place* now);
   void find_in(std::size_t chunk);
+  void wake_listed();
 
   const std::vector<Sheet>& sheets_;
   const std::vector<NamedSheet>& named_;
@@ -124,7 +128,8 @@ class NearSquares {
   std::vector<float> most_squared_;  // m², of every square, as LeftOut::most_squared
   std::vector<std::unique_ptr<Part>> parts_;
   const OverSeams seams_;
-  SquareWays ways_;
+  CornerWays ways_;        // of grids
+  Allowances allowances_;  // since the list was pruned
   BesideSquares beside_;
 
   PairSearch search_;                  // among the middles of squares that are whole
@@ -134,15 +139,18 @@ class NearSquares {
   std::vector<SquarePairs> found_;     // of every chunk of the search, or of the list
   std::vector<LeftOut> left_out_;      // squares that are torn
   std::vector<std::uint8_t> passing_;  // vertices of squares that are left out; empty: none
-  SquarePairs listed_, within_, still_;
-  SquarePairs corner_pairs_;  // those that share a corner, before they are looked at
-  std::vector<float> until_;  // m, of every listed pair, until when it sleeps
-  std::vector<Room> rooms_;   // of every piece of a list
+  SquarePairs listed_, pruned_, within_, still_;
+  SquarePairs corner_pairs_;      // those that share a corner, before they are looked at
+  std::vector<float> until_;      // m, in ways, of every listed pair, until when it sleeps
+  std::vector<float> allowance_;  // m, of every square: the greatest of its corners,
+  std::vector<float> way_;        // and how far it has come at most, with that
+  std::vector<Room> rooms_;       // of every piece of a list
   std::size_t turn_ = 0;
   float within_range_ = 0;     // m: of within_
   float most_ = 0, skin_ = 0;  // m: most_ is what any pair is kept apart at most
   std::size_t all_squares_ = 0;
-  bool awake_ = true;  // all pairs are
+  bool awake_ = true;   // all pairs are
+  bool boxed_ = false;  // boxes are about squares in this interval
 };
 
 }  // namespace weft::physics

@@ -17,10 +17,10 @@ namespace {
 constexpr int kRounds = 12;
 // Nearer than that two may pass through each other [of the distance held].
 constexpr float kNear = 2 * kLeastApart;
-// Of the distance held: where nothing is changed by more, neither pairs that contact has found to be farther apart
-// than it, nor those that sleep, may pass: d > r + 1.2 m (square_ways.h), and passing takes m + 2 c > 0.9 d.
+// Of the distance held: where nothing is changed by more, pairs do not pass that contact knows to stay farther apart
+// than its reach.
 constexpr float kMostChange = 0.45f;
-static_assert(2 * kMostChange < 1 - kNear && 2 * kMostChange < 0.9f * kReach);
+static_assert(2 * kMostChange < kReach - kNear);
 
 }  // namespace
 

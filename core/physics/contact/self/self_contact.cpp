@@ -117,7 +117,7 @@ SelfContact::SelfContact(const Scene& scene, std::vector<Sheet> sheets, bool sur
     for (int j = 0; j < rows; j += step) bands_.push_back({n, j, std::min(step, rows - j)});
   }
   if (surfaces) {
-    near_ = std::make_unique<NearSquares>(sheets_, named_, rest_, kernels);
+    near_ = std::make_unique<NearSquares>(sheets_, named_, blocks_, rest_, kernels);
     surfaces_ =
         std::make_unique<ContactSolver<4>>(bodies_, answer_, kernels.sheets.contacts_of_four);
     zone_.resize(bodies_);

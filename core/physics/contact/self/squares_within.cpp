@@ -49,15 +49,16 @@ void NearSquares::share_squares(Threads& threads, const Visit& visit) const {
     });
 }
 
-// The boxes about all, and how far all have come.
-void NearSquares::bound(const Place* place, const Displacement* moved, Threads& threads) {
+// How far corners have come from each other.
+void NearSquares::come_apart(const Displacement* moved, Threads& threads) {
   if (ways_.too_long()) wake();
-  ways_.begin(moved);
-  share_squares(threads, [&](std::size_t n) {
-    bound_square(n, place, moved);
-    ways_.add(n, moved);
-  });
-  ways_.end();
+  const bool few = all_squares_ < kFewParticles;
+  for (std::size_t s = 0; s < sheets_.size(); ++s)
+    if (!sheets_[s].mesh)
+      threads.share(std::size_t(sheets_[s].points->rows), few, [&](std::size_t j) {
+        ways_.add(std::size_t(named_[s].name(int(j), 0)), sheets_[s].columns, moved);
+      });
+  awake_ = false;
 }
 
 // Of two boxes.
@@ -71,15 +72,6 @@ float NearSquares::box_gap(std::int32_t a, std::int32_t b) const {
   return std::sqrt(gap[0] + gap[1] + gap[2]);
 }
 
-// Whether a pair that may come so much farther before it is near comes nowhere near now. Tells until when it sleeps.
-bool NearSquares::sleeps(const SquarePairs& pairs, std::size_t pair, const Ways& ways,
-                         float farther, float& until) {
-  const std::int32_t a = pairs.owner[pair], b = pairs.neighbour[pair];
-  const float came = ways.of_last(a, b);
-  until = farther > came ? ways.until(a, b, farther - came) : SquareWays::kAlways;
-  return farther > came;
-}
-
 // Takes those out of a list for which drop(pair) holds.
 template <class Drop>
 void NearSquares::drop_pairs(SquarePairs& pairs, const Drop& drop) {
@@ -89,32 +81,54 @@ void NearSquares::drop_pairs(SquarePairs& pairs, const Drop& drop) {
   pairs.pad();
 }
 
-// Takes those out that come nowhere near by how far apart they are. Measured are those that have slept, and others by
-// turns, where they could sleep for a while: what moves fast is as far apart at most as the skin. until(number): of a
-// pair.
-template <class Until>
-void NearSquares::drop_far(SquarePairs& pairs, const Ways& ways, const Until& until, float range,
-                           const Place* place, Room& room) {
+// How far apart those of a list are.
+void NearSquares::measure_gaps(const SquarePairs& pairs, const Place* place, Room& room) const {
+  room.measured.resize(std::max(room.measured.size(), pairs.count + SquarePairs::kPadding));
+  kernels_.sheets.square_gaps({place, squares_.data(), int(pairs.count), pairs.owner.data(),
+                               pairs.neighbour.data(), room.measured.data()});
+}
+
+// Takes those out of the list that cannot come within range; they sleep.
+void NearSquares::drop_beyond_allowances(SquarePairs& pairs, float range, const Place* place,
+                                         Room& room) {
+  measure_gaps(pairs, place, room);
+  drop_pairs(pairs, [&](std::size_t pair) {
+    const auto a = std::size_t(pairs.owner[pair]), b = std::size_t(pairs.neighbour[pair]);
+    const float beyond = room.measured[pair] - range - (allowance_[a] + allowance_[b]);
+    float& until = until_[std::size_t(pairs.number[pair])];
+    until = beyond > 0 ? (way_[a] + way_[b] + beyond) * kRoundedDown : CornerWays::kAlways;
+    return beyond > 0;
+  });
+}
+
+// Whether a pair that shares a corner may come so much farther before it is near, and so comes nowhere near now. Notes
+// until when it sleeps.
+bool NearSquares::sleeps(const SquarePairs& pairs, std::size_t pair, float farther) {
+  const std::int32_t a = pairs.owner[pair], b = pairs.neighbour[pair];
+  const float came = ways_.of_last(a, b);
+  beside_.until(pairs.number[pair]) =
+      farther > came ? ways_.until(a, b, farther - came) : CornerWays::kAlways;
+  return farther > came;
+}
+
+// Takes those out that share a corner and come nowhere near by how far apart they are otherwise. Measured are those
+// that have slept, and others by turns.
+void NearSquares::drop_far(SquarePairs& pairs, float range, const Place* place, Room& room) {
   SquarePairs& asked = room.asked;
   asked.count = 0;
   asked.reserve(pairs.count);
   for (std::size_t pair = 0; pair < pairs.count; ++pair) {
     const std::int32_t number = pairs.number[pair];
-    const bool due =
-        until(number) != SquareWays::kAlways || (std::size_t(number) + turn_) % kTurns == 0;
-    if (due && kTurns * ways.of_last(pairs.owner[pair], pairs.neighbour[pair]) < skin_)
+    if (beside_.until(number) != CornerWays::kAlways || (std::size_t(number) + turn_) % kTurns == 0)
       asked.put(pairs.owner[pair], pairs.neighbour[pair], std::int32_t(pair));
   }
   if (asked.count == 0) return;
   asked.pad();
-  room.measured.resize(std::max(room.measured.size(), asked.count + SquarePairs::kPadding));
-  kernels_.sheets.square_gaps({place, squares_.data(), int(asked.count), asked.owner.data(),
-                               asked.neighbour.data(), room.measured.data()});
+  measure_gaps(asked, place, room);
   std::size_t next = 0;
   drop_pairs(pairs, [&](std::size_t pair) {
     if (next == asked.count || asked.number[next] != std::int32_t(pair)) return false;
-    const float farther = room.measured[next++] - range;
-    return sleeps(pairs, pair, ways, farther, until(pairs.number[pair]));
+    return sleeps(pairs, pair, room.measured[next++] - range);
   });
 }
 
@@ -125,7 +139,7 @@ void NearSquares::drop_alike(SquarePairs& pairs, const Place* place, Room& room)
                 room.measured.data());
   drop_pairs(pairs, [&](std::size_t pair) {
     const float change = room.measured[pair];
-    sleeps(pairs, pair, ways_.beside(), change, beside_.until(pairs.number[pair]));
+    sleeps(pairs, pair, change);
     return change >= 0;
   });
 }
@@ -144,24 +158,64 @@ void NearSquares::add_pieces(std::size_t pairs, SquarePairs& to, Threads& thread
   to.add(found_, pieces);
 }
 
+// The boxes about squares, with their allowances, and how far they have come.
+void NearSquares::widen_boxes(const Place* place, Threads& threads) {
+  using Record = Eigen::Array4f;
+  share_squares(threads, [&](std::size_t n) {
+    const std::int32_t* const corner = squares_[n].corner;
+    Record low = Record::Map(place[corner[0]].x), high = low;
+    float came = 0, allowance = 0;
+    for (int c = 0; c < 4; ++c) {
+      const Record at = Record::Map(place[corner[c]].x);
+      low = low.min(at);
+      high = high.max(at);
+      came = std::max(came, allowances_.came(corner[c]));
+      allowance = std::max(allowance, allowances_.of(corner[c]));
+    }
+    low -= allowance;
+    high += allowance;
+    boxes_[n] = {{low[0], low[1], low[2]}, 0, {high[0], high[1], high[2]}, 0};
+    way_[n] = (way_[n] - allowance_[n] + came + allowance) / kRoundedDown;
+    allowance_[n] = allowance;
+  });
+}
+
+// Leaves those of the list that may come within range while allowances hold, which are given now.
+void NearSquares::prune(float range, const Place* place, const Displacement* moved,
+                        Threads& threads) {
+  if (*std::ranges::max_element(way_) > CornerWays::kLongest) wake_listed();
+  allowances_.give(place, moved, threads);
+  widen_boxes(place, threads);
+  pruned_.count = 0;
+  add_pieces(listed_.count, pruned_, threads,
+             [&](std::size_t k, std::size_t first, std::size_t count) {
+               SquarePairs& found = found_[k];
+               found.reserve(count);
+               found.count = std::size_t(kernels_.sheets.squares_awake(
+                   {boxes_.data(), int(count), listed_.owner.data() + first,
+                    listed_.neighbour.data() + first, until_.data() + first, way_.data(), range,
+                    std::int32_t(first), found.owner.data(), found.neighbour.data(),
+                    found.number.data()}));
+               drop_beyond_allowances(found, range, place, rooms_[k]);
+             });
+}
+
 const SquarePairs& NearSquares::within(float range, const Place* place, const Displacement* moved,
                                        Threads& threads) {
   within_range_ = range;
+  boxed_ = false;
   ++turn_;
-  bound(place, moved, threads);
-  awake_ = false;
+  come_apart(moved, threads);
+  if (!allowances_.hold(place, moved, threads)) prune(range, place, moved, threads);
   corner_pairs_.count = 0;
-  beside_.list(ways_.beside(), passing_, threads);
+  beside_.list(ways_, passing_, threads);
   corner_pairs_.add(beside_.pairs(), beside_.pairs().size());
   within_.count = 0;
   add_pieces(corner_pairs_.count, within_, threads,
              [&](std::size_t k, std::size_t first, std::size_t count) {
                SquarePairs& found = found_[k];
                found.take(corner_pairs_, first, count);
-               drop_far(
-                   found, ways_.beside(),
-                   [&](std::int32_t number) -> float& { return beside_.until(number); }, range,
-                   place, rooms_[k]);
+               drop_far(found, range, place, rooms_[k]);
                drop_alike(found, place, rooms_[k]);
                keep_not_apart(range, place, moved, found);
              });
@@ -170,25 +224,11 @@ const SquarePairs& NearSquares::within(float range, const Place* place, const Di
     part->beside.list(place, passing_, threads);
     corner_pairs_.add(part->beside.pairs(), part->beside.pairs().size());
   }
-  add_pieces(corner_pairs_.count, within_, threads,
-             [&](std::size_t k, std::size_t first, std::size_t count) {
-               find_not_apart(corner_pairs_, first, count, range, place, moved, found_[k]);
-             });
-  add_pieces(listed_.count, within_, threads,
-             [&](std::size_t k, std::size_t first, std::size_t count) {
-               SquarePairs& found = found_[k];
-               found.reserve(count);
-               found.count = std::size_t(kernels_.sheets.squares_awake(
-                   {boxes_.data(), int(count), listed_.owner.data() + first,
-                    listed_.neighbour.data() + first, until_.data() + first,
-                    ways_.anywhere().all.data(), range, std::int32_t(first), found.owner.data(),
-                    found.neighbour.data(), found.number.data()}));
-               drop_far(
-                   found, ways_.anywhere(),
-                   [&](std::int32_t number) -> float& { return until_[std::size_t(number)]; },
-                   range, place, rooms_[k]);
-               keep_not_apart(range, place, moved, found);
-             });
+  for (const SquarePairs* pairs : {&corner_pairs_, &pruned_})
+    add_pieces(pairs->count, within_, threads,
+               [&](std::size_t k, std::size_t first, std::size_t count) {
+                 find_not_apart(*pairs, first, count, range, place, moved, found_[k]);
+               });
   return within_;
 }
 
@@ -266,8 +306,9 @@ const SquarePairs& NearSquares::strayed_within(float range, float most,
                                                Threads& threads) {
   share_squares(threads, [&](std::size_t n) {
     asked_[n] = has_corner_in(squares_[n], strayed);
-    if (asked_[n]) bound_square(n, place, moved);
+    if (asked_[n] || !boxed_) bound_square(n, place, moved);
   });
+  boxed_ = true;
   still_.count = 0;
   add_asked_beside(range, range + most, place, moved, threads);
   add_asked(listed_, range, range + most, place, moved, threads);
