@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "physics/contact/colliders/shapes.h"
+#include "physics/contact/friction.h"
 #include "physics/contact/self/contact_solver.h"
 #include "weft/vec3.h"
 
@@ -105,8 +106,8 @@ float BodyAnswer::sweep(Displacement* change) {
     const float out = dot3(way, l.normal);
     const float pressed = std::max(0.0f, l.pressed - left);
     for (int k = 0; k < 3; ++k) wanted[k] = l.rubbed[k] - (way[k] - out * l.normal[k]);
-    const float square = dot3(wanted, wanted), holds = l.statik * pressed;
-    const float share = square <= holds * holds ? 1 : l.dynamic * pressed / std::sqrt(square);
+    const float slide = std::sqrt(dot3(wanted, wanted));
+    const auto share = float(taken_by_friction(l.statik, l.dynamic, slide, pressed));
     for (int k = 0; k < 3; ++k) {
       const float rubbed = wanted[k] * share;
       const float by = (pressed - l.pressed) * l.normal[k] + (rubbed - l.rubbed[k]);
