@@ -88,6 +88,27 @@ TEST_P(Origin, MovesAsNearZero) {
               kFar[0] * there.momentum[1] - kFar[1] * there.momentum[0], 0.1);
 }
 
+// Positions of some meters round by so much that stiff springs would make motion of it.
+TEST_P(Origin, SomeMetersAwayMakeNoMotion) {
+  if (GetParam() == Method::positional) return;
+  Scene scene;
+  scene.time.substeps = kAutoSubsteps;
+  scene.solver.method = GetParam();
+  scene.cloths.emplace_back();
+  scene.cloths[0].grid = {20, 20, {0, 0, 0}, {1, 0, 0}, {0, -1, 0}, 0};
+  scene.cloths[0].density = 0.1;
+  scene.cloths[0].stiffness = {1e5, 1e5, 2e4};
+  for (int i = 0; i < 20; ++i) scene.cloths[0].pins.push_back({i, 0, {}});
+  const auto motion = [&](const Vec3& where) {
+    Simulation simulation(moved(scene, where));
+    for (int frame = 0; frame < 20; ++frame) simulation.advance_frame();
+    return simulation.report().energy.kinetic;
+  };
+  const double near = motion({});
+  for (const Vec3& where : {Vec3{3, 0, 0}, Vec3{0, 5, 0}, Vec3{7, 7, 0}, Vec3{20, 1, -6}})
+    EXPECT_LT(motion(where), 2 * near + 1e-7) << where[0];
+}
+
 INSTANTIATE_TEST_SUITE_P(, Origin,
                          testing::Values(Method::spring, Method::positional, Method::compliant));
 

@@ -37,7 +37,7 @@ Scene moved(Scene scene, const Vec3& by) {
 namespace physics {
 
 Vec3 origin_of(const Scene& scene) {
-  constexpr double kNear = 8;  // m
+  constexpr double kNear = 1;  // m
   Vec3 low, high, middle;
   low.fill(std::numeric_limits<double>::infinity());
   high.fill(-std::numeric_limits<double>::infinity());

@@ -302,11 +302,10 @@ int Simulation::State::substeps_within(double limit) const {
 }
 
 void Simulation::State::follow_stretch(double limit) {
-  const int count = substeps_within(limit);
+  if (hands_.act()) time_step.followed.begin_again();
   const int now = time_step.substeps;
-  // A few percent of slack either way keeps the substep from changing every frame.
-  if (count <= now && count >= now - now / 12) return;
-  set_substeps(count);
+  const int count = time_step.followed.next(substeps_within(limit), now, time());
+  if (count != now) set_substeps(count);
 }
 
 }  // namespace weft

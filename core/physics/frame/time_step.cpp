@@ -20,6 +20,23 @@ constexpr double kFolded = 2;
 
 }  // namespace
 
+// One of so many substeps is added to what is needed, so that what is stretched a little more needs no other change.
+constexpr int kRoom = 6;
+int FollowedSubsteps::next(int needed, int now, double time) {
+  const auto begin = [&] { since_ = time, most_ = 0; };
+  if (needed > now) {
+    begin();
+    return needed + needed / kRoom;
+  }
+  most_ = std::max(most_, needed);
+  if (time >= since_ && time - since_ < calm_) return now;
+  const int fewer = most_;
+  begin();
+  if (fewer >= now - 2 * now / kRoom) return now;  // not worth a change
+  calm_ *= 2;
+  return fewer;
+}
+
 StableSubsteps stable_substeps(const Cloths& cloths, std::span<const Spectrum> spectra) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   StableSubsteps stable{kNone, kNone};

@@ -13,7 +13,24 @@ namespace weft::physics {
 inline constexpr int kMostSubsteps = 100000;
 // s; below, single precision loses speeds of cm/s. The second is for substeps that stretch has made shorter.
 inline constexpr double kLeastSubstep = 1e-6, kLeastStretched = 2.5e-7;
-inline constexpr double kLimitShare = 0.9;  // of the stability limit, in automatic substeps
+inline constexpr double kLimitShare = 0.85;  // of the stability limit, in automatic substeps
+
+// How many substeps frames take as what they need changes. Leapfrog keeps an energy that depends on the substep: every
+// change makes what vibrates near the stability limit grow by some per cent on average, and changes to and fro would
+// heat a cloth without end. So fewer are taken only where they would have done for a while, and that gets twice as long
+// each time.
+class FollowedSubsteps {
+ public:
+  // The frame that ended at a time [s] needed so many; it had `now`. Returns how many the next one takes.
+  int next(int needed, int now, double time);
+  // What was needed so far tells nothing of what comes.
+  void begin_again() { calm_ = kCalm; }
+
+ private:
+  static constexpr double kCalm = 1;  // s
+  double since_ = 0, calm_ = kCalm;   // s
+  int most_ = 0;                      // needed since then
+};
 
 struct TimeStep {
   Method method;     // the scene's, or the stable one put in its place
@@ -22,8 +39,9 @@ struct TimeStep {
   // s; by which velocities lie behind the positions: half a substep with explicit springs and the first
   // order of methods that project, whose first substep takes them half of it ahead (step/stage.h).
   double lag = 0;
-  double limit = 0;               // s; the stability limit at the end of the last frame (explicit)
-  std::vector<Spectrum> spectra;  // of every cloth as it starts (explicit)
+  FollowedSubsteps followed = {};  // explicit
+  double limit = 0;                // s; the stability limit at the end of the last frame (explicit)
+  std::vector<Spectrum> spectra;   // of every cloth as it starts (explicit)
 
   void take(int count, double frame) {
     substeps = count;
