@@ -14,9 +14,10 @@ inline constexpr int kStrains = 3;
 struct RecordRow {
   int columns;
   Row3 x, v;
-  const float* w;    // 1/kg
-  float* records;    // lane 0
-  float inverse_dt;  // 1/s; velocities gain corrections times this
+  const float* w;     // 1/kg
+  float* records;     // lane 0
+  float inverse_dt;   // 1/s; velocities gain corrections times this
+  Row3 left, v_left;  // what positions and velocities lack by rounding [m, m/s]; null: left aside
 };
 
 // 16 edges, no two of which share a vertex; ends are told by where their records begin. Those of no edge join

@@ -7,6 +7,7 @@
 // 2006, "A quadratic bending model for inextensible surfaces"): Δλ = -P J with one matrix for all motion,
 // x_i <- x_i + w_i Σ_k a_ki Δλ_k.
 #include "physics/kernels/hinges.h"
+#include "physics/kernels/kept.h"
 #include "physics/kernels/mesh_sweep.h"
 #include "physics/kernels/projection.h"
 #include "physics/kernels/records.h"
@@ -76,6 +77,19 @@ void sweep(const EdgeSweep& given) {
       project_edges<R, kMidst>(s, s.batches[n], n, lane);
 }
 
+void store_records_finely(const RecordRow& r) {
+  for (int i = 0; i < padded(r.columns); i += kLanes) {
+    const Wide3 change = records_in_row(r.records + std::ptrdiff_t(kRecord) * i + 4, kRecord).xyz;
+    Kept x{load3(r.x, i), load3(r.left, i)}, v{load3(r.v, i), load3(r.v_left, i)};
+    x.move<true>(change);
+    v.move<true>(change * wide(r.inverse_dt));
+    store3(r.x, i, x.value);
+    store3(r.v, i, v.value);
+    store3(r.left, i, x.left);
+    store3(r.v_left, i, v.left);
+  }
+}
+
 }  // namespace
 
 void load_records(const RecordRow& r) {
@@ -87,6 +101,7 @@ void load_records(const RecordRow& r) {
 }
 
 void store_records(const RecordRow& r) {
+  if (r.left.x) return store_records_finely(r);
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide3 change = records_in_row(r.records + std::ptrdiff_t(kRecord) * i + 4, kRecord).xyz;
     store3(r.x, i, load3(r.x, i) + change);

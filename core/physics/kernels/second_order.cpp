@@ -18,6 +18,7 @@
 // of a motion that is not there.
 #include "physics/kernels/second_order.h"
 
+#include "physics/kernels/kept.h"
 #include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
@@ -43,17 +44,6 @@ struct Slowed {
         euler_lost(r.dt * r.drag * euler) {}
 };
 
-// A place or a velocity, and what rounding has left of its steps.
-struct Kept {
-  Wide3 value, left{};
-  // By a step and what was left of those before.
-  template <bool kFine>
-  WEFT_INLINE void move(Wide3 step) {
-    const Wide3 by = kFine ? step + left : step, to = value + by;
-    if constexpr (kFine) left = by - (to - value);
-    value = to;
-  }
-};
 template <bool kFine>
 WEFT_INLINE Kept kept_at(ConstRow3 row, ConstRow3 left, int i) {
   return {positive_zeros(load3(row, i)), kFine ? load3(left, i) : Wide3{}};

@@ -25,6 +25,13 @@ std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* mul
 // After the sweeps: positions and velocities gain the corrections, which are then zero again.
 std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections);
 
+// Moves a place or a velocity by a step and what rounding had left of those before, and keeps what it leaves now.
+inline void move_keeping(float& value, float& left, double step) {
+  const double to = double(value) + double(left) + step;
+  value = float(to);
+  left = float(to - double(value));
+}
+
 // What the second-order substep keeps of the substep before (Particles::previous is its position).
 struct History {
   explicit History(const Particles& particles);
@@ -37,6 +44,8 @@ struct History {
   // A change of velocity that was so all along: the past is another one by that, and by so much in one
   // component of the position before [m].
   void shift(Particles& particles, int component, int row, int column, float previous, float v);
+  // Whether what rounding leaves is kept, in substeps of dt.
+  bool keeps_left(double dt) const;
   Rows v_before, v_end;
   Rows left, v_left;  // what positions and velocities lack by rounding [m, m/s], in fine substeps
   AlignedArray<float> inverse_mass;

@@ -24,7 +24,7 @@ SecondOrderRow rows_of(const ClothParts& parts, History& h, Rows* corrections, i
   r.previous = l.previous.row(j);
   r.v_before = h.v_before.row(j);
   r.v_end = h.v_end.row(j);
-  if (dt < kFine) {
+  if (h.keeps_left(dt)) {
     r.left = h.left.row(j);
     r.v_left = h.v_left.row(j);
   }
@@ -51,7 +51,7 @@ class Predict final : public RowStage {
     std::copy_n(mass.data(), mass.size(), history_.inverse_mass.data());
   }
   void prepare(double dt) override {
-    if (dt >= kFine || history_.left.bytes() > 0) return;
+    if (!history_.keeps_left(dt) || history_.left.bytes() > 0) return;
     const Particles& l = parts_.particles;
     history_.left = Rows(l.rows, l.stride);
     history_.v_left = Rows(l.rows, l.stride);
@@ -135,6 +135,10 @@ void History::shift(Particles& particles, int component, int row, int column, fl
   particles.previous.at(component, row, column) += previous;
   v_before.at(component, row, column) += v;
   v_end.at(component, row, column) += v;
+}
+
+bool History::keeps_left(double dt) const {
+  return dt < kFine;
 }
 
 std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,

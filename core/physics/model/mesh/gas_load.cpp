@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "physics/model/number.h"
-#include "physics/model/push.h"
+#include "physics/model/projected_motion.h"
 #include "physics/step/threads.h"
 #include "weft/vec3.h"
 
@@ -26,10 +26,11 @@ std::string words_of(const Pressure& pressure, const Gas& gas) {
 
 class PressureStage final : public WholeStage {
  public:
-  PressureStage(const ClothParts& parts, const Gas& gas)
+  PressureStage(const ClothParts& parts, const Gas& gas, History* history)
       : WholeStage("pressure", words_of(parts.cloth.pressure, gas), gas.triangles(), "triangles"),
         parts_(parts),
         gas_(gas),
+        history_(history),
         work_(gas.work()),
         volumes_(parts_in(gas.triangles())),
         growths_(parts_in(gas.points())) {}
@@ -92,6 +93,7 @@ class PressureStage final : public WholeStage {
     Particles& particles = parts_.particles;
     const bool forces = is_explicit(parts_.method);
     const double time = push_time(parts_, s.dt), kick = forces ? s.kick : time;
+    const bool keeps = history_ && history_->keeps_left(s.dt);
     for (int p = span.begin; p < span.end; ++p)
       for (const auto& [place, number] : gas_.members(p)) {
         const auto [j, i] = place;
@@ -100,6 +102,11 @@ class PressureStage final : public WholeStage {
         for (int k = 0; k < 3; ++k) {
           const double gained = gain * work_.gradients[std::size_t(p)][std::size_t(k)];
           float &x = particles.x.at(k, j, i), &v = particles.v.at(k, j, i);
+          if (keeps) {
+            move_keeping(v, history_->v_left.at(k, j, i), gained);
+            move_keeping(x, history_->left.at(k, j, i), gained * time);
+            continue;
+          }
           v = float(double(v) + gained);
           if (!forces) x = float(double(x) + gained * time);
         }
@@ -108,6 +115,7 @@ class PressureStage final : public WholeStage {
 
   ClothParts parts_;
   const Gas& gas_;
+  History* history_;  // or null
   Gas::Work work_;
   std::vector<double> volumes_, growths_;  // of parts
 };
@@ -165,8 +173,8 @@ double GasLoad::omega_squared() const {
          std::abs(gas_.law().over(share, volume)) * turning;
 }
 
-std::unique_ptr<Stage> make_pressure(const ClothParts& parts, const Gas& gas) {
-  return std::make_unique<PressureStage>(parts, gas);
+std::unique_ptr<Stage> make_pressure(const ClothParts& parts, const Gas& gas, History* history) {
+  return std::make_unique<PressureStage>(parts, gas, history);
 }
 
 }  // namespace weft::physics

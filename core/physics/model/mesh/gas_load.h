@@ -32,6 +32,7 @@ class GasLoad final : public Load {
 // "pressure". With explicit methods a force at the start of a substep, which goes into velocities before what
 // moves particles; with those that project it comes after predict, with the pressure at the end of the substep:
 // the volume is a degree of freedom by itself, which is solved for, so that no stiffness of the gas is too much.
-std::unique_ptr<Stage> make_pressure(const ClothParts& parts, const Gas& gas);
+// `history`: of the second order, else null.
+std::unique_ptr<Stage> make_pressure(const ClothParts& parts, const Gas& gas, History* history);
 
 }  // namespace weft::physics

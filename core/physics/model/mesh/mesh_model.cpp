@@ -107,7 +107,7 @@ void MeshModel::append_forces(StageList& list) {
 }
 
 void MeshModel::append_gas(StageList& list) {
-  list.choose("pressure", gas_ ? make_pressure(parts_, gas_->gas()) : nullptr,
+  list.choose("pressure", gas_ ? make_pressure(parts_, gas_->gas(), history_.get()) : nullptr,
               "the cloth has no pressure");
 }
 
@@ -141,16 +141,17 @@ void MeshModel::append_projections(StageList& list) {
   else if (solver.sweep == Sweep::line)
     append_strands(list);
   else
-    midst_.edges = edge_sweeps().append_edges(solver.iterations, list);
+    midst_.edges = edge_sweeps().append_edges(solver.iterations, history_.get(), list);
   if (material_.bends)
-    sweeps().append_hinges(list);
+    sweeps().append_hinges(history_.get(), list);
   else
     list.skip("bending", "bending is 0");
   if (history_) list.stages.push_back(make_velocity_second_order(parts_, *history_, nullptr));
 }
 
 void MeshModel::append_strands(StageList& list) {
-  StrandSweeps sweeps(parts_, edges_, material_.stiffness, strands(), tearing_.get());
+  StrandSweeps sweeps(parts_, edges_, material_.stiffness, strands(), tearing_.get(),
+                      history_.get());
   list.stages.push_back(sweeps.stage(parts_.scene.solver.iterations, true));
   midst_.edges = sweeps.midst();
 }
@@ -191,16 +192,16 @@ void MeshModel::append_membrane(StageList& list) {
   const Solver& solver = parts_.scene.solver;
   StrainSweeps& strains = strain_sweeps();
   if (solver.sweep != Sweep::line || tearing_) {
-    sweeps_->append_strains(solver.iterations, true, list);
+    sweeps_->append_strains(solver.iterations, true, history_.get(), list);
     midst_.triangles = strains.midst();
     return;
   }
   StrandSweeps sweeps(parts_, edges_,
                       std::make_unique<StrandMembrane>(parts_, triangles_, edges_, strains),
-                      strands());
+                      strands(), history_.get());
   for (int n = 0; n < solver.iterations; ++n) {
     list.stages.push_back(sweeps.stage(1, n == 0));
-    sweeps_->append_strains(1, false, list);
+    sweeps_->append_strains(1, false, history_.get(), list);
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "physics/model/push.h"
+#include "physics/model/projected_motion.h"
 
 namespace weft::physics {
 namespace {
@@ -11,7 +11,7 @@ RecordRow record_row_of(const ClothParts& parts, AlignedArray<float>& records, i
                         float inverse_dt) {
   Particles& p = parts.particles;
   const std::size_t at = std::size_t(kRecord) * std::size_t(j) * std::size_t(p.stride);
-  return {p.count(j), p.x.row(j), p.v.row(j), p.w(j), records.data() + at, inverse_dt};
+  return {p.count(j), p.x.row(j), p.v.row(j), p.w(j), records.data() + at, inverse_dt, {}, {}};
 }
 
 class LoadRecords final : public RowStage {
@@ -41,14 +41,20 @@ class LoadRecords final : public RowStage {
 
 class StoreRecords final : public RowStage {
  public:
-  StoreRecords(const ClothParts& parts, AlignedArray<float>& records, bool limit)
+  StoreRecords(const ClothParts& parts, AlignedArray<float>& records, bool limit, History* history)
       : RowStage("store", "positions and velocities gain the corrections", 0,
                  parts.particles.count(), "particles"),
         parts_(parts),
         records_(records),
+        history_(history),
         limit_(limit) {}
   void run(int j, const Substep& s) override {
-    parts_.kernels.mesh.store_records(record_row_of(parts_, records_, j, gain(s.dt)));
+    RecordRow row = record_row_of(parts_, records_, j, gain(s.dt));
+    if (history_ && history_->keeps_left(s.dt)) {
+      row.left = history_->left.row(j);
+      row.v_left = history_->v_left.row(j);
+    }
+    parts_.kernels.mesh.store_records(row);
   }
 
  private:
@@ -57,6 +63,7 @@ class StoreRecords final : public RowStage {
   }
   ClothParts parts_;
   AlignedArray<float>& records_;
+  History* history_;  // or null
   bool limit_;
 };
 
@@ -80,8 +87,8 @@ std::unique_ptr<RowStage> make_load_records(const ClothParts& parts, AlignedArra
 }
 
 std::unique_ptr<RowStage> make_store_records(const ClothParts& parts, AlignedArray<float>& records,
-                                             bool limit) {
-  return std::make_unique<StoreRecords>(parts, records, limit);
+                                             bool limit, History* history) {
+  return std::make_unique<StoreRecords>(parts, records, limit, history);
 }
 
 }  // namespace weft::physics

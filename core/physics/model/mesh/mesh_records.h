@@ -16,8 +16,9 @@ std::int32_t offset_of_nobody(const Particles& particles, int row, int n);
 // Row j and those that its constraints reach are there after its turn, and stay until they are stored.
 std::unique_ptr<RowStage> make_load_records(const ClothParts& parts, AlignedArray<float>& records,
                                             int reach);
-// `limit`: corrections are of a substep's end, and change velocities at once.
+// `limit`: corrections are of a substep's end, and change velocities at once. `history`: of the second order, which
+// keeps what rounding leaves, else null.
 std::unique_ptr<RowStage> make_store_records(const ClothParts& parts, AlignedArray<float>& records,
-                                             bool limit);
+                                             bool limit, History* history);
 
 }  // namespace weft::physics

@@ -221,7 +221,8 @@ void MeshSweeps::append_seams(StageList& list) {
     list.stages.push_back(std::move(seams));
 }
 
-std::vector<const float*> MeshSweeps::append_edges(int iterations, StageList& list) {
+std::vector<const float*> MeshSweeps::append_edges(int iterations, History* history,
+                                                   StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 1));
   for (int n = 0; n < iterations; ++n) {
     for (int c = 0; c < int(edges_.size()); ++c) {
@@ -233,7 +234,7 @@ std::vector<const float*> MeshSweeps::append_edges(int iterations, StageList& li
     }
     append_seams(list);
   }
-  list.stages.push_back(make_store_records(parts_, records_, false));
+  list.stages.push_back(make_store_records(parts_, records_, false, history));
   std::vector<const float*> midst;
   for (const EdgePlace& at : place_)
     if (const AlignedArray<float>& all = edges_[std::size_t(at.colour)].midst; all.size() > 0)
@@ -248,7 +249,7 @@ void MeshSweeps::make_strains(const std::vector<RestTriangle>& triangles, bool k
   follow_torn();
 }
 
-void MeshSweeps::append_strains(int iterations, bool fresh, StageList& list) {
+void MeshSweeps::append_strains(int iterations, bool fresh, History* history, StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 1));
   for (int n = 0; n < iterations && strains_->damps_before(); ++n)
     strains_->append(1, {false, false, true}, list);
@@ -256,16 +257,16 @@ void MeshSweeps::append_strains(int iterations, bool fresh, StageList& list) {
     strains_->append(iterations, {fresh && n == 0, n + 1 == iterations}, list);
     append_seams(list);
   }
-  list.stages.push_back(make_store_records(parts_, records_, false));
+  list.stages.push_back(make_store_records(parts_, records_, false, history));
 }
 
-void MeshSweeps::append_hinges(StageList& list) {
+void MeshSweeps::append_hinges(History* history, StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 2));
   for (int c = 0; c < int(hinges_.size()); ++c)
     list.stages.push_back(std::make_unique<SweepHinges>(parts_, hinges_[std::size_t(c)],
                                                         *triangles_, records_, c, tearing_));
   append_seams(list);
-  list.stages.push_back(make_store_records(parts_, records_, false));
+  list.stages.push_back(make_store_records(parts_, records_, false, history));
 }
 
 void MeshSweeps::append_limit(double strain, StageList& list) {
@@ -274,7 +275,7 @@ void MeshSweeps::append_limit(double strain, StageList& list) {
     list.stages.push_back(std::make_unique<SweepEdges>(parts_, edges_[std::size_t(c)], records_,
                                                        EdgeOptions{c, true, 1 + strain, false}));
   append_seams(list);
-  list.stages.push_back(make_store_records(parts_, records_, true));
+  list.stages.push_back(make_store_records(parts_, records_, true, nullptr));
 }
 
 std::size_t MeshSweeps::bytes() const {

@@ -42,12 +42,13 @@ class MeshSweeps : private TornParts {
   void make_hinges(const std::vector<RestTriangle>& triangles);
   void make_strains(const std::vector<RestTriangle>& triangles, bool keeps_stress);
 
+  // `history`: of the second order, else null.
   // Edges as compliant constraints, so many times one after the other; positions and velocities gain the
   // corrections at the end. Returns where the last tells squared lengths, of each edge; none: nothing tears by strain.
-  std::vector<const float*> append_edges(int iterations, StageList& list);
-  void append_hinges(StageList& list);
+  std::vector<const float*> append_edges(int iterations, History* history, StageList& list);
+  void append_hinges(History* history, StageList& list);
   // The membrane of triangles, likewise; `fresh`: from no stress.
-  void append_strains(int iterations, bool fresh, StageList& list);
+  void append_strains(int iterations, bool fresh, History* history, StageList& list);
   // Nothing is longer than 1 + strain times its length.
   void append_limit(double strain, StageList& list);
 

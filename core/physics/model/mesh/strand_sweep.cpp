@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "physics/kernels/line.h"
-#include "physics/model/push.h"
+#include "physics/model/projected_motion.h"
 #include "physics/step/threads.h"
 
 namespace weft::physics {
@@ -40,9 +40,10 @@ class StrandSweeps::Solver : private TornParts {
  public:
   Solver(const ClothParts& parts, const MeshEdges& edges, double stiffness,
          std::unique_ptr<StrandMembrane> membrane, const std::vector<Strand>& strands,
-         MeshTearing* tearing)
+         MeshTearing* tearing, History* history)
       : parts_(parts),
         membrane_(std::move(membrane)),
+        history_(history),
         remembers_(membrane_ || parts.scene.solver.iterations > 1) {
     const std::vector<std::vector<int>> colours =
         coloured_strands(strands, parts.particles.count());
@@ -188,7 +189,7 @@ class StrandSweeps::Solver : private TornParts {
     p.fresh = fresh;
     p.scratch = m.scratch.data();
     membrane_ ? solve_membrane(b, p, dt) : solve_springs(b, p);
-    put_back(b, m, velocity_gain(parts_.scene.solver, dt));
+    put_back(b, m, dt);
   }
 
   void solve_springs(const StrandBatch& b, LineBatch& p) const {
@@ -238,7 +239,9 @@ class StrandSweeps::Solver : private TornParts {
     }
   }
 
-  void put_back(const StrandBatch& b, Memory& m, float gain) {
+  void put_back(const StrandBatch& b, Memory& m, double dt) {
+    const float gain = velocity_gain(parts_.scene.solver, dt);
+    if (history_ && history_->keeps_left(dt)) return put_back_keeping(b, m, gain);
     const Row3 x = parts_.particles.x.row(0), v = parts_.particles.v.row(0);
     const Row3 u = m.corrections.row(0);
     for (std::size_t n = 0; n < b.lanes.size(); ++n) {
@@ -249,8 +252,26 @@ class StrandSweeps::Solver : private TornParts {
     }
   }
 
+  void put_back_keeping(const StrandBatch& b, Memory& m, float gain) {
+    const auto put = [&](const float* u, float* x, float* left, float* v, float* v_left) {
+      for (std::size_t n = 0; n < b.lanes.size(); ++n) {
+        const int at = b.lanes[n];
+        if (at < 0) continue;
+        move_keeping(x[at], left[at], double(u[n]));
+        move_keeping(v[at], v_left[at], double(gain) * double(u[n]));
+      }
+    };
+    const Row3 u = m.corrections.row(0), x = parts_.particles.x.row(0);
+    const Row3 v = parts_.particles.v.row(0);
+    const Row3 left = history_->left.row(0), v_left = history_->v_left.row(0);
+    put(u.x, x.x, left.x, v.x, v_left.x);
+    put(u.y, x.y, left.y, v.y, v_left.y);
+    put(u.z, x.z, left.z, v.z, v_left.z);
+  }
+
   const ClothParts& parts_;
   std::unique_ptr<StrandMembrane> membrane_;  // null: springs
+  History* const history_;                    // or null
   const bool remembers_;                      // multipliers
   std::string words_;
   std::int64_t count_ = 0;
@@ -264,13 +285,16 @@ class StrandSweeps::Solver : private TornParts {
 };
 
 StrandSweeps::StrandSweeps(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-                           const std::vector<Strand>& strands, MeshTearing* tearing)
-    : solver_(std::make_shared<Solver>(parts, edges, stiffness, nullptr, strands, tearing)) {}
+                           const std::vector<Strand>& strands, MeshTearing* tearing,
+                           History* history)
+    : solver_(
+          std::make_shared<Solver>(parts, edges, stiffness, nullptr, strands, tearing, history)) {}
 
 StrandSweeps::StrandSweeps(const ClothParts& parts, const MeshEdges& edges,
                            std::unique_ptr<StrandMembrane> membrane,
-                           const std::vector<Strand>& strands)
-    : solver_(std::make_shared<Solver>(parts, edges, 0, std::move(membrane), strands, nullptr)) {}
+                           const std::vector<Strand>& strands, History* history)
+    : solver_(std::make_shared<Solver>(parts, edges, 0, std::move(membrane), strands, nullptr,
+                                       history)) {}
 
 // The first of a substep's tells the memory of all.
 class StrandSweeps::Sweep final : public WholeStage {

@@ -10,12 +10,14 @@ namespace weft::physics {
 // What is made once for the strands of one mesh; stages share it.
 class StrandSweeps {
  public:
-  // Of springs. `stiffness`: of an edge from each of its triangles [N/m]; `tearing`: null where it cannot.
+  // Of springs. `stiffness`: of an edge from each of its triangles [N/m]; `tearing`: null where it cannot; `history`:
+  // of the second order, else null.
   StrandSweeps(const ClothParts& parts, const MeshEdges& edges, double stiffness,
-               const std::vector<Strand>& strands, MeshTearing* tearing);
+               const std::vector<Strand>& strands, MeshTearing* tearing, History* history);
   // Of a membrane that cannot tear.
   StrandSweeps(const ClothParts& parts, const MeshEdges& edges,
-               std::unique_ptr<StrandMembrane> membrane, const std::vector<Strand>& strands);
+               std::unique_ptr<StrandMembrane> membrane, const std::vector<Strand>& strands,
+               History* history);
 
   // So many sweeps one after the other; `fresh`: with the first of a substep.
   std::unique_ptr<Stage> stage(int iterations, bool fresh);
