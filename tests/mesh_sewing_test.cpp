@@ -117,6 +117,38 @@ TEST(MeshSewing, KeepsMomentumAndClosesInTime) {
   }
 }
 
+// Seams draw two panels together with as much energy, and as fast, as they do with forces.
+TEST(MeshSewing, SecondOrderDrawsAsSpringsDo) {
+  for (const int points : {9, 25}) {
+    CutSheet sheet = cut_in_two({.nx = points, .ny = points});
+    for (std::size_t n = 0; n < sheet.original.size(); ++n)
+      if (sheet.original[n] % points > points / 2 || n >= sheet.whole->vertices.size())
+        sheet.parts->vertices[n][0] += 0.3;
+    for (const Membrane& membrane : {Membrane{}, kCanvas}) {
+      const auto draw = [&](const Solver& solver, int substeps) {
+        Scene scene = scene_of(sheet.parts);
+        scene.gravity = {};
+        scene.solver = solver;
+        scene.time.substeps = substeps;
+        scene.cloths[0].seams = sheet.seams;
+        if (!membrane.given()) scene.cloths[0].stiffness.structural = 500;
+        scene.cloths[0].membrane = membrane;
+        Simulation run(scene, {.threads = 1});
+        double most = 0;
+        for (int n = 0; n < 13; ++n) {
+          run.advance_frame();
+          most = std::max(most, run.report().energy.total);
+        }
+        return most;
+      };
+      const double springs = draw(by(Method::spring), kAutoSubsteps);
+      for (const Sweep sweep : {Sweep::gauss_seidel, Sweep::line})
+        EXPECT_NEAR(draw(projected(2, sweep, 1), 64), springs, 0.15 * springs)
+            << points << " points, sweep " << int(sweep);
+    }
+  }
+}
+
 // What is cut and sewn again hangs and swings as the sheet in one piece does.
 TEST(MeshSewing, IsAsTheSheetInOnePiece) {
   const MadeUpMesh made{.nx = 17, .ny = 17, .shift = 0.2};

@@ -33,54 +33,91 @@ Vec3 centre(std::size_t count, const Value& value, const InverseMass& w) {
 // One group in a substep.
 class Group {
  public:
-  Group(Particles& particles, Members members, double dt)
+  // `history`: of the second order, else null.
+  Group(Particles& particles, Members members, double dt, History* history)
       : particles_(particles),
         members_(members),
         dt_(dt),
+        history_(history),
         x_(mean_of(particles.x)),
         v_(mean_of(particles.v)),
-        before_(minus(x_, times(v_, dt))) {
-    for_each_free([&](std::size_t n, double) { far_ = std::max(far_, length(apart(n))); });
+        before_(history ? mean_of(particles.previous) : minus(x_, times(v_, dt))) {
+    for_each_free([&](std::size_t n, double mass) {
+      const Vec3 e = apart(n), d = minus(at(particles_.x, n), x_);
+      far_ = std::max(far_, length(e));
+      ee_ += mass * dot(e, e), de_ += mass * dot(d, e), dd_ += mass * dot(d, d);
+    });
   }
 
   bool within_reach() const { return far_ <= kSewingSpeed * dt_; }
 
-  void join(History* history) {
-    set(particles_.x, x_);
-    set(particles_.v, v_);
-    if (!history) return;
-    for (Rows* past : {&particles_.previous, &history->v_before, &history->v_end})
-      set(*past, mean_of(*past));
+  void join() {
+    if (!history_) {
+      set(particles_.x, x_);
+      set(particles_.v, v_);
+      return;
+    }
+    bool go_on = true;
+    for_each_free([&](std::size_t n, double) {
+      go_on = go_on && history_->goes_on(particles_, members_[n].j, members_[n].i);
+    });
+    if (history_->keeps_left(dt_)) {
+      set(particles_.x, history_->left);
+      set(particles_.v, history_->v_left);
+    } else {
+      set(particles_.x, x_);
+      set(particles_.v, v_);
+    }
+    for (Rows* past : {&particles_.previous, &history_->v_before}) set(*past, mean_of(*past));
+    set(history_->v_end, mean_of(go_on ? particles_.v : history_->v_end));
   }
 
-  // With e and d the way to each from the centre, before the substep and now: so much of e is taken from d that
-  // the sum of m d² is what is asked for. False where no such part is. What has a smooth past keeps one, as if it
-  // had been drawn so all along.
-  bool draw(History* history) {
-    double ee = 0, de = 0, dd = 0;
-    for_each_free([&](std::size_t n, double mass) {
-      const Vec3 e = apart(n), d = minus(at(particles_.x, n), x_);
-      ee += mass * dot(e, e), de += mass * dot(d, e), dd += mass * dot(d, d);
-    });
-    const double share = 1 - kSewingSpeed * dt_ / far_, missing = dd - share * share * ee;
-    if (missing <= 0) return true;
-    const double root = de * de - ee * missing;
+  // With e and d the way to each from the centre, before the substep and now: the sum of m d² is to be what the
+  // members' way leaves of that of m e². False where they cannot be drawn.
+  bool draw() {
+    const double share = 1 - kSewingSpeed * dt_ / far_;
+    if (dd_ <= share * share * ee_) return true;
+    return history_ ? draw_smoothly(share) : draw_by_impulse(share);
+  }
+
+ private:
+  // So much of e is taken from d.
+  bool draw_by_impulse(double share) {
+    const double root = de_ * de_ - ee_ * (dd_ - share * share * ee_);
     if (!(root >= 0)) return false;
-    const double part = (de - std::copysign(std::sqrt(root), de)) / ee;
+    const double part = (de_ - std::copysign(std::sqrt(root), de_)) / ee_;
     for_each_free([&](std::size_t n, double) {
-      const Vec3 by = times(apart(n), -part), dv = times(by, 1 / dt_);
-      const auto [j, i] = members_[n];
-      const bool goes_on = history && history->goes_on(particles_, j, i);
+      const Vec3 by = times(apart(n), -part);
       put(particles_.x, n, plus(at(particles_.x, n), by));
-      put(particles_.v, n, plus(at(particles_.v, n), dv));
-      for (int k = 0; goes_on && k < 3; ++k)
-        history->shift(particles_, k, j, i, 0, float(dv[std::size_t(k)]));
-      if (goes_on) put(history->v_end, n, at(particles_.v, n));
+      put(particles_.v, n, plus(at(particles_.v, n), times(by, 1 / dt_)));
     });
     return true;
   }
 
- private:
+  // The second order takes so much of d itself, and as much of it from velocities as leaves the speed that is asked for:
+  // what is drawn steadily by a force f moves by (⅔h)² f and gains ⅔h f, where it starts by an impulse J, by h J and
+  // J. Of the two that make up both, an impulse was there all along, or else it would be extrapolated.
+  bool draw_smoothly(double share) {
+    double dr = 0;
+    for_each_free([&](std::size_t n, double mass) {
+      dr += mass * dot(minus(at(particles_.x, n), x_), minus(at(particles_.v, n), v_));
+    });
+    const double shrunk = share * std::sqrt(ee_ / dd_), speed = kSewingSpeed / far_;
+    const double part = 1 - shrunk, rate = dr / dd_ + speed * share * ee_ / (dd_ * shrunk);
+    const double impulse = 3 * part / dt_ - 2 * rate;
+    for_each_free([&](std::size_t n, double) {
+      const Vec3 d = minus(at(particles_.x, n), x_);
+      const auto [j, i] = members_[n];
+      const bool goes_on = history_->goes_on(particles_, j, i);
+      put(particles_.x, n, minus(at(particles_.x, n), times(d, part)));
+      put(particles_.v, n, minus(at(particles_.v, n), times(d, rate)));
+      for (int k = 0; goes_on && k < 3; ++k)
+        history_->shift(particles_, k, j, i, 0, float(-impulse * d[std::size_t(k)]));
+      if (goes_on) put(history_->v_end, n, at(particles_.v, n));
+    });
+    return true;
+  }
+
   double w(std::size_t n) const { return particles_.w(members_[n].j, members_[n].i); }
   Vec3 at(const Rows& rows, std::size_t n) const {
     const auto [j, i] = members_[n];
@@ -96,10 +133,25 @@ class Group {
         [&](std::size_t n) { return w(n); });
   }
   Vec3 apart(std::size_t n) const {
-    return minus(minus(at(particles_.x, n), times(at(particles_.v, n), dt_)), before_);
+    const Vec3 before = history_ ? at(particles_.previous, n)
+                                 : minus(at(particles_.x, n), times(at(particles_.v, n), dt_));
+    return minus(before, before_);
   }
   void set(Rows& rows, const Vec3& value) {
     for_each_free([&](std::size_t n, double) { put(rows, n, value); });
+  }
+  // With what rounding leaves.
+  void set(Rows& rows, Rows& left) {
+    const Vec3 value = mean_of(rows), more = mean_of(left);
+    set(rows, value);
+    for_each_free([&](std::size_t n, double) {
+      const auto [j, i] = members_[n];
+      for (int k = 0; k < 3; ++k) {
+        const auto c = std::size_t(k);
+        left.at(k, j, i) = float(value[c] - double(rows.at(k, j, i)));
+        move_keeping(rows.at(k, j, i), left.at(k, j, i), more[c]);
+      }
+    });
   }
   template <class Visit>
   void for_each_free(const Visit& visit) const {
@@ -110,8 +162,10 @@ class Group {
   Particles& particles_;
   const Members members_;
   const double dt_;
-  const Vec3 x_, v_, before_;  // of the centre
-  double far_ = 0;             // m; of the farthest that is free, before the substep
+  History* const history_;
+  const Vec3 x_, v_, before_;        // of the centre
+  double far_ = 0;                   // m; of the farthest that is free, before the substep
+  double ee_ = 0, de_ = 0, dd_ = 0;  // kg m²; sums of m e², m d·e, m d²
 };
 
 class Sewing final : public RowStage {
@@ -127,8 +181,8 @@ class Sewing final : public RowStage {
   void run(int begin, int end, const Substep& s) override {
     const RowSpan groups = seams_.in_rows(begin, end);
     for (int g = groups.begin; g < groups.end; ++g) {
-      Group group(parts_.particles, seams_.members(g), s.dt);
-      if (group.within_reach() || (draws_ && !group.draw(history_))) group.join(history_);
+      Group group(parts_.particles, seams_.members(g), s.dt, history_);
+      if (group.within_reach() || (draws_ && !group.draw())) group.join();
     }
   }
 
