@@ -96,6 +96,7 @@ double spread_by(const Cloth& cloth, Sweep sweep) {
 double projection_substep(const Scene& scene) {
   constexpr double kSag = 0.02;
   constexpr double kLines = 10;  // the same, against a gas; 15 on balls of 270 vertices
+  constexpr double kGas = 0.1;   // k dt²/m; strain and energy within a twentieth
   constexpr double kMoved =
       0.15;  // spacings, that the load of a pin may move a particle by in a substep
   const Solver& solver = scene.solver;
@@ -105,13 +106,15 @@ double projection_substep(const Scene& scene) {
   double dt = kLongestProjection;
   for (const Cloth& c : scene.cloths) {
     const Fineness f = fineness_of(c, solver);
+    const double gas = push_of_gas(c);
     const auto hold = [&](double needed) {
       // Or what the material asks for by itself.
+      const double share = gas > 0 && !lines ? kGas : 1;
       if (solver.method != Method::positional)
-        needed = std::max(needed, std::sqrt(f.mass / std::max(f.stiffness, 1e-12)));
+        needed = std::max(needed, std::sqrt(share * f.mass / std::max(f.stiffness, 1e-12)));
       dt = std::min(dt, needed);
     };
-    const double pull = (lines ? 0 : g) + push_of_gas(c) / (lines ? kLines : 1);
+    const double pull = (lines ? 0 : g) + gas / (lines ? kLines : 1);
     if (pull > 0) hold(std::sqrt(kSag * sweeps / (2 * pull * f.points_over_spacing)));
     const auto pins = double(single_pins(c).size());
     if (lines && g > 0 && pins > 0)
@@ -124,7 +127,7 @@ double projection_substep(const Scene& scene) {
 double overstretch(const Scene& scene, const Cloth& cloth, double dt) {
   const Solver& solver = scene.solver;
   if (solver.method != Method::compliant || solver.sweep == Sweep::line || solver.tethers ||
-      cloth.pins.empty())
+      (cloth.pins.empty() && !cloth.pressure.given()))
     return 1;
   const Fineness f = fineness_of(cloth, solver);
   const double h = dt * implicit_share(solver);

@@ -14,16 +14,18 @@ inline constexpr double kLongestProjection = 1.0 / 960;
 // over one constraint alone: each is as stiff as a substep can make it, m/(2 dt²), and a sheet of n
 // points, h apart, that hangs by its edge stretches there by 2 n g dt²/h. A gas of pressure p in a mesh of
 // density ρ stretches it as such a pull of g = p/ρ does. The longest substep that keeps this to 2 %, or lets one
-// sweep do all that the material's own stiffness asks for, k dt² = m; at most kLongestProjection.
+// sweep do all that the material's own stiffness asks for, k dt² = m; at most kLongestProjection. A gas holds all of a
+// cloth stretched, and what sweeps leave of that is energy: they are to be within a twentieth of it, k dt² = m/10.
 //
 // Line sweeps pass a pull on along a whole line, but from line to line as the others do. Where n points hang by few, P,
 // each of these bears g n/P as many particles: substeps are so short that this moves one by 0.12 spacings. (Sheets of
 // 32 to 100 points a side by a corner, two, four, or the middle; strain within 1.2 of springs', or told.)
 double projection_substep(const Scene& scene);
 
-// How many times as much as its stiffness says a cloth stretches that hangs by its pins, in substeps of dt of compliant
-// Gauss-Seidel or Jacobi sweeps without tethers: about 1 + 0.7 (k dt²/m)^0.8, of sheets of 32 x 32 points held by
-// corners, an edge and a point, 1e3 and 1e4 N/m, for each sweep 0.2 to 40: 1.2 to 17 times, within a third. 1 of others.
+// How many times as much as its stiffness says a cloth stretches that hangs by its pins or holds a gas, in substeps of
+// dt of compliant Gauss-Seidel or Jacobi sweeps without tethers: about 1 + 0.7 (k dt²/m)^0.8, of sheets of 32 x 32 points
+// held by corners, an edge and a point, 1e3 and 1e4 N/m, for each sweep 0.2 to 40: 1.2 to 17 times, within a third.
+// Balloons of 642 vertices, both orders: the same for 1, a third less of it for 0.2. 1 of others.
 double overstretch(const Scene& scene, const Cloth& cloth, double dt);
 // s; in which that is so much, above 1.
 double substep_of_overstretch(const Scene& scene, const Cloth& cloth, double times);

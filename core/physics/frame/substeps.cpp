@@ -42,15 +42,19 @@ void note_overstretch(const Scene& scene, int count, std::vector<std::string>& n
   constexpr double kTimes = 1.2;
   constexpr double kFar = 2;  // the estimate is of what is near
   const double dt = scene.time.frame / count;
-  if (!(greatest_gravity(scene) > 0)) return;
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
-    if (const double times = overstretch(scene, scene.cloths[c], dt); times > kTimes)
-      notes.push_back("cloth " + std::to_string(c) + ": where it hangs, sweeps in substeps of " +
-                      number(dt) + " s leave strain, " + (times > kFar ? "at least " : "about ") +
-                      number(std::round(10 * times) / 10) +
-                      " times as much as its stiffness says; substeps of " +
-                      number(substep_of_overstretch(scene, scene.cloths[c], kTimes)) +
-                      " s, line sweeps, tethers or method spring do not");
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const Cloth& cloth = scene.cloths[c];
+    const bool gas = cloth.pressure.given();
+    const double times = overstretch(scene, cloth, dt);
+    if (times <= kTimes || !(gas || greatest_gravity(scene) > 0)) continue;
+    notes.push_back("cloth " + std::to_string(c) + ": where it " +
+                    (gas ? "holds its gas" : "hangs") + ", sweeps in substeps of " + number(dt) +
+                    " s leave strain, " + (times > kFar ? "at least " : "about ") +
+                    number(std::round(10 * times) / 10) + " times as much as its stiffness says" +
+                    (gas ? ", and its energy" : "") + "; substeps of " +
+                    number(substep_of_overstretch(scene, cloth, kTimes)) + " s, line sweeps" +
+                    (gas ? "" : ", tethers") + " or method spring do not");
+  }
 }
 
 // Twice what the lengths may be off by (projection_substep()).
