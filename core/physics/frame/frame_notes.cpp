@@ -115,7 +115,9 @@ void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::stri
   left_strain_ = true;
   notes.push_back("frame " + std::to_string(frame.number) + ": the sweeps" +
                   (frame.contact ? ", or sheets put apart," : "") + " leave strain of " +
-                  number(held) + " J that nothing put in; more substeps or iterations leave less");
+                  number(held) + " J that nothing put in: with the motion " +
+                  number(held + frame.energy.kinetic()) + " J, of " + number(frame.energy.given()) +
+                  " J; more substeps or iterations leave less");
 }
 
 // Lines that are drawn out in substeps too long for that.
