@@ -53,7 +53,7 @@ TEST(MeshBodyFile, FaultsNameTheFileAndTheLine) {
   EXPECT_NE(first_fault(read_scene(folder / "scene.json")).find("there is no such mesh file"),
             std::string::npos);
   EXPECT_EQ(first_fault(read_scene_text(scene_with(R"({"mesh": {}})"))),
-            "/colliders/0/mesh/file: file is empty");
+            "/colliders/0/mesh/file: file is missing");
 }
 
 TEST(MeshBodyFile, ARecordingCarriesIt) {

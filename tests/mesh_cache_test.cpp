@@ -149,7 +149,8 @@ TEST(MeshCache, ScenesNameThem) {
   std::copy(flat.begin() + 32, flat.begin() + 44, flat.begin() + 44);
   folder.write("flat.pc2", flat);
   EXPECT_EQ(first_fault(scene(R"("animation": "flat.pc2")")),
-            "/colliders/0/animation: sample 1 of the animation has an edge below 1e-6 m");
+            "/colliders/0/animation: sample 1 of the animation has an edge of 0 m, between vertices 0 "
+            "and 1 (counted from 0)");
   folder.write("ball.json", scene_with(R"({"sphere": {"radius": 0.1}, "animation": "walk.pc2"})"));
   EXPECT_EQ(first_fault(read_scene(folder / "ball.json")),
             "/colliders/0/animation: a sphere has an animation");

@@ -91,7 +91,6 @@ TEST(Fabrics, GiveWayToEveryKeyOfTheCloth) {
   EXPECT_EQ(cloth.self_collision.thickness, 0.02);
   EXPECT_EQ(cloth.self_collision.friction, cotton.friction);
   EXPECT_EQ(cloth_of(R"("fabric": "cotton", "bending": 0)").bending, Bending(0));
-  EXPECT_EQ(cloth_of(R"("fabric": "cotton", "mesh": {})"), cloth_of(named(cotton)));
 
   // Springs of one's own are in place of the membrane.
   const Cloth springs = cloth_of(R"("fabric": "cotton", "stiffness": {"structural": 50})");

@@ -18,7 +18,7 @@ int explain(const SceneArgument& argument) {
   options.threads = 1;
   const Simulation simulation = simulate(loaded, options);
   std::cout << printable(loaded.scene.name.empty() ? loaded.path : loaded.scene.name) << ": "
-            << to_text(simulation.plan()) << needs_words(estimate(loaded.scene));
+            << to_text(simulation.plan()) << needs_words(estimate(simulation));
   for (const std::string& note : loaded.notes) std::cout << "note: " << printable(note) << "\n";
   return kDone;
 }

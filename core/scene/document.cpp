@@ -73,8 +73,9 @@ class FieldWriter {
     return Json::array({write(share.time), write(share.value)});
   }
 
-  static Json write(Pin& pin) {
-    Json at = write(Points{pin.i, pin.j});
+  // What lies beside a mesh's only row is told by its place there, so that it is refused.
+  static Json write(Pin& pin, bool of_mesh) {
+    Json at = of_mesh && pin.j == 0 ? Json(pin.i) : write(Points{pin.i, pin.j});
     if (pin == Pin{pin.i, pin.j, {}, {}, -1}) return at;
     Json object = Json::object();
     if (!pin.vertices.empty()) object["vertices"] = write(pin.vertices);
@@ -85,6 +86,13 @@ class FieldWriter {
     if (pin.rotate != Rotation{}) object["rotate"] = write(pin.rotate);
     if (pin.follow != -1) object["follow"] = write(pin.follow);
     return object;
+  }
+
+  static Json write(ClothPins field) {
+    Json list = Json::array();
+    list.get_ref<Json::array_t&>().reserve(field.pins.size());
+    for (Pin& pin : field.pins) list.push_back(write(pin, field.of_mesh));
+    return list;
   }
 
   static Json write(const Bending& bending) {

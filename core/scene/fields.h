@@ -22,6 +22,11 @@ struct RestShape {  // a word, or the name of a file
   std::string& file;
 };
 
+struct ClothPins {  // by column and row of a grid, or by number of a mesh
+  std::vector<Pin>& pins;
+  bool of_mesh;
+};
+
 struct VectorInTime {  // a vector, or {"keys": [[t, x, y, z], …]}
   Vec3& value;
   std::vector<Key>& keys;
@@ -171,7 +176,7 @@ void fields(Walk& walk, Cloth& cloth) {
   walk("tear_strain", cloth.tear_strain);
   walk("tears", cloth.tears);
   walk("self_collision", cloth.self_collision);
-  walk("pins", cloth.pins);
+  walk("pins", ClothPins{cloth.pins, cloth.mesh.given()});
   walk("cuts", cloth.cuts);
   walk("sewing", cloth.sewing);
   walk("seams", cloth.seams);

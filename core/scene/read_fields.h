@@ -116,6 +116,10 @@ class FieldReader {
     read(value[1], field.value);
   }
 
+  static void read(const Json& value, ClothPins field) {
+    read(value, field.pins);
+  }
+
   static void read(const Json& value, Pin& field) {
     if (value.is_object()) {
       FieldReader walk(value);

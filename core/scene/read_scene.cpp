@@ -10,6 +10,7 @@
 #include "scene/course.h"
 #include "scene/document.h"
 #include "scene/fabric.h"
+#include "scene/mesh/forms.h"
 #include "scene/overrides.h"
 #include "scene/shipped.h"
 #include "scene/validate.h"
@@ -26,6 +27,7 @@ Scene read_weft(Json& document, const std::vector<Override>& overrides, Check& r
     apply_override(scene_schema_json(), change, document, result);
   unfold_fabrics(document, result);
   check(scene_schema_json(), document, result);
+  check_forms(document, result);
   drop_unsound(result, document);
   const Scene scene = scene_of(document);
   check_together(scene, result);
@@ -99,6 +101,7 @@ Scene read_course(CourseFile& file, const std::vector<Override>& overrides, Chec
   result = std::move(course);
   if (of_scene.empty()) return scene;
   Json meant = document_of(scene);
+  for (Json& cloth : meant["cloths"]) cloth.erase("mesh");  // grids, unless an override says else
   if (!result.faults.empty()) {  // then only what is wrong with the overrides themselves
     for (const Override& change : of_scene)
       apply_override(scene_schema_json(), change, meant, result);

@@ -14,6 +14,7 @@
 #include "scene/mesh/animation.h"
 #include "scene/mesh/closed.h"
 #include "scene/mesh/faces.h"
+#include "scene/mesh/mesh_file.h"
 #include "scene/mesh/refused.h"
 #include "scene/mesh/seams.h"
 #include "scene/pins.h"
@@ -85,9 +86,12 @@ class Together {
   }
 
   void cloth(const Cloth& cloth, const std::string& place) {
+    const std::string its_mesh = place + "/mesh";
+    if (!cloth.mesh.given() && cloth.mesh != ClothMesh{} && sound({its_mesh}))
+      fault(its_mesh + "/file", kNoMeshFile, kMeshFiles);
     if (cloth.mesh.given())
       mesh(cloth, place);
-    else
+    else if (sound({its_mesh}))  // else nobody knows what is meant
       sheet(cloth, place);
     check_material(scene_, cloth, place, result_);
     const bool timed = sound({"/time", place + "/drag"}) && scene_.time.substeps > 0;
@@ -264,8 +268,7 @@ class Together {
 
   void shape(const MeshBody& body, const std::string& place) {
     if (!sound({place})) return;
-    if (!body.given())
-      return fault(place + "/file", "file is empty", "a mesh file (.obj, .ply, .glb, .gltf)");
+    if (!body.given()) return fault(place + "/file", kNoMeshFile, kMeshFiles);
     if (!body.shape) return;
     if (const auto wrong = fault_of(body, place)) fault(wrong->place, wrong->what, wrong->allowed);
   }
@@ -304,9 +307,10 @@ std::vector<Fault> validate(const Scene& scene) {
   for_each_mesh(scene, [&](const auto& mesh, const std::string& place) {
     bool read = mesh.shape != nullptr;
     if constexpr (std::is_same_v<decltype(mesh), const MeshBody&>)
-      read = read && (mesh.surface || text::fault_of(mesh, place));
+      read = read &&
+             (mesh.surface || text::fault_of(mesh, place) || text::fault_of_motion(mesh, place));
     if (!read && mesh.given())
-      result.fault(place_of_file(place), "the mesh is not read", "load_meshes() reads it");
+      result.fault(place_of_file(place), "the mesh is not read", "a mesh whose file has been read");
   });
   return std::move(result.faults);
 }

@@ -10,6 +10,8 @@
 
 namespace weft {
 
+class Simulation;  // weft/simulation.h
+
 struct Estimate {
   std::int64_t particles = 0;
   std::int64_t constraints = 0;
@@ -27,6 +29,9 @@ inline constexpr double kTimeWithin = 3;      // the same of Estimate::frame_sec
 // Takes a moment however large the scene is: where springs give the substeps, it looks at a cutting
 // of each cloth. Throws SceneError (weft/simulation.h) for a scene that a Simulation refuses.
 Estimate estimate(const Scene& scene);
+
+// The same of a simulation that is made and has not run: from its own substeps, which count where it is pinned.
+Estimate estimate(const Simulation& simulation);
 
 // "1.2 GB", "850 MB"; of powers of ten.
 std::string bytes_words(double bytes);

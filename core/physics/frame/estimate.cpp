@@ -183,9 +183,8 @@ double more_substeps(const Scene& scene) {
   return most;
 }
 
-// How the scene will be solved.
-Way way_of(const Scene& scene) {
-  const Simulation piece(cutting(scene), {.threads = 1});
+// How the scene will be solved, by a simulation of it, or of cuttings of its cloths, that has just begun.
+Way way_of(const Scene& scene, const Simulation& piece) {
   Way way{piece.scene().solver, piece.substeps()};
   if (piece.plan().fallback && is_spring(way.solver.method)) way.solver.method = Method::compliant;
   if (!is_spring(way.solver.method) && scene.time.substeps == kAutoSubsteps)
@@ -286,11 +285,7 @@ std::string words(double value, const char* unit) {
   return text;
 }
 
-}  // namespace
-
-Estimate estimate(const Scene& scene) {
-  if (auto faults = validate(scene); !faults.empty()) throw SceneError(std::move(faults));
-  const Way way = way_of(scene);
+Estimate estimate(const Scene& scene, const Way& way) {
   Estimate e;
   e.substeps = way.substeps;
   e.frames = std::round(scene.time.seconds / scene.time.frame);
@@ -310,6 +305,17 @@ Estimate estimate(const Scene& scene) {
     if (const BodySurface* body = physics::surface_of(collider)) e.bytes += double(body->bytes());
   e.frame_seconds = nanoseconds * 1e-9;
   return e;
+}
+
+}  // namespace
+
+Estimate estimate(const Scene& scene) {
+  if (auto faults = validate(scene); !faults.empty()) throw SceneError(std::move(faults));
+  return estimate(scene, way_of(scene, Simulation(cutting(scene), {.threads = 1})));
+}
+
+Estimate estimate(const Simulation& simulation) {
+  return estimate(simulation.scene(), way_of(simulation.scene(), simulation));
 }
 
 std::string bytes_words(double bytes) {

@@ -1,11 +1,14 @@
 #include "scene/mesh/animation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "scene/json_text.h"
 #include "scene/mesh/faces.h"
 #include "weft/point_cache.h"
+#include "weft/random.h"
+#include "weft/vec3.h"
 
 namespace weft {
 
@@ -21,31 +24,51 @@ std::vector<Vec3> placed_vertices(const MeshSource& mesh, const PointCache& moti
 namespace text {
 namespace {
 
-constexpr double kFarthest = 1e4, kShortest = 1e-6;  // m
+double distance(const std::vector<Vec3>& x, int a, int b) {
+  const Vec3 apart = minus(x[std::size_t(a)], x[std::size_t(b)]);
+  return std::sqrt(dot(apart, apart));
+}
 
-double shortest_square(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
-  double shortest = kFarthest * kFarthest;
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// How long edges are in comparison with what vertices drawn at random, as often as they have edges, are apart, both in
+// the median: small where neighbours are near each other, about 1 where vertices are in an order of another mesh.
+double nearness(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
+  std::vector<double> edges, any;
+  Random random(1, 0);
+  const std::size_t count = mesh.triangles.size();
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 &a = x[std::size_t(t[k])], &b = x[std::size_t(t[(k + 1) % 3])];
-      double square = 0;
-      for (std::size_t m = 0; m < 3; ++m) square += (a[m] - b[m]) * (a[m] - b[m]);
-      shortest = std::min(shortest, square);
+      const auto& other = mesh.triangles[std::size_t(random.bits() % count)];
+      edges.push_back(distance(x, t[k], t[(k + 1) % 3]));
+      if (t[k] != other[k]) any.push_back(distance(x, t[k], other[k]));
     }
-  return shortest;
+  return any.empty() ? 1 : median(edges) / median(any);
 }
 
 // Files of as many vertices in another order are no fault by their counts.
 void note_other_order(const MeshBody& body, const std::string& place,
                       std::vector<std::string>& notes) {
+  constexpr double kTold = 0.5;  // nearness; meshes of few vertices have none that are far apart
   constexpr double kLonger = 3;  // edges of a body that bends and grows are hardly so at its start
-  const double edge = mean_edge(body);
-  const double moved = mean_edge_at(*body.shape, placed_vertices(body, *body.motion, 0));
-  if (moved > kLonger * edge || kLonger * moved < edge)
-    notes.push_back(place + ": as the animation begins, edges of the mesh are " +
-                    number_words(moved / edge) +
-                    " times as long as in its file, in the mean; its vertices may be in another "
-                    "order");
+  const TriangleMesh& mesh = *body.shape;
+  const std::vector<Vec3> begins = placed_vertices(body, *body.motion, 0);
+  const double in_file = nearness(mesh, mesh.vertices), begun = nearness(mesh, begins);
+  const bool mixed = in_file < kTold && begun > (1 + in_file) / 2;
+  const double longer = mean_edge_at(mesh, begins) / mean_edge(body);
+  const std::string begins_so = place + ": as the animation begins, ";
+  if (mixed)
+    notes.push_back(begins_so +
+                    "neighbours in the mesh are about as far apart as any two vertices; its "
+                    "vertices may be in another order");
+  else if (longer > kLonger || kLonger * longer < 1)
+    notes.push_back(begins_so + "edges of the mesh are " + number_words(longer) +
+                    " times as long as in its file, in the mean; its unit may be another, or its "
+                    "vertices may be in another order");
 }
 
 }  // namespace
@@ -58,14 +81,9 @@ std::optional<Fault> fault_of_motion(const MeshBody& body, const std::string& pl
                  std::to_string(body.shape->vertices.size()) + ", the vertices of the mesh"};
   for (int n = 0; n < motion.samples(); ++n) {
     const std::vector<Vec3> x = placed_vertices(body, motion, n);
-    const std::string sample = "sample " + std::to_string(n + 1) + " of the animation ";
-    for (const Vec3& p : x)
-      for (const double value : p)
-        if (!(std::abs(value) <= kFarthest))
-          return Fault{place, sample + "reaches " + std::to_string(value) + " m away",
-                       "up to 10000 m"};
-    if (shortest_square(*body.shape, x) < kShortest * kShortest)
-      return Fault{place, sample + "has an edge below 1e-6 m", "edges of at least 1e-6 m"};
+    if (auto wrong = fault_of_places(
+            *body.shape, x, "sample " + std::to_string(n + 1) + " of the animation", place))
+      return wrong;
   }
   return {};
 }
@@ -92,8 +110,8 @@ void check_animation(const Collider& collider, const std::string& place, Check& 
                  "a mesh, or keys");
   if (!body || !body->shape) return;
   if (body->surface && !body->motion && !collider.animation.empty())
-    result.fault(place, "the animation is not read", "load_meshes() reads it");
-  if (body->surface) return;
+    result.fault(place, "the animation is not read", "one whose file has been read");
+  if (body->surface || fault_of(*body, place)) return;  // that is told where the mesh is looked at
   if (const auto wrong = fault_of_motion(*body, place))
     result.fault(wrong->place, wrong->what, wrong->allowed);
 }

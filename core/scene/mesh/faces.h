@@ -36,6 +36,9 @@ struct RawMesh {
 // What keeps a mesh, which is read or made by a program, from being simulated where the scene puts it. Faces
 // without area and edges of more than two are told of as files are read.
 std::optional<Fault> fault_of(const MeshSource& mesh, const std::string& place);
+// The same of a mesh with corners, which messages call so, whose vertices lie so [m].
+std::optional<Fault> fault_of_places(const TriangleMesh& mesh, const std::vector<Vec3>& x,
+                                     const std::string& called, const std::string& place);
 // Where the scene has points that a file has.
 void put(const MeshSource& mesh, std::vector<Vec3>& points);
 

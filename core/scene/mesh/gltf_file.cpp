@@ -1,5 +1,7 @@
 #include "scene/mesh/gltf_file.h"
 
+#include "scene/mesh/words.h"
+
 namespace weft::text {
 namespace {
 
@@ -65,7 +67,7 @@ void read_gltf_file(std::string_view bytes, const std::string& name, const std::
                     std::vector<Fault>& faults,
                     const std::function<void(const GltfValue& document, GltfData& data)>& read) {
   try {
-    Container parts{bytes, {}};
+    Container parts{without_mark(bytes), {}};
     if (bytes.starts_with("glTF")) parts = parts_of(bytes);
     std::vector<Fault> found;
     const Json json = parse(parts.json, found);

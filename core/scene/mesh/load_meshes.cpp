@@ -5,9 +5,12 @@
 #include <limits>
 #include <numbers>
 
+#include "scene/json_text.h"
 #include "scene/mesh/animation.h"
 #include "scene/mesh/faces.h"
+#include "scene/mesh/unjoined.h"
 #include "weft/mesh.h"
+#include "weft/vec3.h"
 
 namespace weft {
 namespace {
@@ -47,13 +50,20 @@ bool has_corners(const TriangleMesh& mesh) {
                      [&](const auto& t) { return std::all_of(t.begin(), t.end(), there); });
 }
 
-// The shortest edge [m].
-double shortest_edge(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
-  double shortest = std::numeric_limits<double>::infinity();
+// The first of the shortest edges, and its length [m].
+struct Edge {
+  int a = 0, b = 0;
+  double length = std::numeric_limits<double>::infinity();
+};
+Edge shortest_edge(const TriangleMesh& mesh, const std::vector<Vec3>& x) {
+  Edge shortest;
+  double least = std::numeric_limits<double>::infinity();
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 &a = x[std::size_t(t[k])], &b = x[std::size_t(t[(k + 1) % 3])];
-      shortest = std::min(shortest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+      const int a = t[k], b = t[(k + 1) % 3];
+      const Vec3 side = minus(x[std::size_t(a)], x[std::size_t(b)]);
+      const double square = dot(side, side);
+      if (square < least) least = square, shortest = {a, b, std::sqrt(square)};
     }
   return shortest;
 }
@@ -64,17 +74,23 @@ std::optional<Fault> text::fault_of(const MeshSource& mesh, const std::string& p
   if (!has_corners(*mesh.shape))
     return Fault{place, "the mesh has no triangles, or they are not of its vertices",
                  "corners from 0 to the number of vertices less one, uv of all triangles or none"};
-  const std::vector<Vec3> x = placed_vertices(mesh);
-  double farthest = 0;
-  for (const Vec3& p : x)
-    for (const double value : p)
-      farthest = std::isnan(value) ? std::numeric_limits<double>::infinity()
-                                   : std::max(farthest, std::abs(value));
-  if (!(farthest <= kFarthest))
-    return Fault{place + "/scale", "the mesh reaches " + std::to_string(farthest) + " m away",
-                 "up to 10000 m"};
-  if (shortest_edge(*mesh.shape, x) < kShortest)
-    return Fault{place + "/scale", "the shortest edge of the mesh is below 1e-6 m",
+  return fault_of_places(*mesh.shape, placed_vertices(mesh), "the mesh", place + "/scale");
+}
+
+std::optional<Fault> text::fault_of_places(const TriangleMesh& mesh, const std::vector<Vec3>& x,
+                                           const std::string& called, const std::string& place) {
+  for (std::size_t n = 0; n < x.size(); ++n)
+    for (const double value : x[n])
+      if (!(std::abs(value) <= kFarthest))
+        return Fault{place,
+                     called + " reaches " + number_words(std::abs(value)) + " m away, at vertex " +
+                         std::to_string(n) + " (counted from 0)",
+                     "-10000 to 10000 m along each axis"};
+  if (const Edge edge = shortest_edge(mesh, x); edge.length < kShortest)
+    return Fault{place,
+                 called + " has an edge of " + number_words(edge.length) + " m, between vertices " +
+                     std::to_string(edge.a) + " and " + std::to_string(edge.b) +
+                     " (counted from 0)",
                  "edges of at least 1e-6 m"};
   return {};
 }
@@ -116,6 +132,9 @@ double mean_edge(const MeshSource& mesh) {
 
 void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& faults,
                  std::vector<std::string>& notes) {
+  std::vector<std::size_t> fresh;  // cloths whose meshes come now
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    if (scene.cloths[c].mesh.given() && !scene.cloths[c].mesh.shape) fresh.push_back(c);
   for_each_mesh(scene, [&](MeshSource& mesh, const std::string& place) {
     if (mesh.file.empty() || mesh.shape) return;
     MeshFile file = read_mesh((std::filesystem::path(folder) / mesh.file).string());
@@ -126,6 +145,9 @@ void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& fa
     mesh.shape = std::make_shared<const TriangleMesh>(std::move(file.mesh));
     if (!place.ends_with("/rest")) note_size(mesh, place, notes);
   });
+  for (const std::size_t c : fresh)
+    if (scene.cloths[c].mesh.shape)
+      text::note_unjoined(scene.cloths[c], "/cloths/" + std::to_string(c), notes);
   for (std::size_t n = 0; n < scene.colliders.size(); ++n) {
     Collider& collider = scene.colliders[n];
     MeshBody* body = std::get_if<MeshBody>(&collider.shape);

@@ -20,6 +20,11 @@ bool ends_in(std::string_view path, std::string_view end) {
                     });
 }
 
+// By the mark that such text begins with.
+bool is_utf16(std::string_view bytes) {
+  return bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF");
+}
+
 constexpr std::array<std::string_view, 4> kEnds{".obj", ".ply", ".glb", ".gltf"};
 
 }  // namespace
@@ -55,6 +60,7 @@ MeshFile read_mesh(const std::string& path) {
   if (!is_mesh_file(path)) return refuse("the file is of no known kind", ".obj, .ply, .glb, .gltf");
   const text::FileBytes read = text::bytes_of_file(path, text::kMaxMeshBytes);
   if (read.fault) return refuse(read.fault, read.allowed);
+  if (is_utf16(read.bytes)) return refuse("the file is text in UTF-16", "UTF-8 or ASCII");
   if (ends_in(path, ".obj")) return read_obj(read.bytes, path);
   if (ends_in(path, ".ply")) return read_ply(read.bytes, path);
   return read_gltf(read.bytes, path, std::filesystem::path(path).parent_path().string());

@@ -6,6 +6,10 @@
 
 namespace weft::text {
 
+// What is wrong where a scene has a mesh without a file, and what belongs there.
+inline constexpr const char *kNoMeshFile = "file is missing",
+                            *kMeshFiles = "a mesh file (.obj, .ply, .glb, .gltf)";
+
 // The bytes of a file that may be as long as `most`; else `fault` says why there are none, and `allowed`.
 struct FileBytes {
   std::string bytes;

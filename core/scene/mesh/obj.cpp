@@ -1,7 +1,8 @@
-// Wavefront .obj -> TriangleMesh, line by line, so that every fault has its line.
+// Wavefront .obj -> TriangleMesh, statement by statement, so that every fault has its line.
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "scene/mesh/polygons.h"
@@ -14,15 +15,11 @@ namespace {
 class Reader {
  public:
   Reader(std::string_view text, const std::string& name, MeshFile& file)
-      : text_(text), raw_{file, name} {}
+      : text_(without_mark(text)), raw_{file, name} {}
 
   void run() {
-    for (std::size_t at = 0; at < text_.size() && !raw_.full();) {
-      const std::size_t end = std::min(text_.find('\n', at), text_.size());
-      ++line_;
-      statement(text_.substr(at, end - at));
-      at = end + 1;
-    }
+    if (text_.find('\n') == std::string_view::npos) line_end_ = '\r';
+    while (at_ < text_.size() && !raw_.full()) statement(next_statement());
     close_groups();
     polygons_.finish();
   }
@@ -31,6 +28,32 @@ class Reader {
   TriangleMesh& mesh() { return raw_.file.mesh; }
   void fault(std::string what, std::string allowed) {
     raw_.fault(line_, std::move(what), std::move(allowed));
+  }
+
+  std::string_view next_line() {
+    if (at_ >= text_.size()) return {};
+    const std::size_t end = std::min(text_.find(line_end_, at_), text_.size());
+    const std::string_view line = text_.substr(at_, end - at_);
+    at_ = end + 1;
+    ++lines_;
+    return line;
+  }
+
+  // The line up to the backslash by which its statement goes on in the next; comments do not go on.
+  static std::optional<std::string_view> goes_on(std::string_view line) {
+    line = line.substr(0, line.find_last_not_of(" \t\r") + 1);
+    if (!line.ends_with('\\') || line.find('#') != std::string_view::npos) return {};
+    return line.substr(0, line.size() - 1);
+  }
+
+  std::string_view next_statement() {
+    std::string_view line = next_line();
+    line_ = lines_;
+    auto part = goes_on(line);
+    if (!part) return line;
+    joined_.clear();
+    for (; part; part = goes_on(line = next_line())) joined_.append(*part) += ' ';
+    return joined_.append(line);
   }
 
   void statement(std::string_view line) {
@@ -45,8 +68,15 @@ class Reader {
     } else if (key == "l") {
       loose_edges(words);
     } else if (key == "o" || key == "g") {
-      begin_group(key == "o", std::string(words.rest()));
+      begin_group(key == "o", name_in(line));
     }
+  }
+
+  // A name may hold a "#" that begins no word.
+  static std::string name_in(std::string_view line) {
+    Words words(line.substr(0, std::min(line.find(" #"), line.find("\t#"))));
+    words.next();
+    return std::string(words.rest());
   }
 
   // So many finite numbers, or a fault.
@@ -153,9 +183,13 @@ class Reader {
   }
 
   std::string_view text_;
+  std::size_t at_ = 0;
+  char line_end_ = '\n';  // a blank may come before it
+  int lines_ = 0;         // so far
+  std::string joined_;    // a statement of several lines
   RawMesh raw_;
   Polygons polygons_{raw_};
-  int line_ = 0;
+  int line_ = 0;  // where the statement begins
   std::vector<TriangleMesh::Uv> uv_;
   std::map<std::string, std::set<int>> groups_;
   std::array<std::set<int>*, 2> open_{};  // the object and the group that faces belong to

@@ -275,7 +275,7 @@ class Reader {
 
 MeshFile read_ply(std::string_view bytes, const std::string& name) {
   MeshFile file;
-  text::Reader(bytes, name, file).run();
+  text::Reader(text::without_mark(bytes), name, file).run();
   return file;
 }
 

@@ -6,6 +6,12 @@
 
 namespace weft::text {
 
+// A text without the mark that some programs put before UTF-8.
+inline std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.substr(text.starts_with(kMark) ? kMark.size() : 0);
+}
+
 // Words between blanks, one after the other; "" after the last.
 class Words {
  public:

@@ -129,6 +129,8 @@ void LatticeModel::append_projections(StageList& list) {
                 "the cloth has no constraints");
   } else {
     list.skip("line", "sweep is not line");
+    if (stencils_.empty())
+      list.skip(gather ? "gauss_seidel" : "jacobi", "the cloth has no constraints");
     for (int n = 0; n < solver.iterations; ++n)
       if (solves_membrane() && parts_.cloth.membrane.damping > 0)
         append_membrane_damping(parts_, *corrections_, list.stages);

@@ -98,7 +98,7 @@ void MeshModel::append_motion(Method method, StageList& list) {
 
 void MeshModel::append_forces(StageList& list) {
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
-  if (!material_.bends) list.skip("bending", "bending is 0");
+  list.skip("bending", material_.bends ? "the triangles' stage bends, too" : "bending is 0");
   append_gas(list);
   list.stages.push_back(make_triangles(parts_, order_, triangles_, material_, tearing_.get()));
   list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_, tearing_.get()),

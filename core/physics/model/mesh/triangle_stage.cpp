@@ -14,13 +14,23 @@
 namespace weft::physics {
 namespace {
 
+// What the stage does with such a material.
+std::string words_of(const MeshMaterial& m) {
+  std::string forces;
+  if (m.membrane) forces = "membrane forces";
+  if (m.stiffness > 0 || m.spring_damping > 0) forces = "springs along edges";
+  if (m.bends) forces += forces.empty() ? "bending" : " and bending";
+  if (forces.empty()) forces = "no forces";
+  return forces + (m.damped() ? " with damping" : "") + ", leapfrog step";
+}
+
 class TriangleStage final : public RowStage, private TornParts {
  public:
   TriangleStage(const ClothParts& parts, const MeshOrder& order,
                 const std::vector<RestTriangle>& triangles, const MeshMaterial& material,
                 MeshTearing* tearing)
-      : RowStage("triangles", material.membrane ? "membrane forces" : "springs along edges",
-                 material.bends ? 2 : 1, std::int64_t(triangles.size()), "triangles"),
+      : RowStage("triangles", words_of(material), material.bends ? 2 : 1,
+                 std::int64_t(triangles.size()), "triangles"),
         parts_(parts),
         triangles_(triangles),
         tearing_(tearing),
