@@ -68,6 +68,29 @@ void note_response(const std::string& which, const SelfCollision& self,
                   "energy (response stiff does)");
 }
 
+// Damping is that of springs: of none, there is none.
+void note_damping(const std::string& which, const Scene& scene, const Cloth& cloth,
+                  std::vector<std::string>& notes) {
+  if (cloth.spring_damping == Kinds{}) return;
+  if (scene.solver.method != Method::spring_friction)
+    notes.push_back(which +
+                    ": spring_damping does nothing, since method spring_friction alone has it");
+  if (scene.solver.method != Method::spring_friction || cloth.mesh.given()) return;
+  const Kinds &k = cloth.stiffness, &d = cloth.spring_damping;
+  const bool level = cloth.level > 0;
+  const auto look = [&](const char* kind, double stiffness, double damping, bool of_level) {
+    if (damping == 0 || (of_level && stiffness > 0)) return;
+    notes.push_back(which + ": spring_damping " + kind + " of " + number(damping) +
+                    " N s/m does nothing, since " +
+                    (of_level ? "stiffness " + std::string(kind) +
+                                    " is 0, and there are no such springs to damp"
+                              : "all springs of a level have that of structural"));
+  };
+  look("structural", k.structural, d.structural, true);
+  look("shear", k.shear, d.shear, !level);
+  look("bend", k.bend, d.bend, !level);
+}
+
 // Whether a cut of the scene passes between two neighbours.
 bool crosses_sheet(const CutLine& cut, const Grid& grid) {
   bool crosses = false;
@@ -100,6 +123,7 @@ void note_starts(const Scene& scene, const Cloths& cloths, SheetContact* contact
     }
     const Cloth& cloth = scene.cloths[c];
     note_thickness(which, cloth, contact && contact->pairs().surfaces(), notes);
+    note_damping(which, scene, cloth, notes);
     note_response(which, cloth.self_collision, notes);
     if (const FarPins far = far_pins(cloth, spacing_of(cloth)); far.count > 0)
       notes.push_back(which + ": " + std::to_string(far.count) +

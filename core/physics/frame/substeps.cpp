@@ -83,23 +83,77 @@ void note_tearing(const Scene& scene, Method method, int count, std::vector<std:
   }
 }
 
+constexpr double kSlow = 0.01;  // m/s; motion that nobody looks into
+
+// Of the coordinates of what moves: the one farthest from zero [m], and a unit in its last place.
+struct Farthest {
+  float place = 0;
+  void look(const Particles& p) {
+    p.for_each([&](int j, int i) {
+      for (int k = 0; k < 3 && p.w(j, i) > 0; ++k)
+        place = std::max(place, std::abs(p.x.at(k, j, i)));
+    });
+  }
+  double unit() const {
+    return double(std::nextafter(place, std::numeric_limits<float>::infinity()) - place);
+  }
+};
+
 // Positions are rounded once a substep: what goes less far in it than half of a unit in the last place stays
 // where it is.
 void note_rounding(const Cloths& cloths, double dt, std::vector<std::string>& notes) {
-  constexpr double kSlow = 0.01;  // m/s
-  float farthest = 0;
-  for (const auto& step : cloths) {
-    const Particles& p = step->particles();
-    p.for_each([&](int j, int i) {
-      for (int k = 0; k < 3 && p.w(j, i) > 0; ++k)
-        farthest = std::max(farthest, std::abs(p.x.at(k, j, i)));
-    });
-  }
-  const double unit = std::nextafter(farthest, std::numeric_limits<float>::infinity()) - farthest;
-  if (const double slowest = unit / 2 / dt; slowest >= kSlow)
+  Farthest farthest;
+  for (const auto& step : cloths) farthest.look(step->particles());
+  if (const double slowest = farthest.unit() / 2 / dt; slowest >= kSlow)
     notes.push_back("substeps of " + number(dt) +
                     " s are so short that single precision does not move what is slower than " +
                     number(slowest) + " m/s; longer ones are more exact");
+}
+
+// How fast springs and bending shake an undamped cloth, from the start to the end of the run, since its positions
+// are rounded [m/s]. To leave a place by r puts in m ω² r²/2, and the square of what is rounded off is a twelfth of a
+// unit's in the mean, in each direction. Of all ω², the mean is about a tenth of the greatest.
+double shaking(const Scene& scene, const Cloth& cloth, const Particles& p, const Spectrum& spectrum,
+               double dt) {
+  constexpr double kMean = 0.1;
+  Farthest farthest;
+  farthest.look(p);
+  const double unit = farthest.unit(), rounded = 3 * unit * unit / 12;
+  const double kept = cloth.drag > 0 ? 1 / (2 * cloth.drag) : scene.time.seconds;  // s
+  const double times = std::min(kept, scene.time.seconds) / dt;
+  return std::sqrt(kMean * spectrum.omega_squared * rounded * times);
+}
+
+// Where that is a twentieth or more of the energy of what moves: of a fall by the cloth's size, and of its start.
+// Damping takes it away at once.
+void note_shaking(const Scene& scene, const Cloths& cloths, std::span<const Spectrum> spectra,
+                  double dt, std::vector<std::string>& notes) {
+  constexpr double kShare = 0.05;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const Cloth& cloth = scene.cloths[c];
+    const Particles& p = cloths[c]->particles();
+    const double speed = shaking(scene, cloth, p, spectra[c], dt);
+    if (spectra[c].damping > 0 || speed < kSlow) continue;
+    Vec3 low, high;
+    low.fill(std::numeric_limits<double>::infinity());
+    high.fill(-std::numeric_limits<double>::infinity());
+    p.for_each([&](int j, int i) {
+      const Vec3 at = p.position(j, i);
+      for (std::size_t k = 0; k < 3; ++k)
+        low[k] = std::min(low[k], at[k]), high[k] = std::max(high[k], at[k]);
+    });
+    const double size = length(minus(high, low)), start = length(cloth.velocity);
+    const double turns = length(cloth.spin) * size / 2;
+    if (speed * speed <
+        kShare * (2 * greatest_gravity(scene) * size + start * start + turns * turns))
+      continue;
+    notes.push_back(
+        "cloth " + std::to_string(c) + " is so stiff for its mass that its substeps of " +
+        number(dt) + " s shake it by about " + number(speed) + " m/s within " +
+        number(scene.time.seconds) +
+        " s, since single precision rounds its places: do not trust its motion. Less "
+        "bending or stiffness, more density, damping, or method compliant is what helps");
+  }
 }
 
 // Paths of the cloth are straight as a body sees it: off an arc of radius r and angle a by r a²/8.
@@ -134,6 +188,8 @@ void Simulation::State::choose_method_and_substeps() {
     note_tearing(scene, time_step.method, count, notes);
   }
   note_rounding(cloths, scene.time.frame / count, notes);
+  if (is_explicit(time_step.method))
+    note_shaking(scene, cloths, time_step.spectra, scene.time.frame / count, notes);
   note_turning(scene, scene.time.frame / count, notes);
   note_models(notes);
   plan = describe_stages();
