@@ -193,7 +193,8 @@ bool ColliderTriangles::lift_once(const ColliderRow& r, const Touch& touch,
       l.x.at(m, j[k], i[k]) = coordinate(l.x.at(m, j[k], i[k]) + scale * share[k] * moved[m]);
       l.v.at(m, j[k], i[k]) = float(l.v.at(m, j[k], i[k]) + scale * share[k] * gained[m]);
     }
-  return !lever && touch.depth > kDeep * edge_;
+  // Another feature of a mesh may have come through as well.
+  return !lever && (features_ || touch.depth > kDeep * edge_);
 }
 
 }  // namespace weft::physics

@@ -1,6 +1,7 @@
 #include "physics/contact/body/body_triangle.h"
 
 #include "physics/contact/body/body_surface.h"
+#include "physics/contact/body/feature_through.h"
 #include "physics/contact/moving_collider.h"
 
 namespace weft::physics {
@@ -8,6 +9,10 @@ namespace {
 
 using Feature = BodyMoment::Feature;
 
+constexpr double kRests =
+    2 *
+    AllowedDepth::
+        kSlack;  // of an edge; so deep is what rests on the surface, and what may come through it yet
 constexpr double kHardly = 0.1;  // of an edge; so deep is no contact that has just begun
 constexpr double kReach = 0.25;  // the same: what is deeper is left to the particles
 
@@ -46,6 +51,7 @@ class Search {
       : body_(body),
         c_(c),
         edge_(std::max(edge, longest_side(c.x))),
+        offset_(offset),
         about_(about_triangle(body, c, offset, edge)) {
     found_.nearest.distance = offset;
   }
@@ -66,18 +72,39 @@ class Search {
  private:
   void look(const Feature& f) {
     const Vec3 p = body_.now.vertex(f.a), q = body_.now.vertex(f.b);
-    if (f.a == f.b) return look(f, nearest_to_corner(c_, p));
-    for (std::size_t k = 0; k < 3; ++k) look(f, nearest_to_edge(c_, k, p, q));
+    const bool closed = body_.now.closed();
+    if (f.a == f.b) {
+      if (closed && goes_back(f, corner_through(body_, f, c_), !corner_))
+        corner_ = true;
+      else
+        look(f, nearest_to_corner(c_, p));
+      return;
+    }
+    for (std::size_t k = 0; k < 3 && !corner_; ++k)
+      if (!closed || !goes_back(f, edge_through(body_, f, c_, k), false))
+        look(f, nearest_to_edge(c_, k, p, q));
+  }
+
+  bool goes_back(const Feature& f, const Through& t, bool first) {
+    const double most = first ? -offset_ : -found_.nearest.distance;
+    if (!(t.depth > std::max(0.0, most)) || t.depth > about_.reach) return false;
+    const bool crossed = t.meets && t.before < kRests * edge_;
+    // Of a thin body the feature across from it is none of those about the way out.
+    const auto inside = [&] {
+      const BodyMoment::Point point = body_.now.nearest(t.behind, f.triangle);
+      return point.distance < -t.beside && dot(point.normal, t.outward) > 0;
+    };
+    if (!crossed && !(t.before < kHardly * edge_ && inside())) return false;
+    found_ = {{t.weights, {-t.depth, t.normal}}, t.way};
+    return true;
   }
 
   void look(const Feature& f, const Pair& pair) {
-    if (!pair.inner) return;
+    if (!pair.inner || corner_) return;
     const Vec3 here = c_.at(pair.weights), out = minus(pair.on, here);
     const double square = dot(out, out);
     if (square > about_.reach * about_.reach) return;
-    const Vec3 normal = body_.now.outward(f);
-    const double through = dot(out, normal);
-    const bool pierces = body_.now.closed() && through > 0;
+    const bool pierces = body_.now.closed() && dot(out, body_.now.outward(f)) > 0;
     const double most = std::max(found_.nearest.distance, 0.0);
     if (body_.now.closed() && !pierces && square > most * most) return;
     const Vec3 before = minus(here, Corners{c_.path, {}}.at(pair.weights));
@@ -88,18 +115,18 @@ class Search {
       return point;
     };
     const BodyMoment::Point point = body_.meet(before, here, nearest).now;
-    Nearest deep{point.distance, point.normal};
-    if (pierces && point.distance < 0 && dot(minus(pair.on, before), normal) < kHardly * edge_)
-      deep = {std::min(-through, point.distance), normal};
-    if (deep.distance < found_.nearest.distance)
-      found_ = {{pair.weights, deep}, body_.way(point.triangle, point.weights)};
+    if (point.distance < found_.nearest.distance)
+      found_ = {{pair.weights, {point.distance, point.normal}},
+                body_.way(point.triangle, point.weights)};
   }
 
   const BodyPassage& body_;
   const Corners& c_;
-  double edge_;  // m
+  double edge_;          // m
+  const double offset_;  // m
   AboutTriangle about_;
   DeepestOnBody found_;
+  bool corner_ = false;  // one has come through, and goes before edges that have come after it
 };
 
 }  // namespace
