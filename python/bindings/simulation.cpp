@@ -251,8 +251,10 @@ then nothing has changed.)");
       },
       py::arg("scene"), py::arg("values") = py::dict(),
       "Goes on with another scene, as set() does.");
-  type.def("set_state", &set_state, py::arg("positions"), py::arg("velocities"),
-           "Replaces all positions [m] and velocities [m/s], each (particles, 3) real numbers.");
+  type.def(
+      "set_state", &set_state, py::arg("positions"), py::arg("velocities"),
+      "Replaces all positions [m] and velocities [m/s], each (particles, 3) real numbers. What\n"
+      "methods and contact remember begins anew: restore() gives a run back, this does not.");
   method(type, "pin", &Simulation::pin, py::arg("cloth"), py::arg("particle"),
          "Holds a particle (its number within the cloth, j*columns + i) where it is.");
   method(type, "unpin", &Simulation::unpin, py::arg("cloth"), py::arg("particle"),
@@ -278,9 +280,11 @@ then nothing has changed.)");
   type.def(
       "snapshot",
       [](Shared& s) { return s.call([](const Simulation& x) { return x.snapshot(); }); },
-      "The state as it is now, to go back to by restore().");
-  method(type, "restore", &Simulation::restore, py::arg("snapshot"),
-         "Back to a snapshot of the same cloths.");
+      "The run as it is now, to go back to by restore().");
+  method(
+      type, "restore", &Simulation::restore, py::arg("snapshot"),
+      "Back to a snapshot of the same cloths. In the same scene, here or in another simulation,\n"
+      "the run goes on from there to the same bits.");
 }
 
 }  // namespace

@@ -162,8 +162,6 @@ void Player::set_options(int threads, Simd simd) {
     options.simd = simd;
     auto next = std::make_unique<Simulation>(simulation_->scene(), options);
     next->restore(simulation_->snapshot());
-    // What stages carry does not survive: a recording would not replay to the same bits.
-    finish_recording();
     simulation_ = std::move(next);
     options_ = options;
     ++serial_;
@@ -204,6 +202,9 @@ void Player::go_back(int back) {
     back_ = std::clamp(back, 0, rewind_.size() - 1);
     finish_recording();
     simulation_->restore(rewind_.at(back_));
+    // What a hand held then none holds now.
+    simulation_->release();
+    for (std::size_t c = 0; c < scene_.cloths.size(); ++c) simulation_->carry(int(c), {});
     ++change_;
   });
 }

@@ -36,8 +36,8 @@ struct SceneError : std::invalid_argument {
   std::vector<Fault> faults;
 };
 
-// All that changes while a simulation runs: kept to go back to, or to go on with after the scene has
-// changed. What is left out is what stages carry from one substep to the next; they start anew.
+// All that changes while a simulation runs, kept in memory to go back to. What is told here may be changed; then, and
+// in another scene, the run starts anew from it, as after set_state(). Else it goes on to the same bits (`run`).
 //
 // Particles have numbers 0, 1, 2 … within their cloth, in the order of positions(); of a grid:
 // particle_number() (weft/scene.h).
@@ -60,6 +60,10 @@ struct Snapshot {
   double lag = 0;   // s, by which velocities lie behind the positions; 0 to 1
   std::vector<ClothState> cloths;
   std::vector<std::vector<Key>> paths;  // of the colliders
+  // What else the next frame depends on, for the scene, seed and version of Weft that it comes from: the past that
+  // methods and contact remember, substeps, what guards have seen, hands. Null: begins anew.
+  struct Run;
+  std::shared_ptr<const Run> run;
   std::size_t bytes() const;
 };
 

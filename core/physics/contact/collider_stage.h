@@ -12,6 +12,7 @@ class ColliderRowStage : public RowStage {
  public:
   double idle() const override { return far_.share(); }
   void restart() override { far_.restart(collider_.fastest()); }
+  void keep(Keeper& keeper) override { far_.keep(keeper); }
   void follow(const Collider& collider) override {
     if (&collider != &collider_.collider()) return;
     collider_.follow_keys();

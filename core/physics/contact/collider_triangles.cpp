@@ -8,6 +8,7 @@
 
 #include "physics/contact/friction.h"
 #include "physics/model/clamp_to_int.h"
+#include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
@@ -82,6 +83,11 @@ ColliderTriangles::ColliderTriangles(const ClothParts& parts, const Collider& co
 void ColliderTriangles::restart() {
   ColliderRowStage::restart();
   std::fill(lengths_.begin(), lengths_.end(), Length{});
+}
+
+void ColliderTriangles::keep(Keeper& keeper) {
+  ColliderRowStage::keep(keeper);
+  keeper(lengths_);
 }
 
 RowReach ColliderTriangles::reach_of_particles(int j, const Substep& s) const {

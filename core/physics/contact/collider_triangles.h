@@ -27,6 +27,7 @@ class ColliderTriangles : public ColliderRowStage {
                     const SpeculativeCulling& particles, std::int64_t triangles);
 
   void restart() override;
+  void keep(Keeper& keeper) override;
   std::size_t bytes() const override { return features_ ? features_->bytes() : 0; }
 
   using RowStage::run;

@@ -7,6 +7,7 @@
 #include "physics/contact/body/body_surface.h"
 #include "physics/model/load.h"
 #include "physics/model/path.h"
+#include "physics/step/keeper.h"
 #include "weft/mesh.h"
 
 namespace weft {
@@ -193,6 +194,11 @@ SpeculativeCulling::SpeculativeCulling(const ClothParts& parts, double collider_
 void SpeculativeCulling::restart(double collider_speed) {
   collider_speed_ = collider_speed;
   for (Row& row : rows_) row.resume = row.ran;
+}
+
+void SpeculativeCulling::keep(Keeper& keeper) {
+  keeper(rows_);
+  keeper(collider_speed_);
 }
 
 bool SpeculativeCulling::skip(int j, const Substep& s) {

@@ -119,6 +119,7 @@ class SpeculativeCulling {
   void found(int j, const Substep& s, const RowReach& reach, double stretch = 1);
   // What row j keeps at least of its clearance until then [m], and its greatest speed [m/s].
   RowReach reach_at(int j, double time) const;
+  void keep(Keeper& keeper);
   // Share of the rows so far that were skipped.
   double share() const;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "physics/contact/colliders/shapes.h"
+#include "physics/step/keeper.h"
 
 namespace weft::physics {
 
@@ -20,6 +21,12 @@ void Carry::begin_anew(double time) {
   p.for_each([&](int j, int i) {
     if (p.w(j, i) == 0) by_row_[std::size_t(j)].push_back({i, p.position(j, i)});
   });
+}
+
+void Carry::keep(Keeper& keeper) {
+  keeper(by_row_);
+  keeper(time_);
+  keeper(velocity_);
 }
 
 double Carry::speed() const {

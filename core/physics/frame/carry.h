@@ -16,6 +16,7 @@ class Carry final : public RowStage {
   // From where the particles are at `time` [s], in place of where they would have come to.
   void begin_anew(double time);
   double speed() const;  // m/s
+  void keep(Keeper& keeper) override;
   void run(int j, const Substep& s) override;
 
  private:

@@ -6,6 +6,7 @@
 
 #include "physics/frame/projection_substep.h"
 #include "physics/model/number.h"
+#include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
@@ -29,6 +30,15 @@ void FrameNotes::look(const EndedFrame& frame, std::vector<std::string>& notes) 
   if (frame.number % (2 * kFramesBetweenLooks) == 0) note_pinched(frame, notes);
   note_left_strain(frame, notes);
   note_shaking(frame, notes);
+}
+
+void FrameNotes::keep(Keeper& keeper) {
+  keeper(overlong_);
+  keeper(stretched_);
+  keeper(pinched_);
+  keeper(pressed_);
+  for (bool* told : {&clamps_, &left_strain_, &shaking_, &driven_}) keeper(*told);
+  keeper(told_);
 }
 
 void FrameNotes::check_strain_limits(const EndedFrame& frame) {

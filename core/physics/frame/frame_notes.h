@@ -45,6 +45,7 @@ class FrameNotes {
   // Adds strain limits that did not hold, and seams that are open after so many frames, in place of what was
   // told of them before.
   void tell(const Cloths& cloths, std::int64_t frames, std::vector<std::string>& notes);
+  void keep(Keeper& keeper);
 
  private:
   // The frames at whose end a cloth was longer somewhere than its strain limit allows.

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "physics/model/push.h"
+#include "physics/step/keeper.h"
 
 namespace weft::physics {
 
@@ -17,6 +18,12 @@ constexpr double kStiffer = 4;  // than the cloth's links, at most
 double Grab::held_stiffness() const {
   const double stiffest = parts_.model.pull().stiffness;
   return stiffest > 0 ? std::min(stiffness, kStiffer * stiffest) : stiffness;
+}
+
+void Grab::keep(Keeper& keeper) {
+  keeper(place);
+  keeper(target);
+  keeper(stiffness);
 }
 
 double Grab::energy() const {

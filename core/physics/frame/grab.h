@@ -12,6 +12,7 @@ class Grab final : public RowStage {
   double energy() const;  // J; in the spring as it is stretched now
   // What it reads, predict has brought up to date.
   Velocities velocities() const override { return Velocities::left_alone; }
+  void keep(Keeper& keeper) override;
   void run(int j, const Substep& s) override;
 
   bool holds(const Particles::Place& p) const { return p.j == place.j && p.i == place.i; }

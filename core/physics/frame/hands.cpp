@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "physics/step/keeper.h"
+
 namespace weft::physics {
 
 bool Hands::act() const {
@@ -55,6 +57,18 @@ void Hands::let_go() {
 void Hands::begin_anew(double time) {
   for (Carry* carry : carried_)
     if (carry) carry->begin_anew(time);
+}
+
+void Hands::keep(Keeper& keeper) {
+  if (keeper.puts_back()) let_go();
+  for (std::size_t c = 0; c < carried_.size(); ++c) {
+    bool carried = carries(c);
+    keeper(carried);
+    if (carried && !carries(c)) carry(int(c), {}, 0);
+  }
+  int cloth = grabbed();
+  keeper(cloth);
+  if (cloth >= 0 && !grab_) grab(cloth, {0, 0}, {}, 0);
 }
 
 void Hands::tell(EnergyGuard& guard) const {

@@ -32,6 +32,8 @@ class Hands {
 
   // Positions are others than the stages left; from `time` [s] on all goes on from there.
   void begin_anew(double time);
+  // Takes up what was held then, as it was, where it puts back; stages keep the rest (Stage::keep).
+  void keep(Keeper& keeper);
   // Counts what they put in.
   void tell(EnergyGuard& guard) const;
 

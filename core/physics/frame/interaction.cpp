@@ -58,9 +58,10 @@ void Simulation::State::carry(int cloth, const Vec3& velocity) {
   if (!std::all_of(velocity.begin(), velocity.end(),
                    [](double u) { return std::abs(u) <= kFarAway; }))
     throw std::invalid_argument("held particles are carried at up to 1e7 m/s each way");
-  touch(cloth);
   const bool carried = hands_.carries(std::size_t(cloth));
   const bool rests = velocity == Vec3{};
+  if (rests && !carried) return;
+  touch(cloth);
   if (!rests) guard_.energy().drive(hands_.carry(cloth, velocity, time()));
   if (rests && carried) {
     hands_.put_down(cloth);

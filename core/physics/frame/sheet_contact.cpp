@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "physics/model/path.h"
+#include "physics/step/keeper.h"
 #include "weft/vec3.h"
 
 namespace weft::physics {
@@ -40,6 +41,13 @@ void SheetContact::begin_anew() {
 void SheetContact::restart() {
   contact_->restart();
   until_ = 1;
+}
+
+void SheetContact::keep(Keeper& keeper) {
+  contact_->keep(keeper, meets_first_);
+  untangle_->keep(keeper);
+  keeper(until_);
+  keeper(runs_);
 }
 
 // Surfaces begin with what does not cross; what does comes apart first.

@@ -25,6 +25,8 @@ class SheetContact {
   // Positions alone are what they were before.
   void go_back() { contact_->go_back(); }
 
+  void keep(Keeper& keeper);
+
   // Runs a frame: run_substeps(first, count, part), contact, and so on; where sheets meet first, contact comes
   // between the two parts of the last substep. A frame ends with a run of contact, so that what was put back to a
   // frame's start, or set, begins anew. Intervals are powers of two and begin at multiples of their length: so

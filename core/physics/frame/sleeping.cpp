@@ -7,6 +7,7 @@
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/colliders/shapes.h"
 #include "physics/model/placement.h"
+#include "physics/step/keeper.h"
 #include "weft/shape.h"
 
 namespace weft::physics {
@@ -238,6 +239,18 @@ void Sleeping::keep_masses(int index) {
   Resting& cloth = cloths_[std::size_t(index)];
   const AlignedArray<float>& now = cloth.step->particles().inverse_mass;
   std::copy_n(now.data(), now.size(), cloth.masses.data());
+}
+
+void Sleeping::keep(Keeper& keeper) {
+  keeper(rows_slept_);
+  keeper(rows_seen_);
+  for (Resting& cloth : cloths_) {
+    keeper(cloth.blocks);
+    if (!keeper.puts_back()) continue;
+    for (Block& b : cloth.blocks)
+      if (b.asleep) set_asleep(cloth, b, true);
+    list_awake(cloth);
+  }
 }
 
 bool Sleeping::all_asleep() const {

@@ -39,6 +39,8 @@ class Sleeping {
   // Takes over inverse masses that a caller changed while the cloth was awake.
   void keep_masses(int cloth);
 
+  void keep(Keeper& keeper);
+
   // The rows of a cloth to work on; empty: all of it is asleep.
   std::span<const RowSpan> rows(std::size_t cloth) const { return cloths_[cloth].awake; }
   bool all_asleep() const;

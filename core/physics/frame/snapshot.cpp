@@ -1,11 +1,14 @@
 // What changes while a simulation runs, taken out and put back (Snapshot).
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <set>
 
+#include "physics/frame/kept_run.h"
 #include "physics/frame/state.h"
 #include "physics/model/number.h"
+#include "physics/step/keeper.h"
 
 // A snapshot comes from a caller: every number in it is looked at before anything changes.
 
@@ -20,7 +23,7 @@ std::size_t Snapshot::bytes() const {
              c.held.size() * sizeof c.held[0] + c.torn.size() * sizeof c.torn[0] +
              c.inside.size() * sizeof(Inside);
   for (const std::vector<Key>& keys : paths) bytes += keys.size() * sizeof(Key);
-  return bytes;
+  return bytes + (run ? sizeof *run + run->kept.size() : 0);
 }
 
 // Of a grid; a mesh counts as one row.
@@ -28,7 +31,123 @@ static int columns_of(const Cloth& cloth) {
   return cloth.mesh.given() ? particle_count(cloth) : cloth.grid.nx;
 }
 
-Snapshot Simulation::State::snapshot() const {
+namespace {
+
+// Of the bits of all that a snapshot tells (FNV-1a, by words).
+class Hash {
+ public:
+  std::uint64_t value() const { return value_; }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    add(double(values.size()));
+    for (const T& v : values) add(v);
+  }
+  void add(const std::array<int, 2>& pair) { add(pair[0]), add(pair[1]); }
+  void add(const Snapshot::Inside& i) { add(Vec3{i.time, i.particle, i.triangle}); }
+  void add(const Key& key) { add(key.time), add(key.position); }
+  void add(const Vec3& v) {
+    for (const double component : v) add(component);
+  }
+  void add(float v) { word(std::bit_cast<std::uint32_t>(v)); }
+  void add(double v) { word(std::bit_cast<std::uint64_t>(v)); }
+  void add(int v) { word(std::uint64_t(std::int64_t(v))); }
+
+ private:
+  void word(std::uint64_t bits) { value_ = (value_ ^ bits) * 1099511628211u; }
+  std::uint64_t value_ = 14695981039346656037u;
+};
+
+std::uint64_t hash_of(const Snapshot& m) {
+  Hash hash;
+  hash.add(m.time);
+  hash.add(m.origin);
+  hash.add(m.lag);
+  for (const Snapshot::ClothState& c : m.cloths) {
+    hash.add(c.columns);
+    hash.add(c.positions);
+    hash.add(c.velocities);
+    hash.add(c.held);
+    hash.add(c.torn);
+    hash.add(c.inside);
+  }
+  for (const std::vector<Key>& keys : m.paths) hash.add(keys);
+  return hash.value();
+}
+
+// Whether a run of one goes on in the other, where solvers are as they were and paths as they are told.
+bool goes_on_in(const Scene& a, Scene b) {
+  if (a.colliders.size() != b.colliders.size()) return false;
+  for (std::size_t n = 0; n < a.colliders.size(); ++n) b.colliders[n].keys = a.colliders[n].keys;
+  b.solver = a.solver;
+  return moves_alike(a, std::move(b));
+}
+
+}  // namespace
+
+Snapshot Simulation::State::snapshot() {
+  Snapshot m = told();
+  if (!kept_scene_) kept_scene_ = std::make_shared<const Scene>(placed.given());
+  auto run = std::make_shared<Snapshot::Run>();
+  run->scene = kept_scene_;
+  run->seed = options.seed;
+  run->begun_method = began_.method;
+  run->begun_solver = began_.solver;
+  run->method = time_step.method;
+  run->solver = scene.solver;
+  run->told = hash_of(m);
+  for (auto& step : cloths) run->tears.push_back(step->model().tearing() != nullptr);
+  Keeper keeper;
+  keep(keeper);
+  run->kept = keeper.take();
+  m.run = std::move(run);
+  return m;
+}
+
+bool Simulation::State::goes_on(const Snapshot& m) const {
+  return m.run && m.run->seed == options.seed && m.run->begun_method == began_.method &&
+         m.run->begun_solver == began_.solver &&
+         (m.run->scene == kept_scene_ || goes_on_in(*m.run->scene, placed.given())) &&
+         m.run->told == hash_of(m);
+}
+
+bool Simulation::State::takes(const Snapshot& m) const {
+  if (m.origin != placed.origin()) return false;
+  for (std::size_t c = 0; m.run && c < cloths.size() && c < m.run->tears.size(); ++c)
+    if (cloths[c]->model().tearing() && !m.run->tears[c]) return false;
+  return true;
+}
+
+void Simulation::State::keep(Keeper& keeper) {
+  keeper(time_step.substeps);
+  keeper(time_step.lag);
+  keeper(time_step.limit);
+  keeper(time_step.spectra);
+  take_substeps(time_step.substeps);
+  keeper(plan.notes);
+  keeper(plan.fallback);
+  keeper(total_substeps);
+  keeper(greatest_strain);
+  keeper(was_driven_);
+  keeper(status.ok);
+  keeper(status.frame);
+  keeper(status.cloth);
+  keeper(status.particle);
+  keeper(status.stage);
+  keeper(status.text);
+  keeper(guard_);
+  notes_.keep(keeper);
+  // Where springs act, those that a snapshot tells are not those that lie behind the positions.
+  for (auto& step : cloths)
+    if (Particles& p = step->particles(); is_explicit(time_step.method)) p.keep(p.v, keeper);
+  if (sleeping) sleeping->keep(keeper);
+  hands_.keep(keeper);
+  if (keeper.puts_back()) plan_changed();
+  for (auto& step : cloths)
+    for (const auto& stage : step->stages()) stage->keep(keeper);
+  if (contact) contact->keep(keeper);
+}
+
+Snapshot Simulation::State::told() const {
   Snapshot m;
   m.time = time();
   m.origin = placed.origin();
@@ -121,6 +240,7 @@ void Simulation::State::check(const Snapshot& m) const {
 }
 
 void Simulation::State::restore(const Snapshot& m) {
+  const bool on = goes_on(m);
   hands_.let_go();
   std::vector<double> positions, velocities;
   for (std::size_t n = 0; n < cloths.size(); ++n) {
@@ -132,7 +252,7 @@ void Simulation::State::restore(const Snapshot& m) {
     for (const int held : c.held) p.inverse_mass[p.lane(held)] = 0;
     for (int j = 0; j < p.rows; ++j) p.weigh_row(j);
     if (sleeping) sleeping->keep_masses(int(n));
-    if (!c.torn.empty()) step.allow_tearing();
+    if (!c.torn.empty() || (on && m.run->tears[n])) step.allow_tearing();
     if (Tearing* tearing = step.model().tearing()) tearing->set_torn(c.torn);
     positions.insert(positions.end(), c.positions.begin(), c.positions.end());
     velocities.insert(velocities.end(), c.velocities.begin(), c.velocities.end());
@@ -148,7 +268,10 @@ void Simulation::State::restore(const Snapshot& m) {
   guard_.begin_anew();
   was_driven_ = false;
   take_substeps(began_.substeps);
-  go_on_as(began_.method, began_.solver);
+  if (on)
+    go_on_as(m.run->method, m.run->solver);
+  else
+    go_on_as(began_.method, began_.solver);
   const bool forces = is_explicit(time_step.method);
   time_step.lag = forces ? time_step.dt / 2 : 0;
   for (std::size_t n = 0; forces && n < cloths.size(); ++n)
@@ -157,6 +280,9 @@ void Simulation::State::restore(const Snapshot& m) {
   if (contact) contact->begin_anew();
   plan_changed();
   set(positions, m.origin, velocities, m.lag);
+  if (!on) return;
+  Keeper keeper(m.run->kept);
+  keep(keeper);
 }
 
 namespace {
@@ -205,7 +331,7 @@ void Simulation::set_scene(Scene scene) {
     same = columns_of(before.cloths[n]) == columns_of(after.cloths[n]) &&
            particle_count(before.cloths[n]) == particle_count(after.cloths[n]);
   if (same) {
-    Snapshot m = state_->snapshot();
+    Snapshot m = state_->told();
     for (std::size_t n = 0; n < after.cloths.size(); ++n)
       if (before.cloths[n].pins != after.cloths[n].pins)
         change_pins(state_->scene.cloths[n], next.state_->scene.cloths[n], m.cloths[n]);
@@ -227,10 +353,11 @@ void Simulation::set_scene(Scene scene) {
 Snapshot Simulation::snapshot() const {
   return state_->snapshot();
 }
-// About the snapshot's origin, wherever the scene would have its own: cloths stay as fine as they were.
+// About the snapshot's origin, wherever the scene would have its own: cloths stay as fine as they were. Cloths that
+// could not tear then have other stages once they can.
 void Simulation::restore(const Snapshot& snapshot) {
   state_->check(snapshot);
-  if (snapshot.origin == state_->placed.origin()) return state_->restore(snapshot);
+  if (state_->takes(snapshot)) return state_->restore(snapshot);
   auto next = std::make_unique<State>(scene(), state_->options, snapshot.origin);
   next->restore(snapshot);
   next->changes += state_->changes;

@@ -45,11 +45,13 @@ struct Simulation::State {
            std::optional<double> behind = {});
 
   // snapshot.cpp
-  Snapshot snapshot() const;
+  Snapshot snapshot();
+  Snapshot told() const;  // without the rest of the run
   // Throws std::invalid_argument for a snapshot that restore() cannot take. (restore() trusts it.)
   void check(const Snapshot& snapshot) const;
-  // Lets go of what hands hold: no hand is a part of a snapshot.
   void restore(const Snapshot& snapshot);
+  // Whether it may be put back into this state as it has become, and not only into one that has just begun.
+  bool takes(const Snapshot& snapshot) const;
 
   // Adds the notes that wait until somebody reads them.
   void tell_notes() { notes_.tell(cloths, frame, plan.notes); }
@@ -86,7 +88,8 @@ struct Simulation::State {
   physics::Hands hands_;
   physics::FrameNotes notes_;
   physics::StepGuard guard_;
-  bool was_driven_ = false;  // in the frame before
+  std::shared_ptr<const Scene> kept_scene_;  // of snapshots; null: none was taken
+  bool was_driven_ = false;                  // in the frame before
   // As the run began, before any of its frames failed.
   struct Beginning {
     Method method;
@@ -96,6 +99,11 @@ struct Simulation::State {
     std::vector<std::string> notes;
     physics::EnergyGuard energy;
   } began_;
+
+  // snapshot.cpp
+  bool goes_on(const Snapshot& snapshot) const;
+  // All that the next frame depends on, but for what a snapshot tells.
+  void keep(physics::Keeper& keeper);
 
   // state.cpp
   void build_cloths();

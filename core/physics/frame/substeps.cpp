@@ -323,7 +323,7 @@ void Simulation::State::begin_again() {
   plan.notes.push_back("up to frame " + std::to_string(frame) +
                        " what a hand did took more substeps, or another method");
   plan.fallback = began_.fallback;
-  restore(snapshot());
+  restore(told());
 }
 
 // Goes on from the state as it is by another method or solver.

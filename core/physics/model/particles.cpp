@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "physics/step/keeper.h"
 #include "weft/vec3.h"
 
 namespace weft::physics {
@@ -45,6 +46,13 @@ std::vector<Vec3> Particles::gather(const Rows& values) const {
     all.push_back({values.at(0, j, i), values.at(1, j, i), values.at(2, j, i)});
   });
   return all;
+}
+
+void Particles::keep(Rows& values, Keeper& keeper) const {
+  for (int j = 0; j < rows; ++j) {
+    const Row3 row = values.row(j);
+    for (float* const component : {row.x, row.y, row.z}) keeper.of(component, count(j));
+  }
 }
 
 void Particles::set_inverse_mass(int j, int i, float value) {

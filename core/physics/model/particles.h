@@ -13,6 +13,8 @@
 
 namespace weft::physics {
 
+class Keeper;
+
 struct Particles {
   // As many rows as `counts`, each with so many particles, all at rest at zero and held.
   // `keep_previous`: with room for earlier positions. `numbers`: of the particles, row after row; empty:
@@ -64,6 +66,9 @@ struct Particles {
   }
   // Positions or velocities in double precision.
   std::vector<Vec3> gather(const Rows& values) const;
+
+  // Keeps rows of this shape, or puts them back, without their padding.
+  void keep(Rows& values, Keeper& keeper) const;
 
   // Changes the inverse mass of one particle.
   void set_inverse_mass(int j, int i, float value);

@@ -1,8 +1,11 @@
 // Stages "predict" and "velocity" of the second-order substep (kernels/second_order.cpp).
 #include "physics/kernels/second_order.h"
 
+#include <limits>
+
 #include "physics/model/path.h"
 #include "physics/model/projected_motion.h"
+#include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
@@ -45,16 +48,30 @@ class Predict final : public RowStage {
         multipliers_(multipliers),
         corrections_(corrections),
         dt_(parts.particles.rows, 0.0) {}
+  // What moves is under way, under loads that are not known here: no free flight lies before it. The first substep is
+  // one of implicit Euler, as of all whose velocity is not what the substep before left.
   void restart() override {
-    std::fill(dt_.begin(), dt_.end(), 0.0);
+    std::fill(dt_.begin(), dt_.end(), kNoPast);
+    history_.v_end.scale(std::numeric_limits<float>::quiet_NaN());
+    history_.left.clear();
+    history_.v_left.clear();
     const AlignedArray<float>& mass = parts_.particles.inverse_mass;
     std::copy_n(mass.data(), mass.size(), history_.inverse_mass.data());
   }
+  void keep(Keeper& keeper) override {
+    Particles& l = parts_.particles;
+    bool fine = history_.left.bytes() > 0;
+    keeper(dt_);
+    keeper(fine);
+    if (fine) make_room();
+    for (Rows* rows : {&l.previous, &history_.v_before, &history_.v_end}) l.keep(*rows, keeper);
+    for (Rows* rows : {&history_.left, &history_.v_left})
+      if (fine) l.keep(*rows, keeper);
+    for (int j = 0; j < l.rows; ++j)
+      keeper.of(history_.inverse_mass.data() + std::size_t(j) * std::size_t(l.stride), l.count(j));
+  }
   void prepare(double dt) override {
-    if (!history_.keeps_left(dt) || history_.left.bytes() > 0) return;
-    const Particles& l = parts_.particles;
-    history_.left = Rows(l.rows, l.stride);
-    history_.v_left = Rows(l.rows, l.stride);
+    if (history_.keeps_left(dt)) make_room();
   }
   // Where what the sweeps did is not in them yet, it adds that itself.
   Velocities velocities() const override {
@@ -72,10 +89,17 @@ class Predict final : public RowStage {
   }
 
  private:
+  // For what rounding leaves.
+  void make_room() {
+    if (history_.left.bytes() > 0) return;
+    const Particles& l = parts_.particles;
+    history_.left = Rows(l.rows, l.stride);
+    history_.v_left = Rows(l.rows, l.stride);
+  }
   void run_alike(int begin, int end, const Substep& s) {
     SecondOrderRow r = rows_of(parts_, history_, corrections_, begin, end, s.dt);
     const Vec3 g = gravity_at(parts_.scene, s.time);
-    r.fresh = dt_[begin] != s.dt;
+    r.fresh = dt_[begin] != s.dt && dt_[begin] != kNoPast;
     std::fill(dt_.begin() + begin, dt_.begin() + end, s.dt);
     r.v_waits = !s.velocities_known;
     r.gx = float(g[0]);
@@ -88,7 +112,8 @@ class Predict final : public RowStage {
   History& history_;
   Multipliers* multipliers_;
   Rows* corrections_;
-  std::vector<double> dt_;  // s, of every row's substep before; 0 = none
+  static constexpr double kNoPast = -1;
+  std::vector<double> dt_;  // s, of every row's substep before; 0 = none yet
 };
 
 class Velocity final : public RowStage {

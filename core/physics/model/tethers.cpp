@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "physics/kernels/second_order.h"
+#include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
@@ -44,6 +46,21 @@ class Tethers final : public RowStage {
         for (int k = 0; k < 3; ++k)
           slot.pin.at(k, slot.row[std::size_t(j)], i) = p.x.at(k, at.j, at.i);
       });
+  }
+
+  // Where a hand has carried them since does not count.
+  void keep(Keeper& keeper) override {
+    std::map<int, std::array<float, 3>> pins;
+    const auto for_each = [&](const auto& visit) {
+      for (Slot& slot : slots_)
+        for_each_tether(slot, [&](int j, int i, int pin) {
+          for (int k = 0; k < 3; ++k)
+            visit(pins[pin][std::size_t(k)], slot.pin.at(k, slot.row[std::size_t(j)], i));
+        });
+    };
+    for_each([](float& one, float all) { one = all; });
+    for (auto& [pin, at] : pins) keeper(at);
+    for_each([](float one, float& all) { all = one; });
   }
 
   std::size_t bytes() const override {

@@ -11,6 +11,7 @@
 
 namespace weft::physics {
 
+class Keeper;
 class Threads;
 
 struct Substep {
@@ -96,6 +97,8 @@ class Stage {
   virtual void run_alone(int rows, const Substep& substep, Threads& threads) = 0;
   // Forgets what it keeps from one substep to the next: the state was set from outside.
   virtual void restart() {}
+  // What it keeps from one frame to the next that results depend on is kept, or put back, after restart().
+  virtual void keep(Keeper& keeper) { (void)keeper; }
   // The path of this collider has changed.
   virtual void follow(const Collider& collider) { (void)collider; }
   virtual std::size_t bytes() const { return 0; }

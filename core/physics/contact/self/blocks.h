@@ -104,6 +104,7 @@ class Blocks {
   void choose(float reach);
   void choose_all();
   Spread box() const;  // about the active blocks, as measured [m]
+  void keep(Keeper& keeper);
   std::size_t active() const { return active_; }
   std::size_t bytes() const;
 

@@ -8,6 +8,7 @@
 #include "physics/contact/colliders/shapes.h"
 #include "physics/contact/friction.h"
 #include "physics/contact/self/contact_solver.h"
+#include "physics/step/keeper.h"
 #include "weft/vec3.h"
 
 namespace weft::physics {
@@ -126,6 +127,11 @@ void BodyAnswer::keep_out(Displacement* lift) const {
     const float into = std::min(0.0f, u[0] * l.normal[0] + u[1] * l.normal[1] + u[2] * l.normal[2]);
     for (int k = 0; k < 3; ++k) u[k] -= into * l.normal[k];
   }
+}
+
+void BodyAnswer::keep(Keeper& keeper) {
+  keeper(near_);
+  keeper(seconds_);
 }
 
 std::size_t BodyAnswer::bytes() const {

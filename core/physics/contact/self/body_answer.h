@@ -37,6 +37,7 @@ class BodyAnswer {
   // What positions alone are moved by leads into no body.
   void keep_out(Displacement* lift) const;
   void forget() { near_.clear(); }
+  void keep(Keeper& keeper);
   std::size_t bytes() const;
 
  private:

@@ -5,6 +5,7 @@
 #include "physics/contact/self/held.h"
 #include "physics/contact/self/self_contact.h"
 #include "physics/model/projected_motion.h"
+#include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
@@ -211,7 +212,19 @@ void SelfContact::respond(const ContactInterval& interval, Threads& threads) {
   }
 }
 
+// The run goes on as if nobody had asked.
 SelfContact::Overlaps SelfContact::overlaps() {
+  Keeper before;
+  keep(before, true);
+  const Overlaps found = find_overlaps();
+  restart();
+  const std::vector<std::byte> kept = before.take();
+  Keeper back(kept);
+  keep(back, true);
+  return found;
+}
+
+SelfContact::Overlaps SelfContact::find_overlaps() {
   Threads one(1);
   Overlaps found;
   const auto add = [&](double missing) {
@@ -228,7 +241,6 @@ SelfContact::Overlaps SelfContact::overlaps() {
     for (const auto& piece : measured_)
       for (const SurfaceContact& c : piece.found())
         add(double(c.held) / kHeld - double(c.distance));
-    restart();
     return found;
   }
   search(0, one);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "physics/step/keeper.h"
+
 namespace weft::physics {
 namespace {
 
@@ -240,6 +242,13 @@ void ContactSolver<N>::settle(int substeps) {
   for (const std::int32_t body : touched_)
     for (std::size_t k = 0; k < 3; ++k)
       lift_[std::size_t(body)].u[k] -= beyond * change_[std::size_t(body)].u[k];
+}
+
+template <int N>
+void ContactSolver<N>::keep(Keeper& keeper) {
+  keeper(impulses_);
+  keeper(seconds_);
+  keeper(sweeps_);
 }
 
 template <int N>

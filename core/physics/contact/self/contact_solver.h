@@ -61,6 +61,8 @@ class ContactSolver {
   void clear();
   // Contacts begin without impulses.
   void forget() { impulses_.clear(); }
+  // Impulses that contacts begin with.
+  void keep(Keeper& keeper);
   std::int64_t sweeps() const { return sweeps_; }
   std::size_t bytes() const;
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "physics/contact/self/held.h"
+#include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
@@ -165,16 +166,28 @@ bool NearSquares::any_joined(const Place* now) const {
 }
 
 void NearSquares::list(const Place* now, Threads& threads) {
+  list(now, skin_, nullptr, threads);
+}
+
+// Bodies may have moved by the skin against each other since, and may by as much before they are where the list
+// that was kept ends.
+void NearSquares::list_again(const Place* now, Threads& threads) {
+  const std::vector<LeftOut> left_out = left_out_;
+  list(now, 2 * skin_, &left_out, threads);
+}
+
+void NearSquares::list(const Place* now, float skin, const std::vector<LeftOut>* left_out,
+                       Threads& threads) {
   Spread box;
   std::size_t whole = 0;
-  const float range = most_ + skin_ + 2 * list_whole(now, box, whole);
+  const float range = most_ + skin + 2 * list_whole(now, left_out, box, whole);
   search_.sort(whole, box, range, threads);
   threads.share(search_.chunks(), search_.few(), [&](std::size_t k) {
     for (std::size_t p = search_.begin(k); p < search_.begin(k + 1); ++p) fill_box(p, now);
   });
   search_.find(range, threads);
   if (found_.size() < search_.chunks()) found_.resize(search_.chunks());
-  threads.share(search_.chunks(), search_.few(), [&](std::size_t k) { find_in(k); });
+  threads.share(search_.chunks(), search_.few(), [&](std::size_t k) { find_in(k, skin); });
   listed_.count = 0;
   listed_.add(found_, search_.chunks());
   wake_listed();
@@ -202,7 +215,12 @@ float NearSquares::middle_of(std::size_t square, const Place* now, float (&middl
 
 // The middles of all squares that are whole, for the search; returns the greatest distance of a corner
 // from the middle.
-float NearSquares::list_whole(const Place* now, Spread& box, std::size_t& count) {
+float NearSquares::list_whole(const Place* now, const std::vector<LeftOut>* left_out, Spread& box,
+                              std::size_t& count) {
+  const auto is_out = [&](std::size_t n, float radius_squared) {
+    if (!left_out) return !(radius_squared <= most_squared_[n]);
+    return std::ranges::binary_search(*left_out, std::int32_t(n), {}, &LeftOut::number);
+  };
   box = nothing();
   left_out_.clear();
   float widest_squared = 0;
@@ -211,7 +229,7 @@ float NearSquares::list_whole(const Place* now, Spread& box, std::size_t& count)
     if (has_corner_in(squares_[n], passing_)) return;
     float middle[3];
     const float radius_squared = middle_of(n, now, middle);
-    if (!(radius_squared <= most_squared_[n])) {
+    if (is_out(n, radius_squared)) {
       left_out_.push_back({std::int32_t(n), most_squared_[n]});
       return;
     }
@@ -250,13 +268,13 @@ bool NearSquares::beside(std::int32_t p, std::int32_t q) const {
 }
 
 // The pairs of a chunk of the search that are within reach, but for those that share a corner.
-void NearSquares::find_in(std::size_t chunk) {
+void NearSquares::find_in(std::size_t chunk, float skin) {
   const PairSearch::Pairs near = search_.pairs(chunk);
   SquarePairs& found = found_[chunk];
   found.reserve(near.count);
   found.count = std::size_t(
       kernels_.sheets.squares_within({boxes_.data(), int(near.count), near.owner, near.neighbour,
-                                      most_ + skin_, found.owner.data(), found.neighbour.data()}));
+                                      most_ + skin, found.owner.data(), found.neighbour.data()}));
   std::size_t kept = 0;
   for (std::size_t i = 0; i < found.count; ++i) {
     const auto [p, q] =
@@ -266,6 +284,11 @@ void NearSquares::find_in(std::size_t chunk) {
     found.neighbour[kept++] = q;
   }
   found.count = kept;
+}
+
+void NearSquares::keep(Keeper& keeper) {
+  keeper(left_out_);
+  keeper(passing_);
 }
 
 void NearSquares::wake() {

@@ -43,6 +43,8 @@ class NearSquares {
   void leave_out(const std::vector<std::uint8_t>& marked);
   // Lists pairs anew, with the bodies where they are now.
   void list(const Place* now, Threads& threads);
+  // The same where a list made before, which was kept, still serves: what may touch as long as that serves.
+  void list_again(const Place* now, Threads& threads);
   // Whether squares that were torn when pairs were listed are whole now, so that pairs are to be listed anew.
   bool any_joined(const Place* now) const;
   // No pair sleeps: bodies are elsewhere than where within() left them.
@@ -63,6 +65,8 @@ class NearSquares {
                                     const std::vector<std::uint8_t>& strayed, const Place* place,
                                     const Displacement* moved, Threads& threads);
 
+  // Which squares are left out; pairs are listed again after that was put back.
+  void keep(Keeper& keeper);
   std::size_t bytes() const;
 
  private:
@@ -114,9 +118,11 @@ class NearSquares {
   template <class Visit>
   void for_each_square(const Visit& visit) const;
   float middle_of(std::size_t square, const Place* now, float (&middle)[3]) const;
-  float list_whole(const Place* now, Spread& box, std::size_t& count);
+  void list(const Place* now, float skin, const std::vector<LeftOut>* left_out, Threads& threads);
+  float list_whole(const Place* now, const std::vector<LeftOut>* left_out, Spread& box,
+                   std::size_t& count);
   void fill_box(std::size_t sorted, const Place* now);
-  void find_in(std::size_t chunk);
+  void find_in(std::size_t chunk, float skin);
   void wake_listed();
 
   const std::vector<Sheet>& sheets_;

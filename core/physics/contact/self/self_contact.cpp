@@ -11,6 +11,7 @@
 #include "physics/contact/self/held.h"
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/lattice/stages.h"
+#include "physics/step/keeper.h"
 #include "weft/mesh.h"
 
 namespace weft::physics {
@@ -208,8 +209,29 @@ void SelfContact::begin(Threads& threads) {
   begun_ = true;
 }
 
+// Lists only save a search: what they were made of is kept, and pairs are searched for again when that is put back.
+void SelfContact::keep(Keeper& keeper, bool apart) {
+  for (bool* is : {&begun_, &listed_, &forced_, &touched_}) keeper(*is);
+  keeper(skin_);
+  keeper(kept_runs_);
+  keeper(record_);
+  blocks_.keep(keeper);
+  answer_.keep(keeper);
+  if (spheres_) spheres_->keep(keeper);
+  if (surfaces_) surfaces_->keep(keeper);
+  if (near_) near_->keep(keeper);
+  if (apart) keeper(place_);
+  if (!keeper.puts_back()) return;
+  lost_ = listed_;
+  if (near_) near_->wake();
+  if (apart) return;
+  Threads one(1);
+  gather(one);
+  std::swap(place_, now_);
+}
+
 void SelfContact::restart() {
-  begun_ = listed_ = false;
+  begun_ = listed_ = lost_ = false;
   record_.contacts_now = 0;
   skin_ = 0;
   kept_runs_ = 0;
@@ -260,7 +282,7 @@ void SelfContact::search(double margin, Threads& threads) {
   sort(margin, threads);
   find(margin, threads);
   for (std::size_t b = 0; b < beside_.size(); ++b) list_beside(b, thickness_ + float(margin));
-  listed_ = false;
+  listed_ = lost_ = false;
 }
 
 // Chooses the blocks that may touch, and lists pairs within `reach` and the skin, now.
@@ -269,12 +291,23 @@ void SelfContact::list_pairs(float reach, Threads& threads) {
   ++record_.searches;
   kept_runs_ = 0;
   listed_ = true;
+  lost_ = false;
   if (surfaces()) {
     if (blocks_.active() > 0) near_->list(now_.data(), threads);
   } else {
     sort(reach - thickness_ + skin(), threads);
     find(reach - thickness_ + skin(), threads);
   }
+}
+
+// Lists pairs within `reach` anew, for blocks that were chosen before. These may have moved by the skin since, and may
+// by as much before they are where their list ends.
+void SelfContact::list_again(float reach, Threads& threads) {
+  lost_ = false;
+  if (blocks_.active() == 0) return;
+  if (near_) return near_->list_again(now_.data(), threads);
+  sort(reach - thickness_ + 2 * skin(), threads);
+  find(reach - thickness_ + 2 * skin(), threads);
 }
 
 // Lists those within a range whose first is of this block.
@@ -327,6 +360,8 @@ int SelfContact::run(const ContactInterval& interval, Threads& threads) {
     skin_ = std::clamp(skin_, kLeastSkin, kMostSkin);
     if (!edges) blocks_.measure_edges(threads);
     list_pairs(reach, threads);
+  } else if (lost_) {
+    list_again(reach, threads);
   }
   record_.passed_over += double(particles_ - blocks_.active());
   respond(interval, threads);

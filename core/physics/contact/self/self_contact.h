@@ -67,6 +67,8 @@ class SelfContact {
   void restart();
   // Positions alone are what they were before.
   void go_back() { begun_ = false; }
+  // After restart(), with particles put back. `apart`: particles have moved since the last run.
+  void keep(Keeper& keeper, bool apart);
 
   bool surfaces() const { return near_ != nullptr; }
   // Squares that have a marked particle are left alone from the next restart on (untangle.h).
@@ -163,10 +165,12 @@ class SelfContact {
   void list_sites(Threads& threads);
   float skin() const { return near_ ? near_->skin() : skin_ * thickness_; }
   void list_pairs(float reach, Threads& threads);
+  void list_again(float reach, Threads& threads);
   void list_beside(std::size_t block, float range);
   bool touches() const { return record_.contacts_now > 0; }
 
   // contact_response.cpp
+  Overlaps find_overlaps();
   void respond(const ContactInterval& interval, Threads& threads);
   void find_among_particles(Threads& threads);
   void find_among_surfaces(Threads& threads);
@@ -230,7 +234,8 @@ class SelfContact {
 
   bool course_ = false;  // whether any sheet has the course's rule, for neighbours at least
   bool begun_ = false;
-  bool listed_ = false;  // whether lists of pairs are there
+  bool listed_ = false;  // whether lists of pairs are there,
+  bool lost_ = false;    // or were when the state was kept that was put back
   bool forced_ = false;
   bool touched_ = false;
   float skin_ = 0;     // among particles, of the thickness

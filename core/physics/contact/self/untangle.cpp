@@ -11,6 +11,7 @@
 #include "physics/contact/colliders/shapes.h"
 #include "physics/model/lattice/stages.h"
 #include "physics/model/path.h"
+#include "physics/step/keeper.h"
 #include "weft/vec3.h"
 
 namespace weft::physics {
@@ -147,6 +148,14 @@ bool Untangle::look_at_seams() {
   clear_passing();
   look();
   return true;
+}
+
+void Untangle::keep(Keeper& keeper) {
+  keeper(due_);
+  keeper(since_);
+  keeper(came_apart_);
+  for (auto* marks : {&passing_, &open_, &opened_}) keeper(*marks);
+  for (Sheet& s : sheets_) keeper(s.crosses);
 }
 
 void Untangle::clear_passing() {

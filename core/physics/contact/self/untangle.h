@@ -50,6 +50,7 @@ class Untangle {
   // Particles that have to pass, ends of open seams among them, by their numbers, sheet after sheet:
   // contact leaves them out.
   const std::vector<std::uint8_t>& passing() const { return passing_; }
+  void keep(Keeper& keeper);
 
  private:
   struct Sheet {

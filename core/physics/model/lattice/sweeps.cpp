@@ -12,6 +12,7 @@
 
 #include "physics/model/lattice/plain_rows.h"
 #include "physics/model/path.h"
+#include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
@@ -71,6 +72,12 @@ class ProjectedStencils {
   void restart() {
     if (options_.limit_sweep == LimitSweep::carry)
       options_.multipliers->clear(0, parts_.lattice.rows);
+  }
+  void keep(Keeper& keeper) const {
+    if (options_.limit_sweep != LimitSweep::carry) return;
+    for (const Member& m : members_)
+      for (int j = 0; j < parts_.lattice.rows; ++j)
+        keeper.sparse(options_.multipliers->row(m.index, j), parts_.lattice.columns);
   }
 
  private:
@@ -145,6 +152,10 @@ class GaussSeidel final : public RowStage {
   std::size_t bytes() const override { return stencils_->bytes(); }
   void prepare(double dt) override { stencils_->prepare(dt); }
   void restart() override { stencils_->restart(); }
+  // Both colours of stencils between rows have the same forces.
+  void keep(Keeper& keeper) override {
+    if (colour_ == 0) stencils_->keep(keeper);
+  }
   Velocities velocities() const override { return stencils_->velocities(); }
   void run(int begin, int end, const Substep&) override {
     const std::vector<ProjectRows>& stencils = stencils_->rows();

@@ -6,6 +6,7 @@
 #include "physics/model/mesh/mesh_records.h"
 #include "physics/model/mesh/triangle_constraint.h"
 #include "physics/model/push.h"
+#include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
@@ -75,11 +76,18 @@ class SweepHinges final : public RowStage, private TornParts {
   Velocities velocities() const override { return Velocities::left_alone; }
   bool rows_apart() const override { return colour_.disjoint; }
   void prepare(double dt) override {
+    if (dt == dt_) return;
     dt_ = dt;
     set_matrices();
   }
   void restart() override {
     if (dt_ > 0) set_matrices();
+  }
+  // Matrices have the masses of when they were set: nothing of what sleeps since.
+  void keep(Keeper& keeper) override {
+    if (!(parts_.scene.solver.sleep > 0)) return;
+    keeper(dt_);
+    for (MeshBatch& b : colour_.batches) keeper(b.moment);
   }
   void run(int begin, int end, const Substep&) override {
     const int first = colour_.first[std::size_t(begin)];
