@@ -3,9 +3,11 @@
 // Drawn, the vertex of a group that is farthest from its centre comes nearer to it at kSewingSpeed at least,
 // whatever pulls it away: each is moved along its way to the centre as that was before the substep, by an impulse
 // in proportion to its mass and distance. So impulses of a group are equal and opposite, act along the lines
-// between its members, and keep momentum and angular momentum. What is as near as a substep draws is joined:
-// all get the place and the velocity of the centre, and so the motion of one particle of all their masses. The
-// centre is that of mass, or the place of what is held.
+// between its members, and keep momentum and angular momentum. The second order, whose forces are those of the
+// substep's end, draws along the way there, and sets places and speeds to what is asked for (draw_smoothly()).
+//
+// What is as near as a substep draws is joined: all get the place and the velocity of the centre, and so the motion
+// of one particle of all their masses. The centre is that of mass, or the place of what is held.
 #pragma once
 
 #include <memory>
