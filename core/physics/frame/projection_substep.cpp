@@ -124,9 +124,9 @@ double projection_substep(const Scene& scene) {
   return dt;
 }
 
-double overstretch(const Scene& scene, const Cloth& cloth, double dt) {
+double overstretch(const Scene& scene, const Cloth& cloth, Method method, double dt) {
   const Solver& solver = scene.solver;
-  if (solver.method != Method::compliant || solver.sweep == Sweep::line || solver.tethers ||
+  if (method != Method::compliant || solver.sweep == Sweep::line || solver.tethers ||
       (cloth.pins.empty() && !cloth.pressure.given()))
     return 1;
   const Fineness f = fineness_of(cloth, solver);

@@ -26,7 +26,7 @@ double projection_substep(const Scene& scene);
 // dt of compliant Gauss-Seidel or Jacobi sweeps without tethers: about 1 + 0.7 (k dt²/m)^0.8, of sheets of 32 x 32 points
 // held by corners, an edge and a point, 1e3 and 1e4 N/m, for each sweep 0.2 to 40: 1.2 to 17 times, within a third.
 // Balloons of 642 vertices, both orders: the same for 1, a third less of it for 0.2. 1 of others.
-double overstretch(const Scene& scene, const Cloth& cloth, double dt);
+double overstretch(const Scene& scene, const Cloth& cloth, Method method, double dt);
 // s; in which that is so much, above 1.
 double substep_of_overstretch(const Scene& scene, const Cloth& cloth, double times);
 

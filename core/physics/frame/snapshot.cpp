@@ -121,6 +121,7 @@ void Simulation::State::keep(Keeper& keeper) {
   keeper(time_step.substeps);
   keeper(time_step.lag);
   keeper(time_step.limit);
+  keeper(time_step.followed);
   keeper(time_step.spectra);
   take_substeps(time_step.substeps);
   keeper(plan.notes);
@@ -274,6 +275,7 @@ void Simulation::State::restore(const Snapshot& m) {
     go_on_as(began_.method, began_.solver);
   const bool forces = is_explicit(time_step.method);
   time_step.lag = forces ? time_step.dt / 2 : 0;
+  time_step.followed = {};
   for (std::size_t n = 0; forces && n < cloths.size(); ++n)
     time_step.spectra[n] = cloths[n]->model().spectrum(masses(n).span());
   status = Status{};

@@ -38,14 +38,15 @@ void note_projection(const Scene& scene, int count, std::vector<std::string>& no
 }
 
 // Where substeps of sweeps stretch a cloth more than it does.
-void note_overstretch(const Scene& scene, int count, std::vector<std::string>& notes) {
+void note_overstretch(const Scene& scene, Method method, int count,
+                      std::vector<std::string>& notes) {
   constexpr double kTimes = 1.2;
   constexpr double kFar = 2;  // the estimate is of what is near
   const double dt = scene.time.frame / count;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const Cloth& cloth = scene.cloths[c];
     const bool gas = cloth.pressure.given();
-    const double times = overstretch(scene, cloth, dt);
+    const double times = overstretch(scene, cloth, method, dt);
     if (times <= kTimes || !(gas || greatest_gravity(scene) > 0)) continue;
     notes.push_back("cloth " + std::to_string(c) + ": where it " +
                     (gas ? "holds its gas" : "hangs") + ", sweeps in substeps of " + number(dt) +
@@ -183,7 +184,7 @@ void Simulation::State::choose_method_and_substeps() {
   if (!is_explicit(time_step.method)) {
     count = projection_substeps(scene);
     note_projection(scene, count, notes);
-    note_overstretch(scene, count, notes);
+    note_overstretch(scene, time_step.method, count, notes);
     note_gas(scene, count, notes);
     note_tearing(scene, time_step.method, count, notes);
   }
@@ -308,6 +309,7 @@ void Simulation::State::change_method(const std::string& which, int count) {
   go_on_as(springs ? Method::compliant : time_step.method, steady);
   note_models(plan.notes);
   take_substeps(springs ? projection_substeps(scene) : count);
+  note_overstretch(scene, time_step.method, time_step.substeps, plan.notes);
   save();
 }
 
