@@ -108,17 +108,22 @@ TEST(MeshSweep, IsTheSameOnAnyThreadsAndInstructionSets) {
     scene.colliders.push_back({Sphere{{0.5, -0.26, 0.5}, 0.25}, {}, 0.01, {}, false});
     scene.wind = {{2, 1, 3}, 0.4, 0.2, 0.5};
     scene.solver.sleep = 0.001;
-    std::uint64_t hash = 0;
-    for (const int threads : {1, 2, 3})
-      for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
-        if (!simd_available(simd) || (threads > 1 && simd != Simd::avx2)) continue;
-        Simulation run(scene, {.threads = threads, .simd = simd});
-        for (int n = 0; n < 6; ++n) run.advance_frame();
-        ASSERT_TRUE(run.status().ok) << run.status().text;
-        const std::uint64_t now = run.report().hash;
-        if (hash == 0) hash = now;
-        EXPECT_EQ(now, hash) << way.name << ", " << threads << ", " << simd_name(simd);
-      }
+    // In fine ones the second order keeps what rounding leaves.
+    for (const auto& [frame, frames] : {std::pair{1.0 / 60, 6}, {1.0 / 660, 3}}) {
+      if (frames == 3 && way.order == 1) continue;
+      scene.time.frame = frame;
+      std::uint64_t hash = 0;
+      for (const int threads : {1, 2, 3})
+        for (const Simd simd : {Simd::scalar, Simd::sse2, Simd::avx2, Simd::avx512}) {
+          if (!simd_available(simd) || (threads > 1 && simd != Simd::avx2)) continue;
+          Simulation run(scene, {.threads = threads, .simd = simd});
+          for (int n = 0; n < frames; ++n) run.advance_frame();
+          ASSERT_TRUE(run.status().ok) << run.status().text;
+          const std::uint64_t now = run.report().hash;
+          if (hash == 0) hash = now;
+          EXPECT_EQ(now, hash) << way.name << ", " << threads << ", " << simd_name(simd);
+        }
+    }
   }
 }
 
