@@ -43,7 +43,7 @@ ColliderTriangles::Touch ColliderTriangles::first_touch(const Shape& shape, doub
     const Deepest d = deepest_on(shape, c, offset, edge, tolerance);
     if (d.nearest.distance >= offset) continue;
     const double beyond = dot(minus(c.at(d.weights), end.at(d.weights)), d.nearest.normal);
-    return {d.weights, d.nearest.normal, offset - d.nearest.distance + std::max(0.0, beyond), {}};
+    return {d.weights, d.nearest.normal, offset - d.nearest.distance + std::max(0.0, beyond)};
   }
   return {};
 }
@@ -199,8 +199,8 @@ bool ColliderTriangles::lift_once(const ColliderRow& r, const Touch& touch,
       l.x.at(m, j[k], i[k]) = coordinate(l.x.at(m, j[k], i[k]) + scale * share[k] * moved[m]);
       l.v.at(m, j[k], i[k]) = float(l.v.at(m, j[k], i[k]) + scale * share[k] * gained[m]);
     }
-  // Another feature of a mesh may have come through as well.
-  return !lever && (features_ || touch.depth > kDeep * edge_);
+  // Corners and edges of a mesh may come through side by side.
+  return !lever && touch.depth > (features_ ? AllowedDepth::kSlack : kDeep) * edge_;
 }
 
 }  // namespace weft::physics

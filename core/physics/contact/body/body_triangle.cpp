@@ -52,6 +52,7 @@ class Search {
         c_(c),
         edge_(std::max(edge, longest_side(c.x))),
         offset_(offset),
+        least_(std::max(0.0, -offset)),
         about_(about_triangle(body, c, offset, edge)) {
     found_.nearest.distance = offset;
   }
@@ -74,20 +75,20 @@ class Search {
     const Vec3 p = body_.now.vertex(f.a), q = body_.now.vertex(f.b);
     const bool closed = body_.now.closed();
     if (f.a == f.b) {
-      if (closed && goes_back(f, corner_through(body_, f, c_), !corner_))
+      if (closed && goes_back(f, corner_through(body_, f, c_, least_), !corner_))
         corner_ = true;
       else
         look(f, nearest_to_corner(c_, p));
       return;
     }
     for (std::size_t k = 0; k < 3 && !corner_; ++k)
-      if (!closed || !goes_back(f, edge_through(body_, f, c_, k), false))
+      if (!closed || !goes_back(f, edge_through(body_, f, c_, k, least_), false))
         look(f, nearest_to_edge(c_, k, p, q));
   }
 
   bool goes_back(const Feature& f, const Through& t, bool first) {
-    const double most = first ? -offset_ : -found_.nearest.distance;
-    if (!(t.depth > std::max(0.0, most)) || t.depth > about_.reach) return false;
+    if (!(t.depth > least_) || t.depth > about_.reach) return false;
+    if (!first && !(t.depth > -found_.nearest.distance)) return false;
     const bool crossed = t.meets && t.before < kRests * edge_;
     // Of a thin body the feature across from it is none of those about the way out.
     const auto inside = [&] {
@@ -115,15 +116,15 @@ class Search {
       return point;
     };
     const BodyMoment::Point point = body_.meet(before, here, nearest).now;
-    if (point.distance < found_.nearest.distance)
-      found_ = {{pair.weights, {point.distance, point.normal}},
-                body_.way(point.triangle, point.weights)};
+    if (point.distance >= found_.nearest.distance) return;
+    found_ = {{pair.weights, {point.distance, point.normal}},
+              body_.way(point.triangle, point.weights)};
   }
 
   const BodyPassage& body_;
   const Corners& c_;
-  double edge_;          // m
-  const double offset_;  // m
+  double edge_;                  // m
+  const double offset_, least_;  // m; what has come through by less may stay
   AboutTriangle about_;
   DeepestOnBody found_;
   bool corner_ = false;  // one has come through, and goes before edges that have come after it

@@ -28,7 +28,8 @@ class Leaning {
 
 }  // namespace
 
-Through corner_through(const BodyPassage& body, const Feature& corner, const Corners& c) {
+Through corner_through(const BodyPassage& body, const Feature& corner, const Corners& c,
+                       double least) {
   const BodyMoment& now = body.now;
   const Vec3 tip = now.vertex(corner.a);
   Vec3 across = unit(normal_of(c.x[0], c.x[1], c.x[2])), inward{};
@@ -41,7 +42,7 @@ Through corner_through(const BodyPassage& body, const Feature& corner, const Cor
   inward = unit(inward);
   if (dot(across, inward) > 0) across = times(across, -1);
   const double depth = dot(minus(tip, c.x[0]), across);
-  if (!(depth > 0)) return {};
+  if (!(depth > least)) return {};
   Leaning leaning(across, inward);
   each_edge([&](const Vec3& way) { leaning.add(way); });
 
@@ -77,8 +78,8 @@ Through corner_through(const BodyPassage& body, const Feature& corner, const Cor
   return t;
 }
 
-Through edge_through(const BodyPassage& body, const Feature& edge, const Corners& c,
-                     std::size_t k) {
+Through edge_through(const BodyPassage& body, const Feature& edge, const Corners& c, std::size_t k,
+                     double least) {
   const BodyMoment& now = body.now;
   const std::size_t next = (k + 1) % 3;
   const Vec3 p = now.vertex(edge.a), e = minus(now.vertex(edge.b), p);
@@ -87,10 +88,13 @@ Through edge_through(const BodyPassage& body, const Feature& edge, const Corners
   const double ee = dot(e, e), dd = dot(d, d), square = dot(across, across);
   if (!(square > 1e-9 * dd * ee)) return {};
   const Vec3 own = now.face_normal(edge.triangle), other = now.face_normal(edge.other);
-  const Vec3 outward = unit(plus(own, other));
-  across = times(across, (dot(across, outward) < 0 ? -1 : 1) / std::sqrt(square));
-  const double depth = dot(r, across);
-  if (!(depth > 0)) return {};
+  const Vec3 middle = plus(own, other);
+  if (dot(across, middle) < 0) across = times(across, -1);
+  const double beyond = dot(r, across);
+  if (!(beyond > 0 && beyond * beyond > least * least * square)) return {};
+  const double size = std::sqrt(square), depth = beyond / size;
+  across = times(across, 1 / size);
+  const Vec3 outward = unit(middle);
   const Vec3 along = times(e, 1 / std::sqrt(ee));
   Leaning leaning(across, times(outward, -1));
   leaning.add(cross(own, along));

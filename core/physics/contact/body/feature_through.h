@@ -20,10 +20,11 @@ struct Through {
   Vec3 outward{};  // of the feature, unit
 };
 
-// Of a corner and the inner of a triangle.
-Through corner_through(const BodyPassage& body, const BodyForm::Feature& corner, const Corners& c);
+// Of a corner and the inner of a triangle. None where it is no deeper than `least` [m], which is not negative.
+Through corner_through(const BodyPassage& body, const BodyForm::Feature& corner, const Corners& c,
+                       double least);
 // Of an edge and the side of a triangle from corner k on.
 Through edge_through(const BodyPassage& body, const BodyForm::Feature& edge, const Corners& c,
-                     std::size_t k);
+                     std::size_t k, double least);
 
 }  // namespace weft::physics
