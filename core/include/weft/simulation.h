@@ -104,7 +104,8 @@ class Simulation {
   // first order, are of half a substep before.
   std::vector<double> velocities() const;
   // Replaces all positions and velocities (same order, 3 values per particle), these at time() unless they
-  // are what velocities() tells: then nothing has changed. Throws std::invalid_argument when the sizes differ
+  // are what velocities() tells. What methods and contact remember besides begins anew (docs/determinism.md): only
+  // restore() gives a run back. Throws std::invalid_argument when the sizes differ
   // or a value is not finite.
   void set_state(std::span<const double> positions, std::span<const double> velocities);
 
@@ -126,9 +127,8 @@ class Simulation {
   void move_collider(int collider, const Vec3& target);
   // These throw std::out_of_range for a particle or collider that is not there.
 
-  // The state as it is now, and back to one: positions, velocities, time (to the nearest frame),
-  // what is held and torn, paths of the colliders. What is grabbed or carried is let go: no hand is a part of a
-  // snapshot. restore() throws std::invalid_argument for a
+  // The run as it is now, and back to it, hands included: in the same scene, here or in another Simulation, the same
+  // bits follow as if nothing had happened since, for any threads. restore() throws std::invalid_argument for a
   // snapshot of other cloths; what it has no room for (constraints that the scene does not have) is left
   // out.
   Snapshot snapshot() const;

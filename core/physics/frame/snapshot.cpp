@@ -283,6 +283,14 @@ void Simulation::State::restore(const Snapshot& m) {
   plan_changed();
   set(positions, m.origin, velocities, m.lag);
   if (!on) return;
+  // Of what is held, too: pins on paths have velocities.
+  for (std::size_t n = 0; n < cloths.size(); ++n) {
+    Particles& p = cloths[n]->particles();
+    auto next = m.cloths[n].velocities.begin();
+    p.for_each([&](int j, int i) {
+      for (int k = 0; k < 3; ++k) p.v.at(k, j, i) = *next++;
+    });
+  }
   Keeper keeper(m.run->kept);
   keep(keeper);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include "physics/kernels/line.h"
@@ -31,11 +32,12 @@ class TurnedLinks {
   TurnedLinks(const Lattice& l, int groups)
       : columns_(l.columns), lanes_(std::size_t(groups) * size()), torn_(std::size_t(groups), -1) {}
 
-  // The group's lanes, from `links`, laid out as the lattice.
+  // The group's lanes, from `links`, laid out as the lattice; those of bending change at the end of a frame.
   const T* follow(int group, const LatticeTearing& tearing, const T* links) {
     const int begin = group * kBatchLines, end = std::min(begin + kBatchLines, tearing.rows());
     std::int64_t torn = 0;
-    for (int j = begin; j < end; ++j) torn += tearing.torn(j);
+    for (int j = begin; j < end; ++j)
+      torn += std::is_same_v<T, float> ? tearing.followed(j) : tearing.torn(j);
     T* lanes = lanes_.data() + std::size_t(group) * size();
     if (torn == torn_[std::size_t(group)]) return lanes;
     torn_[std::size_t(group)] = torn;

@@ -51,6 +51,8 @@ class LatticeTearing final : public Tearing {
   TornSurface surface() override;
 
   std::int64_t torn(int j) const { return died_[static_cast<std::size_t>(j)]; }  // of row j
+  // The same, as far as bending has followed.
+  std::int64_t followed(int j) const { return followed_[static_cast<std::size_t>(j)]; }
   // Triangles that are left whole, corners as j*stride + i; empty while the cloth is whole.
   const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
   // Null without bending.
