@@ -33,6 +33,10 @@ class ColliderStage final : public ColliderRowStage {
     if (probe_) probe_->look(row, j, s);
     far_.found(j, s, kernel_(row));
   }
+  void restart() override {
+    ColliderRowStage::restart();
+    if (probe_) probe_->forget();
+  }
   std::size_t bytes() const override { return probe_ ? probe_->bytes() : 0; }
 
  private:

@@ -82,6 +82,7 @@ ColliderTriangles::ColliderTriangles(const ClothParts& parts, const Collider& co
 
 void ColliderTriangles::restart() {
   ColliderRowStage::restart();
+  if (features_) features_->forget();
   std::fill(lengths_.begin(), lengths_.end(), Length{});
 }
 

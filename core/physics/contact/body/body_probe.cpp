@@ -1,5 +1,6 @@
 #include "physics/contact/body/body_probe.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "physics/contact/body/beside_each_other.h"
@@ -38,6 +39,12 @@ BodyProbe::BodyProbe(const BodySurface& surface, const ClothParts& parts)
                       normal_before_.row(j),
                       surface.moves() ? ConstRow3(velocity_.row(j)) : ConstRow3{}});
   }
+}
+
+void BodyProbe::forget() {
+  std::fill(known_.begin(), known_.end(), Known{});
+  for (std::vector<Group>& row : groups_)
+    for (Group& group : row) group.near = {};
 }
 
 std::size_t BodyProbe::bytes() const {

@@ -20,6 +20,9 @@ class BodyProbe {
   // and the bias, or than the particle and the surface have come in this substep; else the distance is a lower
   // bound.
   void look(ColliderRow& row, int j, const Substep& s);
+  // Nothing is known: particles are elsewhere, or at an earlier time. What was near where they had gone astray would be
+  // looked through ever after.
+  void forget();
   std::size_t bytes() const;
 
  private:

@@ -50,6 +50,11 @@ void FeatureProbe::renew(Group& group, const ColliderRow& row, const AboutTriang
                   group.triangle);
 }
 
+void FeatureProbe::forget() {
+  for (std::vector<Group>& row : groups_)
+    for (Group& group : row) group.near = {};
+}
+
 std::size_t FeatureProbe::bytes() const {
   std::size_t bytes = 0;
   for (const std::vector<Group>& row : groups_)

@@ -13,6 +13,8 @@ class FeatureProbe {
   // Those about a triangle of which particle i of row j is a corner, for deepest_among() with any offset up to the
   // row's.
   std::span<const int> about(const ColliderRow& row, const Corners& c, double edge, int j, int i);
+  // Nothing is known: triangles are elsewhere, or at an earlier time.
+  void forget();
   std::size_t bytes() const;
 
  private:
