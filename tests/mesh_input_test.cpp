@@ -193,6 +193,39 @@ TEST(MeshInput, FaultsOfPlacesHaveVertexValueAndRange) {
             "(counted from 0) (edges of at least 1e-6 m)\n");
 }
 
+TEST(MeshInput, AShapeAtRestThatIsNoneIsToldOf) {
+  const Folder folder;
+  folder.write("a.obj", kSquare + "f 1 2 3 4\n");
+  const auto rest = [&](const std::string& word) {
+    return told(read_cloth(folder, R"("mesh": {"file": "a.obj", "rest": ")" + word + R"("})"));
+  };
+  for (const char* word : {"shape", "flat", "a.obj"}) EXPECT_EQ(rest(word), "") << word;
+  EXPECT_EQ(rest(""),
+            "/cloths/0/mesh/rest: rest is empty (shape, flat or uv, or a second mesh file)\n");
+  EXPECT_EQ(rest("Flat"), "/cloths/0/mesh/rest: " + (folder / "Flat") +
+                              ": the file is of no known kind (shape, flat, uv, or a file: .obj, "
+                              ".ply, .glb, .gltf)\n");
+}
+
+TEST(MeshInput, AFaceThatCrossesItselfIsToldOf) {
+  const std::string note =
+      "a.obj: 1 face crosses itself, seen along the normal, first in line 5; "
+      "triangles of it lie on each other";
+  for (const char* face : {"f 1 3 2 4", "f 1 2 4 3"}) {
+    const MeshFile file = read_obj(kSquare + face + "\n", "a.obj");
+    ASSERT_GE(file.notes.size(), 1u) << face;
+    EXPECT_EQ(file.notes[0], note);
+  }
+  // Neither a dent, nor corners in line, nor what is not plane.
+  for (const std::string& places :
+       {kSquare, std::string("v 0 0 0\nv 1 0 0\nv 0.1 0 0.1\nv 0 0 1\n"),
+        std::string("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 1 0 3\n"),
+        std::string("v 0 0 0\nv 1 0.4 0\nv 1 0 1\nv 0 0.4 1\n")}) {
+    EXPECT_TRUE(read_obj(places + "f 1 2 3 4\n", "a.obj").notes.empty()) << places;
+    EXPECT_TRUE(read_obj(places + "f 4 3 2 1\n", "a.obj").notes.empty()) << places;
+  }
+}
+
 TEST(MeshInput, AFaultyAnimationIsOneFault) {
   const Folder folder;
   const auto ball = tests::ball(8, 6, 0.5);

@@ -50,7 +50,9 @@ std::optional<Fault> fault_of_rest(const ClothMesh& mesh, const std::string& pla
 
 // Cuts a polygon into triangles of its corners' numbers, by ears, seen along its mean normal; the shorter
 // diagonal of a quadrilateral where both lie inside.
-std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec3>& corners);
+// `crosses`: set where the polygon is seen to cross itself.
+std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec3>& corners,
+                                             bool* crosses = nullptr);
 
 // Drops what is given twice, turns faces so that neighbours agree, and tells of what cannot be cloth.
 void repair(RawMesh& mesh);

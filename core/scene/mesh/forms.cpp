@@ -11,6 +11,12 @@ void check_file(const Json& mesh, const std::string& place, Check& result) {
     result.fault(place + "/file", kNoMeshFile, kMeshFiles);
 }
 
+void check_rest(const Json& mesh, const std::string& place, Check& result) {
+  const Json* const rest = member(mesh, "rest");
+  if (rest && *rest == "")
+    result.fault(place + "/rest", "rest is empty", "shape, flat or uv, or a second mesh file");
+}
+
 void check_pin(const Json& pin, const std::string& place, Check& result) {
   const Json* const at = member(pin, "at");
   const Json& named = at ? *at : pin;
@@ -30,6 +36,7 @@ void check_forms(const Json& document, Check& result) {
     const Json* const mesh = member((*cloths)[c], "mesh");
     if (!mesh || !mesh->is_object()) continue;
     check_file(*mesh, place + "/mesh", result);
+    check_rest(*mesh, place + "/mesh", result);
     const Json* const pins = member((*cloths)[c], "pins");
     for (std::size_t k = 0; pins && pins->is_array() && k < pins->size() && !result.full(); ++k)
       check_pin((*pins)[k], place + "/pins/" + std::to_string(k), result);

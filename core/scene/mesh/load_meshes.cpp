@@ -138,8 +138,11 @@ void load_meshes(Scene& scene, const std::string& folder, std::vector<Fault>& fa
   for_each_mesh(scene, [&](MeshSource& mesh, const std::string& place) {
     if (mesh.file.empty() || mesh.shape) return;
     MeshFile file = read_mesh((std::filesystem::path(folder) / mesh.file).string());
+    // A word that is none of those of `rest` is taken for a file.
+    const bool word = place.ends_with("/rest") && !is_mesh_file(mesh.file);
     for (Fault& fault : file.faults)
-      faults.push_back({place_of_file(place), fault.place + ": " + fault.what, fault.allowed});
+      faults.push_back({place_of_file(place), fault.place + ": " + fault.what,
+                        (word ? "shape, flat, uv, or a file: " : "") + fault.allowed});
     notes.insert(notes.end(), file.notes.begin(), file.notes.end());
     if (!file.faults.empty()) return;
     mesh.shape = std::make_shared<const TriangleMesh>(std::move(file.mesh));

@@ -29,7 +29,10 @@ bool Polygons::add(std::vector<Corner> corners, const std::vector<TriangleMesh::
   TriangleMesh& mesh = raw_.file.mesh;
   std::vector<Vec3> at;
   for (const Corner& c : corners) at.push_back(mesh.vertices[std::size_t(c.vertex)]);
-  for (const std::array<int, 3>& cut : triangles_of(at)) {
+  bool crosses = false;
+  const auto cuts = triangles_of(at, &crosses);
+  if (crosses) ++crossing_, first_crossing_ = first_crossing_ ? first_crossing_ : line;
+  for (const std::array<int, 3>& cut : cuts) {
     if (mesh.triangles.size() == kMaxTriangles) {
       raw_.fault(line, "the mesh has more triangles", "at most 4194304");
       return false;
@@ -56,6 +59,11 @@ void Polygons::finish() {
     raw_.note(std::to_string(repeated_) + (repeated_ == 1 ? " face repeats" : " faces repeat") +
               " a vertex, first in " + raw_.where(first_repeated_) +
               "; the repeated corners are left out");
+  if (crossing_ > 0)
+    raw_.note(std::to_string(crossing_) +
+              (crossing_ == 1 ? " face crosses itself" : " faces cross themselves") +
+              ", seen along the normal, first in " + raw_.where(first_crossing_) +
+              "; triangles of it lie on each other");
   if (!has_uv_) raw_.file.mesh.uv.clear();
   if (raw_.file.mesh.triangles.empty() && raw_.file.faults.empty())
     raw_.fault(0, "the mesh has no faces", "at least one");

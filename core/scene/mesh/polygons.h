@@ -23,6 +23,7 @@ class Polygons {
   RawMesh& raw_;
   bool has_uv_ = false;
   int repeated_ = 0, first_repeated_ = 0;
+  int crossing_ = 0, first_crossing_ = 0;
 };
 
 // Tells of so many vertices that were copies.

@@ -218,7 +218,7 @@ void RawMesh::fault(int line, std::string what, std::string allowed) const {
   file.faults.push_back({place, std::move(what), std::move(allowed)});
 }
 
-std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec3>& corners) {
+std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec3>& corners, bool* crosses) {
   std::vector<int> left(corners.size());
   std::iota(left.begin(), left.end(), 0);
   Vec3 normal{};  // Newell's
@@ -252,6 +252,7 @@ std::vector<std::array<int, 3>> triangles_of(const std::vector<Vec3>& corners) {
       best = k;
       shortest = dot(across, across);
     }
+    if (best == n && crosses) *crosses = true;
     best %= n;  // of a polygon that crosses itself: any
     triangles.push_back({left[(best + n - 1) % n], left[best], left[(best + 1) % n]});
     left.erase(left.begin() + std::ptrdiff_t(best));
