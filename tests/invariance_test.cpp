@@ -81,7 +81,7 @@ TEST(Invariance, TheUnitOfLengthIsFree) {
     if (feature.name == "pull") return;  // to a target that is not in the scene
     // What surfaces divide by is kept off zero by lengths.
     const double least = feature.name == "two sheets, surface" ? 1e-3 : 0;
-    for (const double scale : {0.125, 8.0}) {
+    for (const double scale : {0.125, 2.0}) {  // about one origin
       Feature same = feature;
       if (feature.name == "carried pins")
         same.begin = [=](Simulation& s) { s.carry(0, {0.5 * scale, 0.25 * scale, 0}); };

@@ -171,7 +171,7 @@ class MeshScene : public testing::Test {
 TEST_F(MeshScene, IsReadBesideTheSceneAndPlaced) {
   const SceneFile file = read(
       R"({"mesh": {"file": "square.obj", "scale": 2, "rotate": [90, 0, 0], "translate": [0, 3, 0]},
-          "pins": [0, {"at": [3, 0], "keys": [[0, 0, 1, 0]]}]})");
+          "pins": [0, {"at": 3, "keys": [[0, 0, 1, 0]]}]})");
   ASSERT_TRUE(file.faults.empty()) << file.faults[0].what;
   const Simulation run(file.scene, {.threads = 1});
   const auto x = positions_of(run);
@@ -191,7 +191,8 @@ TEST_F(MeshScene, NamesWhatIsWrong) {
   EXPECT_EQ(told(R"({"mesh": {"file": "square.obj"}, "pins": [5]})"),
             "/cloths/0/pins/0: the pin 5 is no vertex of the mesh (0 to 4)\n");
   EXPECT_EQ(told(R"({"mesh": {"file": "square.obj", "scale": 1e5}})"),
-            "/cloths/0/mesh/scale: the mesh reaches 100000.000000 m away (up to 10000 m)\n");
+            "/cloths/0/mesh/scale: the mesh reaches 100000 m away, at vertex 1 (counted from 0) "
+            "(-10000 to 10000 m along each axis)\n");
   EXPECT_EQ(
       told(R"({"mesh": {"file": "square.obj"}, "tears": "particles", "level": 2,
                      "self_collision": {"mode": "surface", "response": "course"}})"),

@@ -14,21 +14,24 @@ using physics::FollowedSubsteps;
 
 TEST(FollowedSubsteps, MoreAtOnceAndFewerAfterAWhile) {
   FollowedSubsteps followed;
-  EXPECT_EQ(followed.next(10, 10, 0.1), 10);
-  EXPECT_GE(followed.next(30, 10, 0.2), 30);
-  for (double time = 0.3; time < 1.15; time += 0.1) EXPECT_EQ(followed.next(10, 32, time), 32);
-  EXPECT_EQ(followed.next(12, 32, 1.3), 12);
+  EXPECT_EQ(followed.next(10, 0.1, false), 10);
+  const int more = followed.next(30, 0.2, false);
+  EXPECT_GE(more, 30);
+  for (double time = 0.3; time < 1.15; time += 0.1) EXPECT_EQ(followed.next(10, time, false), more);
+  const int fewer = followed.next(12, 1.3, false);
+  EXPECT_GE(fewer, 12);
+  EXPECT_LT(fewer, more);
 }
 
 // What swings to and fro ends up with what its swings need.
 TEST(FollowedSubsteps, NeedsThatComeAndGoChangeThemAFewTimes) {
   for (const double period : {0.3, 2.1, 7.0}) {
     FollowedSubsteps followed;
-    int now = 10, changes = 0;
+    int now = 0, changes = 0;
     for (int frame = 1; frame <= 60 * 200; ++frame) {
       const double time = frame / 60.0;
       const bool stretched = time / period - int(time / period) < 0.1;
-      const int next = followed.next(stretched ? 13 : 10, now, time);
+      const int next = followed.next(stretched ? 13 : 10, time, false);
       changes += next != now;
       now = next;
       ASSERT_GE(now, stretched ? 13 : 10);
@@ -37,22 +40,13 @@ TEST(FollowedSubsteps, NeedsThatComeAndGoChangeThemAFewTimes) {
   }
 }
 
-TEST(FollowedSubsteps, AHandMakesItForgetWhatItWaitedFor) {
+TEST(FollowedSubsteps, WhatAHandAskedForPassesAtOnce) {
   FollowedSubsteps followed;
-  int now = 10;
-  const auto calm_after = [&](double start) {
-    now = followed.next(40, now, start);
-    for (double time = start; time < start + 100; time += 0.1)
-      if (const int next = followed.next(10, now, time); next != now) {
-        now = next;
-        return time - start;
-      }
-    return 100.0;
-  };
-  const double first = calm_after(1), second = calm_after(10);
-  EXPECT_GT(second, 1.8 * first);
-  followed.begin_again();
-  EXPECT_LT(calm_after(100), 1.2 * first);
+  EXPECT_EQ(followed.next(10, 0.1, false), 10);
+  EXPECT_EQ(followed.next(40, 0.2, true), 40);
+  EXPECT_EQ(followed.next(20, 0.3, true), 20);
+  EXPECT_EQ(followed.next(11, 0.4, false), 11);
+  EXPECT_EQ(followed.next(10, 0.5, false), 11);
 }
 
 enum class Held { side, corner, middle };

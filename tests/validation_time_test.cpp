@@ -46,6 +46,9 @@ TEST(FreeFall, SaysWhereSubstepsAreTooShort) {
         scene.cloths.emplace_back();
         scene.cloths[0].grid = {9, 6, {-size, size, -size}, {size, 0, 0}, {0, 0, size}, 0};
         scene.cloths[0].stiffness = {0.001, 0.001, 0};
+        // Another as far below: heights are counted from zero.
+        scene.cloths.push_back(scene.cloths[0]);
+        scene.cloths[1].grid.origin[1] = -size;
         scene.solver.method = method;
         scene.time = {1e-4, substeps, 5};
         Simulation simulation(scene);

@@ -17,7 +17,7 @@ Scene moved(Scene scene, const Vec3& by) {
   const auto move = [&](Vec3& p) { p = plus(p, by); };
   for (Cloth& cloth : scene.cloths) {
     move(cloth.grid.origin);
-    move(cloth.mesh.translate);
+    if (cloth.mesh.given()) move(cloth.mesh.translate);
     for (Pin& pin : cloth.pins) {
       if (!pin.of_several())
         for (Key& key : pin.keys) move(key.position);

@@ -364,10 +364,9 @@ int Simulation::State::substeps_within(double limit) const {
 }
 
 void Simulation::State::follow_stretch(double limit) {
-  if (hands_.act()) time_step.followed.begin_again();
-  const int now = time_step.substeps;
-  const int count = time_step.followed.next(substeps_within(limit), now, time());
-  if (count != now) set_substeps(count);
+  const int needed = physics::substeps_within(limit, scene.time, 1);
+  const int count = time_step.followed.next(needed, time(), hands_.act()) * guard_.finer();
+  if (count != time_step.substeps) set_substeps(count);
 }
 
 }  // namespace weft

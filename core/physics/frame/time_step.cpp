@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "physics/frame/projection_substep.h"
 #include "physics/frame/step_guard.h"
@@ -18,23 +19,33 @@ constexpr double kGrabbed = 1.6;  // on ω², at least: room for what a hand may
 // to that (a sheet without shear springs, or with nothing else); and up to twice its damping along springs.
 constexpr double kFolded = 2;
 
+// What is stretched a little more needs no other change.
+int with_room(int substeps) {
+  constexpr int kRoom = 6;
+  return substeps + substeps / kRoom;
+}
+
 }  // namespace
 
-// One of so many substeps is added to what is needed, so that what is stretched a little more needs no other change.
-constexpr int kRoom = 6;
-int FollowedSubsteps::next(int needed, int now, double time) {
+int FollowedSubsteps::next(int needed, double time, bool hand) {
   const auto begin = [&] { since_ = time, most_ = 0; };
-  if (needed > now) {
+  if (hand || std::exchange(hand_, hand)) {
+    hand_ = hand;
     begin();
-    return needed + needed / kRoom;
+    calm_ = kCalm;
+    return now_ = needed;
+  }
+  if (needed > now_) {
+    begin();
+    return now_ = now_ == 0 ? needed : with_room(needed);
   }
   most_ = std::max(most_, needed);
-  if (time >= since_ && time - since_ < calm_) return now;
+  if (time >= since_ && time - since_ < calm_) return now_;
   const int fewer = most_;
   begin();
-  if (fewer >= now - 2 * now / kRoom) return now;  // not worth a change
+  if (with_room(with_room(fewer)) >= now_) return now_;  // not worth a change
   calm_ *= 2;
-  return fewer;
+  return now_ = fewer;
 }
 
 StableSubsteps stable_substeps(const Cloths& cloths, std::span<const Spectrum> spectra) {

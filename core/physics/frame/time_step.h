@@ -21,15 +21,16 @@ inline constexpr double kLimitShare = 0.85;  // of the stability limit, in autom
 // each time.
 class FollowedSubsteps {
  public:
-  // The frame that ended at a time [s] needed so many; it had `now`. Returns how many the next one takes.
-  int next(int needed, int now, double time);
-  // What was needed so far tells nothing of what comes.
-  void begin_again() { calm_ = kCalm; }
+  // The frame that ended at a time [s] needed so many; `hand`: while a hand acts, and when it has let go, frames take
+  // what they need. Returns how many the next one takes.
+  int next(int needed, double time, bool hand);
 
  private:
   static constexpr double kCalm = 1;  // s
   double since_ = 0, calm_ = kCalm;   // s
   int most_ = 0;                      // needed since then
+  int now_ = 0;                       // 0: nothing was needed yet
+  bool hand_ = false;                 // acted in the frame before
 };
 
 struct TimeStep {

@@ -116,7 +116,8 @@ WEFT_INLINE Push along_chords(const CollideRow& r, const Surface& before, Wide w
           select(slides, middle, straight.across), slides};
 }
 
-constexpr float kRounding = 1e-12f;  // of a place's square: what eight units in the last place come to
+// Of a place's square: what eight units in the last place come to, squared; and less than what moves any.
+constexpr float kRounding = 1e-12f, kNothing = 1e-16f;
 
 // What sticks to a surface at rest stays where it was, unless that is off the surface by more than rounding: else
 // positions would wander by a unit in the last place or two in every substep, and stretch what lies there until it slides.
@@ -132,11 +133,11 @@ WEFT_INLINE void rub(const CollideRow& r, int i, Wide3 u, WideInt touching, cons
   // As contact/friction.h has it.
   const Wide taken = max(r.friction_dynamic * pressed, 2.0f * holds - distance);
   const WideInt sticks = distance <= holds;
-  const Wide3 rubbed =
-      tangential * select(sticks, Wide{}, max(Wide{}, 1.0f - taken / distance));
+  const Wide3 rubbed = tangential * select(sticks, Wide{}, max(Wide{}, 1.0f - taken / distance));
   const Wide3 x = load3(r.x, i), before = x - v * wide(r.dt);
   const Wide off = push.depth + into * r.dt;
-  const WideInt rests = sticks & (dot(u, u) == 0.0f) & (off * off <= dot(x, x) * kRounding);
+  const WideInt stands = dot(u, u) * (r.dt * r.dt) <= dot(x, x) * kNothing;
+  const WideInt rests = sticks & stands & (off * off <= dot(x, x) * kRounding);
   const Wide3 moved = x + n * push.depth + (rubbed - tangential) * wide(r.dt);
   store3(r.x, i, select(touching, select(rests, before, moved), x));
   store3(r.v, i, select(touching, u + rubbed + n * max(into, Wide{}), v));

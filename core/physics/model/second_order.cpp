@@ -1,8 +1,6 @@
 // Stages "predict" and "velocity" of the second-order substep (kernels/second_order.cpp).
 #include "physics/kernels/second_order.h"
 
-#include <limits>
-
 #include "physics/model/path.h"
 #include "physics/model/projected_motion.h"
 #include "physics/step/keeper.h"
@@ -48,11 +46,8 @@ class Predict final : public RowStage {
         multipliers_(multipliers),
         corrections_(corrections),
         dt_(parts.particles.rows, 0.0) {}
-  // What moves is under way, under loads that are not known here: no free flight lies before it. The first substep is
-  // one of implicit Euler, as of all whose velocity is not what the substep before left.
   void restart() override {
-    std::fill(dt_.begin(), dt_.end(), kNoPast);
-    history_.v_end.scale(std::numeric_limits<float>::quiet_NaN());
+    std::fill(dt_.begin(), dt_.end(), 0.0);
     history_.left.clear();
     history_.v_left.clear();
     const AlignedArray<float>& mass = parts_.particles.inverse_mass;
@@ -99,7 +94,7 @@ class Predict final : public RowStage {
   void run_alike(int begin, int end, const Substep& s) {
     SecondOrderRow r = rows_of(parts_, history_, corrections_, begin, end, s.dt);
     const Vec3 g = gravity_at(parts_.scene, s.time);
-    r.fresh = dt_[begin] != s.dt && dt_[begin] != kNoPast;
+    r.fresh = dt_[begin] != s.dt;
     std::fill(dt_.begin() + begin, dt_.begin() + end, s.dt);
     r.v_waits = !s.velocities_known;
     r.gx = float(g[0]);
@@ -112,8 +107,7 @@ class Predict final : public RowStage {
   History& history_;
   Multipliers* multipliers_;
   Rows* corrections_;
-  static constexpr double kNoPast = -1;
-  std::vector<double> dt_;  // s, of every row's substep before; 0 = none yet
+  std::vector<double> dt_;  // s, of every row's substep before; 0 = none
 };
 
 class Velocity final : public RowStage {
