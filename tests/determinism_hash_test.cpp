@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(, Snapshots, testing::ValuesIn(scene_names({"huge", "fo
 // Large enough to be shared out by every method, even in frames of ten substeps (passes.cpp).
 Scene large_sheet(Method method) {
   Cloth cloth;
-  cloth.grid = {141, 131, {0, 0, 0}, {1, 0, 0}, {0, 0, 1.2}, 0.002};
+  cloth.grid = {141, 131, {0, 0, 0}, {1, 0, 0}, {0, 0, 1.2}, 0.0015};
   cloth.drag = 0.5;
   cloth.strain_limit = 0.1;
   cloth.stiffness_gradient = 0.2;

@@ -14,6 +14,7 @@ using physics::FollowedSubsteps;
 
 TEST(FollowedSubsteps, MoreAtOnceAndFewerAfterAWhile) {
   FollowedSubsteps followed;
+  followed.take(10, 0);
   EXPECT_EQ(followed.next(10, 0.1, false), 10);
   const int more = followed.next(30, 0.2, false);
   EXPECT_GE(more, 30);
@@ -27,6 +28,7 @@ TEST(FollowedSubsteps, MoreAtOnceAndFewerAfterAWhile) {
 TEST(FollowedSubsteps, NeedsThatComeAndGoChangeThemAFewTimes) {
   for (const double period : {0.3, 2.1, 7.0}) {
     FollowedSubsteps followed;
+    followed.take(10, 0);
     int now = 0, changes = 0;
     for (int frame = 1; frame <= 60 * 200; ++frame) {
       const double time = frame / 60.0;
@@ -42,6 +44,7 @@ TEST(FollowedSubsteps, NeedsThatComeAndGoChangeThemAFewTimes) {
 
 TEST(FollowedSubsteps, WhatAHandAskedForPassesAtOnce) {
   FollowedSubsteps followed;
+  followed.take(10, 0);
   EXPECT_EQ(followed.next(10, 0.1, false), 10);
   EXPECT_EQ(followed.next(40, 0.2, true), 40);
   EXPECT_EQ(followed.next(20, 0.3, true), 20);

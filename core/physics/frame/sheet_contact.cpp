@@ -43,6 +43,21 @@ void SheetContact::restart() {
   until_ = 1;
 }
 
+void SheetContact::save() {
+  untangle_at_start_.clear();
+  if (!untangle_->due()) return;
+  Keeper keeper;
+  untangle_->keep(keeper);
+  untangle_at_start_ = keeper.take();
+}
+
+void SheetContact::go_back() {
+  contact_->go_back();
+  if (untangle_at_start_.empty()) return;
+  Keeper keeper(untangle_at_start_);
+  untangle_->keep(keeper);
+}
+
 void SheetContact::keep(Keeper& keeper) {
   contact_->keep(keeper, meets_first_);
   untangle_->keep(keeper);

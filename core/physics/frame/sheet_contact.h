@@ -3,7 +3,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "physics/contact/self/self_contact.h"
 #include "physics/contact/self/untangle.h"
@@ -22,8 +24,9 @@ class SheetContact {
   // Positions or velocities are others than the last frame left; `look`: sheets may cross.
   void restart();
   void look() { untangle_->look(); }
-  // Positions alone are what they were before.
-  void go_back() { contact_->go_back(); }
+  // A frame begins, to which go_back() leads: positions alone are what they were then, and what is to come apart.
+  void save();
+  void go_back();
 
   void keep(Keeper& keeper);
 
@@ -68,7 +71,8 @@ class SheetContact {
   std::unique_ptr<SelfContact> contact_;
   std::unique_ptr<Untangle> untangle_;
   const bool meets_first_;
-  int until_ = 1;  // substeps from one run of contact to the next
+  std::vector<std::byte> untangle_at_start_;  // empty: nothing was to come apart
+  int until_ = 1;                             // substeps from one run of contact to the next
   std::chrono::nanoseconds spent_{0};
   std::int64_t runs_ = 0;
 };

@@ -276,6 +276,7 @@ void Simulation::State::restore(const Snapshot& m) {
   const bool forces = is_explicit(time_step.method);
   time_step.lag = forces ? time_step.dt / 2 : 0;
   time_step.followed = {};
+  time_step.followed.take(began_.substeps, time());
   for (std::size_t n = 0; forces && n < cloths.size(); ++n)
     time_step.spectra[n] = cloths[n]->model().spectrum(masses(n).span());
   status = Status{};

@@ -196,6 +196,7 @@ void Simulation::State::open_guard() {
 
 void Simulation::State::save() {
   start_.save(cloths, sleeping.get(), time_step, contact != nullptr);
+  if (contact) contact->save();
 }
 
 void Simulation::State::put_back() {

@@ -198,6 +198,7 @@ void Simulation::State::choose_method_and_substeps() {
   plan.fallback = time_step.method != scene.solver.method;
   plan.notes = std::move(notes);
   take_substeps(count);
+  time_step.followed.take(count, time());
   if (is_explicit(time_step.method)) {
     time_step.lag = time_step.dt / 2;
     if (!scene.solver.full_first_kick)
@@ -278,6 +279,7 @@ bool Simulation::State::carry_out(Verdict verdict) {
       break;
     case Verdict::refine_to_limit:
       put_back();
+      time_step.followed.take(physics::substeps_within(time_step.limit, scene.time, 1), time());
       set_substeps(substeps_within(time_step.limit));
       break;
     case Verdict::refine:

@@ -37,7 +37,7 @@ int FollowedSubsteps::next(int needed, double time, bool hand) {
   }
   if (needed > now_) {
     begin();
-    return now_ = now_ == 0 ? needed : with_room(needed);
+    return now_ = with_room(needed);
   }
   most_ = std::max(most_, needed);
   if (time >= since_ && time - since_ < calm_) return now_;
@@ -46,6 +46,10 @@ int FollowedSubsteps::next(int needed, double time, bool hand) {
   if (with_room(with_room(fewer)) >= now_) return now_;  // not worth a change
   calm_ *= 2;
   return now_ = fewer;
+}
+
+void FollowedSubsteps::take(int substeps, double time) {
+  now_ = substeps, since_ = time, most_ = 0;
 }
 
 StableSubsteps stable_substeps(const Cloths& cloths, std::span<const Spectrum> spectra) {

@@ -24,13 +24,15 @@ class FollowedSubsteps {
   // The frame that ended at a time [s] needed so many; `hand`: while a hand acts, and when it has let go, frames take
   // what they need. Returns how many the next one takes.
   int next(int needed, double time, bool hand);
+  // Frames have so many from a time on [s].
+  void take(int substeps, double time);
 
  private:
   static constexpr double kCalm = 1;  // s
   double since_ = 0, calm_ = kCalm;   // s
   int most_ = 0;                      // needed since then
-  int now_ = 0;                       // 0: nothing was needed yet
-  bool hand_ = false;                 // acted in the frame before
+  int now_ = 0;
+  bool hand_ = false;  // acted in the frame before
 };
 
 struct TimeStep {
