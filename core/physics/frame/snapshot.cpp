@@ -86,6 +86,9 @@ bool goes_on_in(const Scene& a, Scene b) {
 
 Snapshot Simulation::State::snapshot() {
   Snapshot m = told();
+  // Which of two hands at one cloth came first is not known: its stages could not be told apart.
+  const int grabbed = hands_.grabbed();
+  if (grabbed >= 0 && hands_.carries(std::size_t(grabbed))) return m;
   if (!kept_scene_) kept_scene_ = std::make_shared<const Scene>(placed.given());
   auto run = std::make_shared<Snapshot::Run>();
   run->scene = kept_scene_;
