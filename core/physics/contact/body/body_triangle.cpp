@@ -51,7 +51,6 @@ class Search {
       : body_(body),
         c_(c),
         edge_(std::max(edge, longest_side(c.x))),
-        offset_(offset),
         least_(std::max(0.0, -offset)),
         about_(about_triangle(body, c, offset, edge)) {
     found_.nearest.distance = offset;
@@ -123,8 +122,8 @@ class Search {
 
   const BodyPassage& body_;
   const Corners& c_;
-  double edge_;                  // m
-  const double offset_, least_;  // m; what has come through by less may stay
+  double edge_;         // m
+  const double least_;  // m; what has come through by less may stay
   AboutTriangle about_;
   DeepestOnBody found_;
   bool corner_ = false;  // one has come through, and goes before edges that have come after it
