@@ -6,8 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "physics/step/keeper.h"
-
 namespace weft::physics {
 namespace {
 
@@ -371,19 +369,6 @@ void Blocks::remember() {
     for (const auto& [j, i] : borders_[std::size_t(&b - blocks_.data())])
       for (int k = 0; k < 3; ++k) then_[sheet].at(k, j, i) = l.x.at(k, j, i);
   }
-}
-
-// Boxes and edges as measured last say when contact comes again, and so what comes of it.
-void Blocks::keep(Keeper& keeper) {
-  keeper(blocks_);
-  keeper(bounds_);
-  keeper(before_);
-  keeper(flat_);
-  for (std::vector<Flat>& pairs : flat_patches_) keeper(pairs);
-  keeper(edges_);
-  keeper(active_);
-  for (std::size_t s = 0; active_ > 0 && s < sheets_.size(); ++s)
-    sheets_[s].points->keep(then_[s], keeper);
 }
 
 Spread Blocks::box() const {

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "physics/contact/self/held.h"
-#include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
@@ -284,11 +283,6 @@ void NearSquares::find_in(std::size_t chunk, float skin) {
     found.neighbour[kept++] = q;
   }
   found.count = kept;
-}
-
-void NearSquares::keep(Keeper& keeper) {
-  keeper(left_out_);
-  keeper(passing_);
 }
 
 void NearSquares::wake() {

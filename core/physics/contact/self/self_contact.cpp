@@ -11,7 +11,6 @@
 #include "physics/contact/self/held.h"
 #include "physics/model/clamp_to_int.h"
 #include "physics/model/lattice/stages.h"
-#include "physics/step/keeper.h"
 #include "weft/mesh.h"
 
 namespace weft::physics {
@@ -207,27 +206,6 @@ void SelfContact::begin(Threads& threads) {
   blocks_.begin(threads);
   if (near_) near_->wake();
   begun_ = true;
-}
-
-// Lists only save a search: what they were made of is kept, and pairs are searched for again when that is put back.
-void SelfContact::keep(Keeper& keeper, bool apart) {
-  for (bool* is : {&begun_, &listed_, &forced_, &touched_}) keeper(*is);
-  keeper(skin_);
-  keeper(kept_runs_);
-  keeper(record_);
-  blocks_.keep(keeper);
-  answer_.keep(keeper);
-  if (spheres_) spheres_->keep(keeper);
-  if (surfaces_) surfaces_->keep(keeper);
-  if (near_) near_->keep(keeper);
-  if (apart) keeper(place_);
-  if (!keeper.puts_back()) return;
-  lost_ = listed_;
-  if (near_) near_->wake();
-  if (apart) return;
-  Threads one(1);
-  gather(one);
-  std::swap(place_, now_);
 }
 
 void SelfContact::restart() {
