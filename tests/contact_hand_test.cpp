@@ -154,24 +154,27 @@ TEST(ContactHand, StrokesLeaveTheMethodAlone) {
       }
 }
 
-// A hand that tears about beyond all reason takes springs more substeps; when all is calm again the run goes on as it
-// began.
+// A hand that tears about beyond all reason heats springs up until they take more substeps, or another
+// method; when all is calm again the run goes on as it began.
 TEST(ContactHand, WhatItAskedForPasses) {
   Scene scene = read_scene("swing").scene;
   scene.cloths[0].drag = 2;
+  // As near to the limit of what a hand may stretch as automatic substeps do not come: there vibrations grow.
+  const double stretched = Simulation(scene).plan().dt_limit / std::sqrt(1.6);
+  scene.time.substeps = int(std::ceil(scene.time.frame / (0.9 * stretched)));
   Person person(scene);
   const int began = person.simulation.substeps();
-  int most = 0;
+  bool fell_back = false;
   for (int frame = 0; frame < 90; ++frame) {
-    const double l = (frame % 2 == 0 ? 3 : -3) * person.side;
+    const double l = frame % 2 == 0 ? person.side : -person.side;
     person.move(Person::kPull, {l, -l, l}, {});
-    most = std::max(most, person.simulation.substeps());
+    fell_back |= person.simulation.plan().fallback;
   }
-  EXPECT_GT(most, 1.15 * began);
+  EXPECT_TRUE(fell_back);
   person.let_go();
   advance(person.simulation, person.simulation.time() + 10);
   EXPECT_FALSE(person.simulation.plan().fallback);
-  EXPECT_LT(person.simulation.substeps(), 1.2 * 7 / 6 * began);  // it hangs, and has room
+  EXPECT_LT(person.simulation.substeps(), 1.2 * began);
   EXPECT_GT(person.simulation.plan().dt_limit, 0);
 }
 

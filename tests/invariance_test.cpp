@@ -77,11 +77,14 @@ void each(const Compare& compare) {
 }
 
 TEST(Invariance, TheUnitOfLengthIsFree) {
-  each([](const Feature& feature, const Scene& scene, const Places& places) {
+  each([](const Feature& feature, const Scene& beside, const Places&) {
     if (feature.name == "pull") return;  // to a target that is not in the scene
     // What surfaces divide by is kept off zero by lengths.
     const double least = feature.name == "two sheets, surface" ? 1e-3 : 0;
-    for (const double scale : {0.125, 2.0}) {  // about one origin
+    // About zero, so that it is the origin in any unit.
+    const Scene scene = moved(beside, {-0.25, 0, -0.25});
+    const Places places = half_a_second(scene, feature);
+    for (const double scale : {0.125, 8.0}) {
       Feature same = feature;
       if (feature.name == "carried pins")
         same.begin = [=](Simulation& s) { s.carry(0, {0.5 * scale, 0.25 * scale, 0}); };

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "weft/mesh.h"
+#include "weft/simulation.h"
 
 namespace weft {
 
@@ -76,6 +78,19 @@ inline std::shared_ptr<TriangleMesh> made_up_cushion(int rings, double half) {
   for (int k = 0; k < 6 * rings; ++k)
     mesh->edges.push_back({number(rings, k), count + number(rings, k)});
   return mesh;
+}
+
+// Of stiffness C11 [N/m], with a coupling of 0.3 of it.
+inline Membrane alike_in_all_directions(double stiffness) {
+  return {stiffness, stiffness, 0.3 * stiffness, 0.35 * stiffness, 0};
+}
+
+// Of a ball about zero [m].
+inline double mean_radius(const Simulation& run) {
+  const std::vector<double> x = run.positions();
+  double sum = 0;
+  for (std::size_t p = 0; p < x.size(); p += 3) sum += std::hypot(x[p], x[p + 1], x[p + 2]);
+  return sum / (double(x.size()) / 3);
 }
 
 // What triangles enclose, in double precision [m³].

@@ -24,16 +24,8 @@ Scene balloon(int times, const Material& material, int order) {
   Cloth& cloth = scene.cloths.emplace_back();
   cloth.mesh.shape = made_up_balloon(times, kRadius);
   cloth.density = material.density;
-  const double c = material.stiffness;
-  cloth.membrane = {c, c, 0.3 * c, 0.35 * c, 0};
+  cloth.membrane = alike_in_all_directions(material.stiffness);
   return scene;
-}
-
-double mean_radius(const Simulation& run) {
-  const std::vector<double> x = run.positions();
-  double sum = 0;
-  for (std::size_t p = 0; p < x.size(); p += 3) sum += std::hypot(x[p], x[p + 1], x[p + 2]);
-  return sum / (double(x.size()) / 3);
 }
 
 bool tells_strain(const Simulation& run) {

@@ -26,17 +26,10 @@ Scene balloon(Fabric fabric, int times = 3, double stiffness = 600) {
   cloth.mesh.shape = made_up_balloon(times, kRadius);
   cloth.density = kDensity;
   if (fabric == Fabric::membrane)
-    cloth.membrane = {stiffness, stiffness, 0.3 * stiffness, 0.35 * stiffness, 0};
+    cloth.membrane = alike_in_all_directions(stiffness);
   else
     cloth.stiffness.structural = stiffness;
   return scene;
-}
-
-double mean_radius(const Simulation& run) {
-  const std::vector<double> x = run.positions();
-  double sum = 0;
-  for (std::size_t p = 0; p < x.size(); p += 3) sum += std::hypot(x[p], x[p + 1], x[p + 2]);
-  return sum / (double(x.size()) / 3);
 }
 
 // A ball of membrane of stiffness C = C11 + C12: 2 T/r = p, which is C (λ² - 1) = p R λ.

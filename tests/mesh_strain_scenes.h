@@ -25,7 +25,7 @@ inline Scene projected(std::shared_ptr<const TriangleMesh> mesh, const Membrane&
 inline Scene by_forces(Scene scene) {
   scene.solver = {};
   scene.time.substeps = kAutoSubsteps;
-  scene.time.substeps = 4 * Simulation(scene, {.threads = 1}).substeps();
+  scene.time.substeps = 2 * Simulation(scene, {.threads = 1}).substeps();
   return scene;
 }
 
