@@ -80,9 +80,10 @@ class EnergyGuard {
   bool holds() const { return kinetic_ <= bound(); }
   // Takes the frame last looked at, of so many substeps, for good.
   void accept(int substeps);
-  // What was put in, and released by gravity, so far; and the motion last looked at [J].
+  // What was put in, and released by gravity, so far; the motion last looked at, and its potential of gravity [J].
   double given() const { return put_in_ + released_; }
   double kinetic() const { return kinetic_; }
+  double potential() const { return potential_; }
   // Whether so much elastic energy [J] and the motion, of sheets that gravity alone moved so far, are more than that.
   bool is_made(double held) const { return held + kinetic_ > kMade * given(); }
   // What velocities must be multiplied with to be within the bound.

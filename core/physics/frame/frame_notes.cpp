@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/contact/body/pierced.h"
 #include "physics/frame/projection_substep.h"
 #include "physics/model/number.h"
 #include "physics/step/keeper.h"
@@ -28,17 +29,22 @@ void FrameNotes::look(const EndedFrame& frame, std::vector<std::string>& notes) 
   // These looks take about as long as a sweep.
   if (frame.number % kFramesBetweenLooks != 0) return;
   if (frame.number % (2 * kFramesBetweenLooks) == 0) note_pinched(frame, notes);
+  note_pierced(frame, notes);
   note_left_strain(frame, notes);
   note_shaking(frame, notes);
+  if (frame.number % (4 * kFramesBetweenLooks) == 0) note_heating(frame, notes);
 }
 
 void FrameNotes::keep(Keeper& keeper) {
   keeper(overlong_);
   keeper(stretched_);
   keeper(pinched_);
+  keeper(pierced_);
   keeper(pressed_);
-  for (bool* told : {&clamps_, &left_strain_, &shaking_, &driven_}) keeper(*told);
+  for (bool* told : {&clamps_, &left_strain_, &shaking_, &heating_, &driven_}) keeper(*told);
   keeper(told_);
+  keeper(least_energy_);
+  keeper(greatest_motion_);
 }
 
 void FrameNotes::check_strain_limits(const EndedFrame& frame) {
@@ -94,6 +100,21 @@ void FrameNotes::note_pressed(const EndedFrame& frame, std::vector<std::string>&
                     " of it now): what presses them leaves less room than they need");
 }
 
+// Folds that hang about a needle or a ridge may be drawn through it from the side.
+void FrameNotes::note_pierced(const EndedFrame& frame, std::vector<std::string>& notes) {
+  for (std::size_t c = 0; c < frame.cloths.size(); ++c) {
+    if (pierced_[c] || is_asleep(frame.sleeping, c)) continue;
+    const Pierced found = pierced(frame.cloths[c]->model(), frame.time);
+    if (found.places == 0) continue;
+    pierced_[c] = 1;
+    notes.push_back("frame " + std::to_string(frame.number) + ": edges of collider " +
+                    std::to_string(found.collider) + " pass through cloth " + std::to_string(c) +
+                    " in " + std::to_string(found.places) +
+                    (found.places == 1 ? " place" : " places") +
+                    "; finer cloth, shorter substeps, an offset or rounder edges hold it");
+  }
+}
+
 // Cloth between two bodies that leave no room for it lies in one of them, or in both.
 void FrameNotes::note_pinched(const EndedFrame& frame, std::vector<std::string>& notes) {
   for (std::size_t c = 0; c < frame.cloths.size(); ++c) {
@@ -144,6 +165,27 @@ void FrameNotes::note_shaking(const EndedFrame& frame, std::vector<std::string>&
                     number(frame.dt) + " s line sweeps leave strain, or shake it, from " +
                     number(from.strain) + " on; more substeps or iterations hold it");
   }
+}
+
+// Forces make energy where vibrations near the stability limit grow. The motion is that of half a substep before: off by
+// a few per cent of what comes and goes.
+void FrameNotes::note_heating(const EndedFrame& frame, std::vector<std::string>& notes) {
+  constexpr double kNoticed = 0.1;  // of the greatest motion
+  if (heating_ || driven_ || frame.contact || frame.sleeping || !is_explicit(frame.method)) return;
+  double held = 0;
+  for (const auto& step : frame.cloths) {
+    if (step->model().load() || !step->parts().scene.gravity_keys.empty()) return;
+    held += step->model().held_energy(step->particles().x, 0, frame.threads);
+  }
+  const double energy = held + frame.energy.kinetic() + frame.energy.potential();
+  least_energy_ = std::min(least_energy_, energy);
+  greatest_motion_ = std::max(greatest_motion_, frame.energy.kinetic());
+  const double made = energy - least_energy_;
+  if (made <= kNoticed * greatest_motion_) return;
+  heating_ = true;
+  notes.push_back("frame " + std::to_string(frame.number) + ": forces have made " + number(made) +
+                  " J of nothing, as vibrations near the stability limit grow; substeps of " +
+                  number(frame.dt / 2) + " s do not");
 }
 
 void FrameNotes::tell(const Cloths& cloths, std::int64_t frames, std::vector<std::string>& notes) {

@@ -35,10 +35,15 @@ class FrameNotes {
       : overlong_(scene.cloths.size()),
         stretched_(scene.cloths.size()),
         pinched_(scene.cloths.size()),
+        pierced_(scene.cloths.size()),
         pinched_search_(scene) {}
 
   // The energy that is there is counted anew.
-  void begin_anew() { driven_ = false; }
+  void begin_anew() {
+    driven_ = false;
+    least_energy_ = 1e300;
+    greatest_motion_ = 0;
+  }
   // Looks at a frame, and adds what it finds. What is read only when somebody asks waits for tell(): frames
   // allocate nothing for it.
   void look(const EndedFrame& frame, std::vector<std::string>& notes);
@@ -58,16 +63,21 @@ class FrameNotes {
   void note_clamps(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_stretch(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_pressed(const EndedFrame& frame, std::vector<std::string>& notes);
+  void note_pierced(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_pinched(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_left_strain(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_shaking(const EndedFrame& frame, std::vector<std::string>& notes);
+  void note_heating(const EndedFrame& frame, std::vector<std::string>& notes);
 
   std::vector<Overlong> overlong_;       // of every cloth
   std::vector<std::uint8_t> stretched_;  // of every cloth: told of
   std::vector<std::uint8_t> pinched_;    // the same
+  std::vector<std::uint8_t> pierced_;    // the same
   PinchedSearch pinched_search_;
   int pressed_ = 0;  // frames in which sheets were pressed, one after another
-  bool clamps_ = false, left_strain_ = false, shaking_ = false;
+  bool clamps_ = false, left_strain_ = false, shaking_ = false, heating_ = false;
+  // J; the least energy and the greatest motion since the energy was counted anew, by forces.
+  double least_energy_ = 1e300, greatest_motion_ = 0;
   bool driven_ = false;  // in any frame since the energy was counted anew
   std::vector<std::string> told_;
 };
