@@ -1,10 +1,11 @@
-// Bodies, or sheets, that leave a cloth too little room are told of; those that leave enough are not.
+// Bodies, or sheets, that leave a cloth too little room, and bodies that pass through it, are told of; others are not.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 #include <tuple>
 
+#include "made_up_bodies.h"
 #include "weft/simulation.h"
 
 namespace weft {
@@ -88,6 +89,22 @@ TEST(Pinched, NothingIsToldOfASheetInAGroove) {
   scene.colliders = {body(Plane{{0, 0, 0}, {0.5, 0.8, 0}}, kOffset),
                      body(Plane{{0, 0, 0}, {-0.5, 0.8, 0}}, kOffset)};
   EXPECT_FALSE(tells(scene, kNoRoom, 120));
+}
+
+// Edges of a body that the cloth starts on the wrong side of, and those that it lies on.
+TEST(Pierced, EdgesThroughAClothAreToldOf) {
+  for (const Method method : {Method::spring, Method::compliant}) {
+    for (const double start : {0.06, 0.11}) {
+      Scene scene;
+      scene.solver.method = method;
+      scene.cloths = {sheet(0, SelfCollisionMode::off)};
+      scene.cloths[0].grid.origin[1] = start;
+      // Cloth of 25 mm about a rod 3 mm wide, which stands 0.1 m high.
+      scene.colliders = {tests::body_of(tests::box({0.0015, 0.1, 0.0015}), 0.3)};
+      scene.colliders[0].offset = kOffset;
+      EXPECT_EQ(tells(scene, "pass through cloth", 24), start < 0.1) << int(method);
+    }
+  }
 }
 
 }  // namespace

@@ -86,8 +86,8 @@ void Simulation::State::end_frame() {
   ++frame;
   total_substeps += time_step.substeps;
   notes_.look(
-      {frame, time_step.method, time_step.dt, time(), cloths, runner.threads(), sleeping.get(),
-       contact.get(), guard_.energy(), hands_.act() || is_driven(scene, cloths)},
+      {frame, time(), time_step, cloths, runner.threads(), sleeping.get(), contact.get(),
+       guard_.energy(), hands_.act() || is_driven(scene, cloths)},
       plan.notes);
   if (options.follow_strain)
     greatest_strain = std::max(greatest_strain.value_or(-1), strain_of(cloths).max);

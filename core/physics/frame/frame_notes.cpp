@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "physics/contact/body/pierced.h"
+#include "physics/frame/energy_now.h"
 #include "physics/frame/projection_substep.h"
 #include "physics/model/number.h"
 #include "physics/step/keeper.h"
@@ -13,6 +14,16 @@ namespace weft::physics {
 namespace {
 
 constexpr int kFramesBetweenLooks = 8;
+
+// J
+double energy_of(const Cloths& cloths, double time, const TimeStep& step) {
+  double sum = 0;
+  for (const auto& cloth : cloths)
+    sum += energy_now(*cloth, cloth->particles().inverse_mass.span(),
+                      measured_velocities(*cloth, time, step), time, {})
+               .total();
+  return sum;
+}
 
 }  // namespace
 
@@ -35,6 +46,12 @@ void FrameNotes::look(const EndedFrame& frame, std::vector<std::string>& notes) 
   if (frame.number % (4 * kFramesBetweenLooks) == 0) note_heating(frame, notes);
 }
 
+void FrameNotes::begin_anew(const Cloths& cloths, double time, const TimeStep& step) {
+  driven_ = false;
+  first_energy_ = is_explicit(step.method) ? energy_of(cloths, time, step) : 0;
+  greatest_motion_ = 0;
+}
+
 void FrameNotes::keep(Keeper& keeper) {
   keeper(overlong_);
   keeper(stretched_);
@@ -43,7 +60,7 @@ void FrameNotes::keep(Keeper& keeper) {
   keeper(pressed_);
   for (bool* told : {&clamps_, &left_strain_, &shaking_, &heating_, &driven_}) keeper(*told);
   keeper(told_);
-  keeper(least_energy_);
+  keeper(first_energy_);
   keeper(greatest_motion_);
 }
 
@@ -135,7 +152,7 @@ void FrameNotes::note_pinched(const EndedFrame& frame, std::vector<std::string>&
 // Sweeps that leave strain keep energy that nothing put in; so do sheets that are put apart faster than they give
 // way.
 void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::string>& notes) {
-  if (left_strain_ || driven_ || frame.method != Method::compliant) return;
+  if (left_strain_ || driven_ || frame.step.method != Method::compliant) return;
   double held = 0;
   for (std::size_t c = 0; c < frame.cloths.size(); ++c)
     if (!is_asleep(frame.sleeping, c)) {
@@ -155,37 +172,40 @@ void FrameNotes::note_left_strain(const EndedFrame& frame, std::vector<std::stri
 void FrameNotes::note_shaking(const EndedFrame& frame, std::vector<std::string>& notes) {
   for (std::size_t c = 0; c < frame.cloths.size() && !shaking_; ++c) {
     const ClothStep& step = *frame.cloths[c];
-    const Shaking from = shaking(step.parts().scene, step.cloth(), frame.method, frame.dt);
+    const Shaking from =
+        shaking(step.parts().scene, step.cloth(), frame.step.method, frame.step.dt);
     if (std::isinf(from.strain) || is_asleep(frame.sleeping, c)) continue;
     const double strain = step.model().strain_in_line(step.particles().x, from.spread);
     if (strain <= from.strain) continue;
     shaking_ = true;
     notes.push_back("frame " + std::to_string(frame.number) + ": cloth " + std::to_string(c) +
                     " is drawn out by " + number(strain) + " along its lines; in substeps of " +
-                    number(frame.dt) + " s line sweeps leave strain, or shake it, from " +
+                    number(frame.step.dt) + " s line sweeps leave strain, or shake it, from " +
                     number(from.strain) + " on; more substeps or iterations hold it");
   }
 }
 
-// Forces make energy where vibrations near the stability limit grow. The motion is that of half a substep before: off by
-// a few per cent of what comes and goes.
+// Forces make energy where vibrations near the stability limit grow.
 void FrameNotes::note_heating(const EndedFrame& frame, std::vector<std::string>& notes) {
   constexpr double kNoticed = 0.1;  // of the greatest motion
-  if (heating_ || driven_ || frame.contact || frame.sleeping || !is_explicit(frame.method)) return;
+  if (heating_ || driven_ || frame.contact || frame.sleeping || !is_explicit(frame.step.method))
+    return;
   double held = 0;
   for (const auto& step : frame.cloths) {
     if (step->model().load() || !step->parts().scene.gravity_keys.empty()) return;
     held += step->model().held_energy(step->particles().x, 0, frame.threads);
   }
-  const double energy = held + frame.energy.kinetic() + frame.energy.potential();
-  least_energy_ = std::min(least_energy_, energy);
   greatest_motion_ = std::max(greatest_motion_, frame.energy.kinetic());
-  const double made = energy - least_energy_;
-  if (made <= kNoticed * greatest_motion_) return;
+  const double most = first_energy_ + kNoticed * greatest_motion_;
+  // Of the motion half a substep before, which costs little; then exactly.
+  if (held + frame.energy.kinetic() + frame.energy.potential() <= most) return;
+  const double energy = energy_of(frame.cloths, frame.time, frame.step);
+  if (energy <= most) return;
   heating_ = true;
-  notes.push_back("frame " + std::to_string(frame.number) + ": forces have made " + number(made) +
+  notes.push_back("frame " + std::to_string(frame.number) + ": forces have made " +
+                  number(energy - first_energy_) +
                   " J of nothing, as vibrations near the stability limit grow; substeps of " +
-                  number(frame.dt / 2) + " s do not");
+                  number(frame.step.dt / 2) + " s do not");
 }
 
 void FrameNotes::tell(const Cloths& cloths, std::int64_t frames, std::vector<std::string>& notes) {

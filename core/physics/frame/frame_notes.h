@@ -9,6 +9,7 @@
 #include "physics/frame/energy_guard.h"
 #include "physics/frame/sheet_contact.h"
 #include "physics/frame/sleeping.h"
+#include "physics/frame/time_step.h"
 
 namespace weft::physics {
 
@@ -18,9 +19,8 @@ void add_once(std::vector<std::string>& notes, const std::string& note);
 // A frame that has been accepted.
 struct EndedFrame {
   std::int64_t number;  // from 1 on
-  Method method;
-  double dt;    // s, of a substep
-  double time;  // s, at its end
+  double time;          // s, at its end
+  const TimeStep& step;
   const Cloths& cloths;
   Threads& threads;
   const Sleeping* sleeping;     // or null
@@ -39,11 +39,7 @@ class FrameNotes {
         pinched_search_(scene) {}
 
   // The energy that is there is counted anew.
-  void begin_anew() {
-    driven_ = false;
-    least_energy_ = 1e300;
-    greatest_motion_ = 0;
-  }
+  void begin_anew(const Cloths& cloths, double time, const TimeStep& step);
   // Looks at a frame, and adds what it finds. What is read only when somebody asks waits for tell(): frames
   // allocate nothing for it.
   void look(const EndedFrame& frame, std::vector<std::string>& notes);
@@ -76,8 +72,8 @@ class FrameNotes {
   PinchedSearch pinched_search_;
   int pressed_ = 0;  // frames in which sheets were pressed, one after another
   bool clamps_ = false, left_strain_ = false, shaking_ = false, heating_ = false;
-  // J; the least energy and the greatest motion since the energy was counted anew, by forces.
-  double least_energy_ = 1e300, greatest_motion_ = 0;
+  // J; the energy as it was counted anew, and the greatest motion since, by forces.
+  double first_energy_ = 0, greatest_motion_ = 0;
   bool driven_ = false;  // in any frame since the energy was counted anew
   std::vector<std::string> told_;
 };

@@ -9,7 +9,7 @@
 #include "physics/contact/colliders/shapes.h"
 #include "physics/contact/self/crossings.h"
 #include "physics/contact/start_inside.h"
-#include "physics/model/path.h"
+#include "physics/frame/energy_now.h"
 #include "weft/shape.h"
 #include "weft/vec3.h"
 
@@ -19,25 +19,21 @@ namespace {
 void add_energy(const Simulation::State& s, std::size_t index, Report& r) {
   const ClothStep& step = *s.cloths[index];
   const Particles& particles = step.particles();
-  const AlignedArray<float>& masses = s.masses(index);
-  const Vec3 gravity = gravity_at(s.scene, s.time());
+  const std::span<const float> masses = s.masses(index).span();
   const std::vector<Vec3> x = particles.gather(particles.x);
-  // A strain limit takes back much of what springs alone would add in the half substep to now.
-  const std::vector<Vec3> v =
-      step.cloth().strain_limit > 0 ? particles.gather(particles.v) : s.velocities(index);
-  const ElasticEnergy elastic = step.model().elastic_energy();
-  r.energy.elastic += elastic.sum();
-  r.membrane_energy += elastic.membrane;
-  r.bending_energy += elastic.bending;
-  if (const Load* load = step.model().load()) r.energy.elastic += load->energy(s.time());
+  const std::vector<Vec3> v = measured_velocities(step, s.time(), s.time_step);
+  const EnergyNow energy = energy_now(step, masses, v, s.time(), s.placed.origin());
+  r.energy.kinetic += energy.kinetic;
+  r.energy.gravity += energy.gravity;
+  r.energy.elastic += energy.elastic.sum() + energy.load;
+  r.membrane_energy += energy.elastic.membrane;
+  r.bending_energy += energy.elastic.bending;
   for (std::size_t p = 0; p < x.size(); ++p) {
     if (masses[particles.lane(int(p))] == 0) continue;
     const double m = step.model().mass(int(p));
     const Vec3 a = plus(x[p], s.placed.origin());
     const Vec3& b = v[p];
     for (int k = 0; k < 3; ++k) {
-      r.energy.kinetic += 0.5 * m * b[k] * b[k];
-      r.energy.gravity -= m * gravity[k] * a[k];
       r.momentum[k] += m * b[k];
       const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
       r.angular_momentum[k] += m * (a[k1] * b[k2] - a[k2] * b[k1]);

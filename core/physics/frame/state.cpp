@@ -190,7 +190,7 @@ bool Simulation::State::driven() const {
 
 void Simulation::State::open_guard() {
   guard_.energy().open(scene, time_step.method, cloths, time(), time_step.dt, runner.threads());
-  notes_.begin_anew();
+  notes_.begin_anew(cloths, time(), time_step);
   hands_.tell(guard_.energy());
 }
 

@@ -1,0 +1,75 @@
+// Vibrations that grow near the stability limit are told of, with substeps that end it; calm sheets tell nothing.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "weft/simulation.h"
+
+namespace weft {
+namespace {
+
+// Soft for its weight, so that it hangs down to several times its length, nearly without shear springs.
+Scene soft_sheet(int n, double stiffness) {
+  Scene scene;
+  Cloth& cloth = scene.cloths.emplace_back();
+  cloth.grid = {n, n, {0, 0, 0}, {1.2, 0, 0}, {0, -0.3, 2.36}, 0};
+  cloth.density = 0.7;
+  cloth.drag = 0;
+  cloth.stiffness = {stiffness, stiffness / 10, 0};
+  cloth.pins = {{0, 0, {}}, {n - 1, 0, {}}};
+  return scene;
+}
+
+struct Result {
+  double gain = 0;  // of energy, by the greatest motion; the greatest that was seen
+  bool told = false;
+};
+
+Result run(const Scene& scene, int frames) {
+  Simulation simulation(scene, {.threads = 1});
+  const auto energy = [&] { return simulation.report(false).energy; };
+  const double start = energy().total;
+  double motion = 0, most = start;
+  for (int n = 0; n < frames; ++n) {
+    simulation.advance_frame();
+    if (n % 8 != 7) continue;
+    motion = std::max(motion, energy().kinetic);
+    most = std::max(most, energy().total);
+  }
+  EXPECT_TRUE(simulation.status().ok);
+  const std::vector<std::string>& notes = simulation.plan().notes;
+  return {(most - start) / motion, std::ranges::any_of(notes, [](const std::string& note) {
+            return note.find("J of nothing") != note.npos;
+          })};
+}
+
+TEST(Heating, WhatGrowsIsToldAndEndsInHalfTheSubsteps) {
+  Scene scene = soft_sheet(33, 25.65);
+  const Result grown = run(scene, 720);
+  EXPECT_GT(grown.gain, 0.5);
+  EXPECT_TRUE(grown.told);
+  scene.time.substeps = 8;
+  const Result calm = run(scene, 720);
+  EXPECT_LT(calm.gain, 0.03);
+  EXPECT_FALSE(calm.told);
+}
+
+// Of a few substeps a frame, too, in which much comes and goes.
+TEST(Heating, NothingIsToldOfWhatKeepsItsEnergy) {
+  int told = 0;
+  for (const Method method : {Method::spring, Method::spring_friction})
+    for (const int n : {5, 9, 17})
+      for (const double stiffness : {20.0, 60.0, 500.0}) {
+        Scene scene = soft_sheet(n, stiffness);
+        scene.solver.method = method;
+        const Result r = run(scene, 480);
+        told += r.told;
+        EXPECT_GT(r.gain, r.told ? 0.09 : -1) << n << ' ' << stiffness;
+        EXPECT_LT(r.gain, r.told ? 1 : 0.11) << n << ' ' << stiffness;
+      }
+  EXPECT_LT(told, 4);  // of 18
+}
+
+}  // namespace
+}  // namespace weft
