@@ -154,6 +154,24 @@ TEST(WeftScene, ReadsTheFormsOfTheContract) {
   EXPECT_EQ(good(weft::write_scene_text(scene)), scene);
 }
 
+TEST(WeftScene, OneOfStaticAndDynamicFrictionStandsForBoth) {
+  const auto read = [](const std::string& friction) {
+    return good(R"({"weft": 1, "cloths": [{}], "colliders": [{"sphere": {}, "friction": )" +
+                friction + "}]}")
+        .colliders[0]
+        .friction;
+  };
+  const weft::Friction both{weft::FrictionModel::coulomb, 0.5, 0.5};
+  EXPECT_EQ(read("0.5"), both);
+  EXPECT_EQ(read(R"({"static": 0.5})"), both);
+  EXPECT_EQ(read(R"({"dynamic": 0.5})"), both);
+  EXPECT_EQ(read(R"({"static": 0.5, "dynamic": 0})"),
+            (weft::Friction{weft::FrictionModel::coulomb, 0.5, 0}));
+  const weft::Friction damped = read(R"({"static": 0.5, "damping": 2, "bias": 0.1})");
+  EXPECT_EQ(damped.dynamic, 0.5);
+  EXPECT_EQ(damped.damping, 2);
+}
+
 TEST(WeftScene, NumbersSurviveWritingExactly) {
   Scene scene = good(R"({"weft": 1, "cloths": [{}]})");
   scene.gravity = {1.0 / 3, -0.0, std::nextafter(1.0, 2.0)};

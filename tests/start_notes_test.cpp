@@ -102,6 +102,31 @@ TEST(StartNotes, DampingOfNoSpringsIsToldOf) {
   }
 }
 
+TEST(StartNotes, KeysThatDoNothingAreToldOf) {
+  for (const Sheet kind : {Sheet::grid, Sheet::mesh})
+    for (const bool keys : {false, true}) {
+      Scene scene = sheet(kind);
+      scene.cloths[0].pins = {{0, 0, {}}};
+      scene.colliders.emplace_back().shape = Sphere{{0, -9, 0}, 0.1};
+      EXPECT_EQ(told(Simulation(scene).plan(), "rotate does"), "");
+      Rotation turn{{0, 0, 1}, {}, {}};
+      if (keys) turn.keys = {{0, 30}};
+      Scene turned = scene;
+      turned.colliders[0].rotate = turn;
+      EXPECT_EQ(told(Simulation(turned).plan(), "collider 0: rotate does") == "", keys);
+      turned = scene;
+      turned.cloths[0].pins[0].rotate = turn;
+      EXPECT_EQ(told(Simulation(turned).plan(), "cloth 0, 1 pin: rotate does") == "", keys);
+    }
+  for (const MeshRest rest : {MeshRest::shape, MeshRest::flat}) {
+    Scene scene = sheet(Sheet::mesh);
+    scene.cloths[0].mesh.rest = rest;
+    EXPECT_EQ(told(Simulation(scene).plan(), "uv_scale"), "");
+    scene.cloths[0].mesh.uv_scale = 0.5;
+    EXPECT_NE(told(Simulation(scene).plan(), "cloth 0: uv_scale of 0.5 m does nothing"), "");
+  }
+}
+
 // What is told to shake gains energy in free fall, which keeps it, and what is not told does not.
 TEST(StartNotes, ShakingByRoundingIsToldOf) {
   for (const Sheet kind : {Sheet::grid, Sheet::mesh})

@@ -160,10 +160,12 @@ class FieldReader {
       return;
     }
     read(value, field.dynamic);
-    field.statik = field.dynamic;
     FieldReader walk(value);
-    walk("static", field.statik);
+    // One of the two stands for both.
+    walk("static", field.dynamic);
     walk("dynamic", field.dynamic);
+    field.statik = field.dynamic;
+    walk("static", field.statik);
     walk("damping", field.damping);
     walk("bias", field.bias);
   }

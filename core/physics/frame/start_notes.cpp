@@ -91,6 +91,22 @@ void note_damping(const std::string& which, const Scene& scene, const Cloth& clo
   look("bend", k.bend, d.bend, !level);
 }
 
+void note_uv_scale(const std::string& which, const ClothMesh& mesh,
+                   std::vector<std::string>& notes) {
+  if (mesh.uv_scale == ClothMesh{}.uv_scale || mesh.rest == MeshRest::uv) return;
+  notes.push_back(which + ": uv_scale of " + number(mesh.uv_scale) +
+                  " m does nothing, since its shape at rest is not that of the texture coordinates "
+                  "(rest uv)");
+}
+
+// An axis alone turns nothing.
+bool has_no_turn(const Rotation& rotation) {
+  return rotation != Rotation{} && rotation.keys.empty();
+}
+
+constexpr const char* kNoTurn =
+    "rotate does nothing, since it has no keys (one key, [[0, degrees]], is a fixed turn)";
+
 // Whether a cut of the scene passes between two neighbours.
 bool crosses_sheet(const CutLine& cut, const Grid& grid) {
   bool crosses = false;
@@ -125,6 +141,12 @@ void note_starts(const Scene& scene, const Cloths& cloths, SheetContact* contact
     note_thickness(which, cloth, contact && contact->pairs().surfaces(), notes);
     note_damping(which, scene, cloth, notes);
     note_response(which, cloth.self_collision, notes);
+    note_uv_scale(which, cloth.mesh, notes);
+    const auto idle =
+        std::ranges::count_if(cloth.pins, [](const Pin& pin) { return has_no_turn(pin.rotate); });
+    if (idle > 0)
+      notes.push_back(which + ", " + std::to_string(idle) + (idle == 1 ? " pin: " : " pins: ") +
+                      kNoTurn);
     if (const FarPins far = far_pins(cloth, spacing_of(cloth)); far.count > 0)
       notes.push_back(which + ": " + std::to_string(far.count) +
                       (far.count == 1 ? " pin starts " : " pins start up to ") + number(far.most) +
@@ -134,6 +156,9 @@ void note_starts(const Scene& scene, const Cloths& cloths, SheetContact* contact
       if (!crosses_sheet(cloth.cuts[k], cloth.grid))
         notes.push_back(which + ": cut " + std::to_string(k) + " passes between no two particles");
   }
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k)
+    if (has_no_turn(scene.colliders[k].rotate))
+      notes.push_back("collider " + std::to_string(k) + ": " + kNoTurn);
   if (!contact) return;
   if (const SelfContact::Overlaps o = contact->overlaps(); o.pairs > 0)
     notes.push_back(std::to_string(o.pairs) +

@@ -184,7 +184,10 @@ std::vector<std::string> LatticeModel::notes() const {
   if (m.coupling != m.shear)
     note +=
         "; they couple warp and weft by " + number(m.shear) + " N/m, not by " + number(m.coupling);
-  notes.push_back(note);
+  // Where the coupling differs, so does the strain, however fine the substeps are.
+  notes.push_back(note +
+                  " (method compliant with gauss_seidel or line sweeps, or method spring, "
+                  "solves the membrane itself)");
   return notes;
 }
 
