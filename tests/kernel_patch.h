@@ -108,7 +108,7 @@ struct Patch {
 };
 
 inline Advance advance() {
-  return {0.01f, 0.008f, 0.98f, 0.01f, -0.0981f, 0.003f};
+  return {0.01f, 0.008f, 0.98f, 0.01f, -0.0981f, 0.003f, 0.02f};
 }
 
 // Calls visit(number, axis, lane, where a fused kernel keeps it): what rows carry lies in blocks as wide as
@@ -158,7 +158,8 @@ inline void fill(PlainRows& r, Patch& p, int begin, int end, bool torn) {
 // Rows begin … end-1 of the patch with the six stencils of a plain cloth; given overlong, springs past
 // tear_length are told of.
 inline void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, int begin, int end,
-                        float tear_length = 0, std::uint8_t* overlong = nullptr, float alike = 0) {
+                        float tear_length = 0, std::uint8_t* overlong = nullptr, float alike = 0,
+                        const Left& left = {}) {
   std::vector<SpringConstants> springs;
   for (int j = 0; j < kRows; ++j) {
     const std::pair<int, SpringConstants> of_each[kPlainStencils] = {
@@ -176,6 +177,7 @@ inline void spring_rows(const KernelTable& k, Patch& p, bool damped, bool torn, 
   r.overlong = overlong;
   r.alike = alike;
   r.advance = advance();
+  r.left = left;
   call_carrying(k, &LatticeKernels::spring_rows, r, p);
 }
 

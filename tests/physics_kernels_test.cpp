@@ -27,6 +27,10 @@ struct Case {
   Call call;
 };
 
+Left left_of(Patch& p) {
+  return {p.previous.row(0), p.carry.row(0)};
+}
+
 AdvanceRow advance_row(Patch& p) {
   return {p.columns, p.x.row(0), p.v.row(0), p.weights(0), p.f.row(0), advance(), 100.0f};
 }
@@ -133,6 +137,13 @@ void add_springs(std::vector<Case>& cases) {
                spring_rows(k, p, damped, true, begin, end, 2, overlong);
                for (int j = begin; j < end; ++j) p.lambda[j % p.columns] += overlong[j];
              });
+  for (const bool alike : {false, true})
+    add_rows(cases, std::string("spring_rows, finely") + (alike ? ", alike" : ""),
+             [=](const KernelTable& k, Patch& p, int begin, int end) {
+               if (alike) p.weigh_alike();
+               spring_rows(k, p, false, false, begin, end, 0, nullptr, alike ? 0.8f : 0,
+                           {p.previous.row(0), p.f.row(0)});
+             });
   for (const auto& [di, dj] : kOffsets) {
     const std::string at = " (" + std::to_string(di) + "," + std::to_string(dj) + ")";
     const auto springs = [di = di, dj = dj](auto kernel) {
@@ -157,6 +168,17 @@ void add_moves(std::vector<Case>& cases) {
                    }});
   cases.push_back({"predict, corrections first", 2, move(&ParticleKernels::predict)});
   cases.push_back({"apply_corrections", 2, move(&ParticleKernels::apply_corrections)});
+  const auto move_finely = [](auto kernel) {
+    return [=](const KernelTable& k, Patch& p) {
+      AdvanceRow r = advance_row(p);
+      r.left = left_of(p);
+      (k.particles.*kernel)(r);
+    };
+  };
+  cases.push_back({"integrate, finely", 2, move_finely(&ParticleKernels::integrate)});
+  cases.push_back({"predict, finely", 2, move_finely(&ParticleKernels::predict)});
+  cases.push_back(
+      {"apply_corrections, finely", 2, move_finely(&ParticleKernels::apply_corrections)});
 }
 
 struct Features {

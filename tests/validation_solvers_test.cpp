@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "../bench/verlet.h"
+#include "made_up_mesh.h"
+#include "mesh_scenes.h"
 #include "truth.h"
 #include "weft/simulation.h"
 
@@ -51,6 +53,16 @@ Scene hung_sheet(bool membrane, bool rigid) {
     cloth.stiffness = {500, 250, 0};
   if (rigid) cloth.bending = 1e-3;
   for (int j = 0; j < n; ++j) cloth.pins.push_back({0, j, {}});
+  return scene;
+}
+
+// The same of triangles.
+Scene hung_mesh() {
+  constexpr int n = 13;
+  Scene scene = scene_of(made_up({.nx = n, .ny = n, .width = 0.5, .height = 0.5}));
+  scene.gravity = {1, -9, 2};
+  scene.cloths[0].membrane = {750, 750, 250, 250, 0};
+  for (int j = 0; j < n; ++j) scene.cloths[0].pins.push_back({j * n, 0, {}});
   return scene;
 }
 
@@ -162,6 +174,32 @@ TEST(Solvers, TheSecondOrderKeepsItsEnergyIn100000SubstepsASecond) {
     }
 }
 
+// What moves slowly, or loses little of its velocity by drag, does so in substeps of any fineness.
+TEST(Solvers, ForcesInFineSubstepsComeToTheirLimit) {
+  const Scene sheets[] = {hung_sheet(false, false), hung_sheet(true, false), hung_mesh()};
+  const char* const names[] = {"springs", "membrane", "membrane of a mesh"};
+  for (std::size_t n = 0; n < std::size(sheets); ++n)
+    for (const double drag : {10.0, 100.0}) {
+      const auto after = [&](int substeps) {
+        Scene scene = sheets[n];
+        scene.cloths[0].drag = drag;
+        scene.time.substeps = substeps;
+        solve_by(scene, ways()[0]);
+        Simulation simulation(scene, {.threads = 1});
+        for (int frame = 0; frame < kFrames; ++frame) simulation.advance_frame();
+        return simulation.positions();
+      };
+      // From substeps that single precision tells apart, and that are of the first order in drag.
+      const std::vector<double> coarse = after(40);
+      std::vector<double> limit = after(80);
+      for (std::size_t k = 0; k < limit.size(); ++k) limit[k] += limit[k] - coarse[k];
+      constexpr int kFine = 1600;  // where drag is off by less than rounding was
+      expect({"springs in 1600 substeps a frame, distance from the limit of coarse ones",
+              std::string(names[n]) + ", drag " + std::to_string(int(drag)) + " /s", 0, 6e-6, "m"},
+             apart(after(kFine), limit));
+    }
+}
+
 // In fine substeps drag takes less of a velocity than single precision tells of a factor near 1.
 TEST(Solvers, TheSecondOrderFallsAgainstDragAsItShould) {
   constexpr double kDrag = 3, kGravity = 9.81;  // 1/s, m/s²
@@ -180,6 +218,30 @@ TEST(Solvers, TheSecondOrderFallsAgainstDragAsItShould) {
     for (int frame = 0; frame < 60; ++frame) simulation.advance_frame();
     expect({"order 2, speed of a sheet that falls against drag for a second",
             std::to_string(substeps) + " substeps", speed, 1e-5, "m/s"},
+           -simulation.report(false).momentum[1] / kMass);
+  }
+}
+
+// The same of the first order, and of forces.
+TEST(Solvers, EveryMethodFallsAgainstDragAsItShouldInFineSubsteps) {
+  constexpr double kDrag = 3, kGravity = 9.81, kMass = 0.1;  // 1/s, m/s², kg
+  const double speed = kGravity / kDrag * (1 - std::exp(-kDrag));
+  for (const Way& way : {Way{"springs", Method::spring, Sweep::gauss_seidel, 1},
+                         Way{"positional", Method::positional, Sweep::gauss_seidel, 1},
+                         Way{"compliant, Jacobi", Method::compliant, Sweep::jacobi, 1},
+                         Way{"compliant, lines", Method::compliant, Sweep::line, 1}}) {
+    Scene scene;
+    Cloth& cloth = scene.cloths.emplace_back();
+    cloth.grid = {9, 9, {0, 0, 0}, {0.5, 0, 0}, {0, 0, 0.5}, 0};
+    cloth.density = 0.4;
+    cloth.drag = kDrag;
+    scene.gravity = {0, -kGravity, 0};
+    scene.time.substeps = 1667;
+    solve_by(scene, way);
+    Simulation simulation(scene, {.threads = 1});
+    for (int frame = 0; frame < 60; ++frame) simulation.advance_frame();
+    expect({"10⁵ substeps a second, speed of a sheet that falls against drag for a second",
+            way.name, speed, 3e-5, "m/s"},
            -simulation.report(false).momentum[1] / kMass);
   }
 }

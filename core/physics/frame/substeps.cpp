@@ -13,6 +13,7 @@
 #include "physics/model/number.h"
 #include "physics/model/path.h"
 #include "physics/model/placement.h"
+#include "physics/model/remainders.h"
 
 namespace weft {
 
@@ -101,10 +102,16 @@ struct Farthest {
 };
 
 // Positions are rounded once a substep: what goes less far in it than half of a unit in the last place stays
-// where it is.
-void note_rounding(const Cloths& cloths, double dt, std::vector<std::string>& notes) {
+// where it is, unless that is kept for the next.
+void note_rounding(const Cloths& cloths, const Solver& solver, Method method, double dt,
+                   std::vector<std::string>& notes) {
   Farthest farthest;
-  for (const auto& step : cloths) farthest.look(step->particles());
+  for (const auto& step : cloths) {
+    const bool sweeps_keep = solver.order == 2 || !step->cloth().mesh.given();
+    const bool keeps = is_explicit(method) ? dt < forces_keep_below(step->parts())
+                                           : sweeps_keep && Remainders::fine(dt);
+    if (!keeps) farthest.look(step->particles());
+  }
   if (const double slowest = farthest.unit() / 2 / dt; slowest >= kSlow)
     notes.push_back("substeps of " + number(dt) +
                     " s are so short that single precision does not move what is slower than " +
@@ -188,7 +195,7 @@ void Simulation::State::choose_method_and_substeps() {
     note_gas(scene, count, notes);
     note_tearing(scene, time_step.method, count, notes);
   }
-  note_rounding(cloths, scene.time.frame / count, notes);
+  note_rounding(cloths, scene.solver, time_step.method, scene.time.frame / count, notes);
   if (is_explicit(time_step.method))
     note_shaking(scene, cloths, time_step.spectra, scene.time.frame / count, notes);
   note_turning(scene, scene.time.frame / count, notes);

@@ -3,6 +3,7 @@
 //   x_i <- x_i + w_i Σ ± Δλ e/|e|,  Δλ = (|e| - l + α̃ λ)/((w_a + w_b)/ω + α̃),  λ <- λ - Δλ
 //
 // with ω the relaxation (model/lattice/sweeps.cpp), e = x_b - x_a, α̃ = 1/(k dt²).
+#include "physics/kernels/kept.h"
 #include "physics/kernels/plain_rows.h"
 #include "physics/kernels/projection.h"
 
@@ -57,6 +58,12 @@ struct JacobiLaw {
     const std::ptrdiff_t lane = b.x - r.x.x, plane = r.x.y - r.x.x;
     Wide3 change = sum * inverse_mass(r, b);
     if constexpr (kAlike) change = select(lanes_below(b.left), change, Wide3{});
+    if (r.left.x.x) {
+      Kept x = kept_at<true>(r.x, r.left.x, lane), v = kept_at<true>(r.v, r.left.v, lane);
+      x.move<true>(change);
+      v.move<true>(change * wide(r.inverse_dt));
+      return store_kept<true>(r.x, r.v, r.left, lane, x, v);
+    }
     store_planes(b.x, plane, load_planes(b.x, plane) + change);
     float* const v = r.v.x + lane;
     store_planes(v, plane, fma(change, wide(r.inverse_dt), load_planes(v, plane)));

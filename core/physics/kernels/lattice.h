@@ -41,6 +41,7 @@ struct LeapfrogRows : PlainRows {
   // masses [1/kg].
   float alike;
   Advance advance;
+  Left left{};  // of row 0
 };
 
 struct SpringRows : LeapfrogRows {
@@ -66,6 +67,7 @@ struct JacobiRows : PlainRows {
   float rest[kPlainStencils];        // m
   float weight;                      // of w_a + w_b: 1/relaxation
   float inverse_dt;                  // velocities gain corrections times it [1/s]
+  Left left{};                       // of row 0
 };
 
 // One stencil between row j and row j+dj: constraint a joins lane a+near of row j and lane a+far of

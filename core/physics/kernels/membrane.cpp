@@ -14,9 +14,9 @@
 // carried to them.
 #include "physics/kernels/membrane.h"
 
+#include "physics/kernels/leapfrog.h"
 #include "physics/kernels/membrane_cells.h"
 #include "physics/kernels/root.h"
-#include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
 

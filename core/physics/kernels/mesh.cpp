@@ -5,8 +5,8 @@
 #include "physics/kernels/mesh.h"
 
 #include "physics/kernels/hinges.h"
+#include "physics/kernels/leapfrog.h"
 #include "physics/kernels/records.h"
-#include "physics/kernels/row_kernels.h"
 
 namespace weft::WEFT_KERNELS {
 namespace {
@@ -133,7 +133,8 @@ void mesh_forces(const MeshForces& m) {
 
 void mesh_move(const MeshRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes)
-    move(r.x, r.v, r.w, records_in_row(r.force + 4 * std::ptrdiff_t(i), 4).xyz, r.advance, i);
+    move(r.x, r.v, r.left, r.w, records_in_row(r.force + 4 * std::ptrdiff_t(i), 4).xyz, r.advance,
+         i);
 }
 
 }  // namespace weft::WEFT_KERNELS

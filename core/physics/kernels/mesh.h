@@ -20,6 +20,7 @@ struct MeshRow {
   const float* w;
   float *position, *velocity, *force;  // 4 floats a vertex; velocity may be null
   Advance advance;
+  Left left{};
 };
 
 // Of 16 triangles. Records are told by their number; those of no triangle, and of no neighbour, are the

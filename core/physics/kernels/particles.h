@@ -11,6 +11,7 @@ struct Advance {
   float dt, kick;    // s; the same but after the substep's length has changed
   float drag;        // factor on the velocity
   float gx, gy, gz;  // velocity gained from gravity [m/s]
+  float lost = 0;    // of the velocity, by drag: what the factor takes away
 };
 
 struct AdvanceRow {
@@ -20,6 +21,7 @@ struct AdvanceRow {
   Row3 f;  // force [N]; corrections [m]: predict first does as apply_corrections would, if given
   Advance advance;
   float inverse_dt;  // 1/s; what velocities gain is the corrections `f` times this
+  Left left{};
 };
 
 // One row, and what a frame is judged by: the energies of its free particles, ½ Σ m v² and -Σ m g·x,

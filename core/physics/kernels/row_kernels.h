@@ -1,4 +1,4 @@
-// Shared by the kernel sources: wide loads of a row, and the leapfrog move.
+// Shared by the kernel sources: wide loads of a row, and how velocities gain by forces.
 #pragma once
 
 #include <cstddef>
@@ -55,43 +55,19 @@ WEFT_INLINE int padded(int count) {
   return (count + 15) & ~15;
 }
 
-// c v + kick (f/m + g); nothing is added where the inverse mass w is 0, that of a pinned particle.
-WEFT_INLINE Wide3 moved(Wide3 v, Wide w, Wide3 f, const Advance& a) {
-  const WideInt free = w > 0.0f;
+// c v + kick (f/m + g); nothing is added where a particle is pinned. `gain`: kick over the mass, 0 if pinned.
+WEFT_INLINE Wide3 moved(Wide3 v, WideInt free, Wide gain, Wide3 f, const Advance& a) {
   const Wide3 g = select(free, wide3(a.gx, a.gy, a.gz), Wide3{});
-  return fma(f, w * a.kick, fma(v, wide(a.drag), g));
+  return fma(f, gain, fma(v, wide(a.drag), g));
 }
-// The same where all particles are free; `gain`: w kick.
+// What it has more than v: drag is lost, of which a factor near 1 tells little.
+WEFT_INLINE Wide3 gained(Wide3 v, WideInt free, Wide gain, Wide3 f, const Advance& a) {
+  const Wide3 g = wide3(a.gx, a.gy, a.gz) - v * wide(a.lost);
+  return select(free, fma(f, gain, g), Wide3{});
+}
+// As moved() where all particles are free.
 WEFT_INLINE Wide3 moved_free(Wide3 v, Wide gain, Wide3 f, const Advance& a) {
   return fma(f, gain, fma(v, wide(a.drag), wide3(a.gx, a.gy, a.gz)));
-}
-
-// v <- c v + kick (f/m + g), x <- x + dt v.
-WEFT_INLINE void move(Row3 x, Row3 v, const float* inverse_mass, Wide3 f, const Advance& a,
-                      std::ptrdiff_t i) {
-  const Wide3 velocity = moved(load3(v, i), load(inverse_mass + i), f, a);
-  store3(v, i, velocity);
-  store3(x, i, fma(velocity, wide(a.dt), load3(x, i)));
-}
-
-// Moves the block at `x` in the positions of a sheet's rows, of whose row `left` columns are left from its
-// first lane on. kSides: columns at the sides stand for half of an inner one; kAlike: all that the rows
-// hold is free, and of one mass but for that.
-template <bool kSides, bool kAlike>
-WEFT_INLINE void leapfrog(const physics::LeapfrogRows& r, float* x, int left, Wide3 force) {
-  const std::ptrdiff_t lane = x - r.x.x, plane = r.x.y - r.x.x;
-  const Wide3 before = load_planes(r.v.x + lane, plane);
-  Wide3 velocity;
-  if constexpr (kAlike) {
-    Wide gain = wide(r.alike * r.advance.kick);
-    if constexpr (kSides) gain = gain * load(r.inverse_width + (r.columns - left));
-    velocity = moved_free(before, gain, force, r.advance);
-    velocity = select(lanes_below(left), velocity, Wide3{});
-  } else {
-    velocity = moved(before, load(r.w + lane), force, r.advance);
-  }
-  store_planes(r.v.x + lane, plane, velocity);
-  store_planes(x, plane, fma(velocity, wide(r.advance.dt), load_planes(x, plane)));
 }
 
 }  // namespace weft::WEFT_KERNELS

@@ -28,6 +28,11 @@ struct ConstRow3 {
   ConstRow3 from(int i) const { return {x + i, y + i, z + i}; }  // particle i on
 };
 
+// What positions [m] and velocities [m/s] lack by rounding, which goes into their next steps; null: is left aside.
+struct Left {
+  Row3 x, v;
+};
+
 // Where particles were before the substep: there, or else x - dt v, with x and v as they are before the sweeps. Row 0.
 struct SubstepStart {
   ConstRow3 previous, v;

@@ -13,9 +13,8 @@
 // same sweeps: the constraints are solved with ⅔h and inverse masses scaled by 1/(1 + ⅔h c), or by
 // 9/4/(1 + h c). Zeros become positive, as in advance.cpp.
 //
-// In fine substeps positions move by a few units in the last place only. What rounding leaves of a step goes into the
-// next (Kahan 1965): else what moves at one speed would lose the same share of every step, and velocities would tell
-// of a motion that is not there.
+// In fine substeps what rounding leaves of a step goes into the next (kept.h): else velocities would tell of a motion
+// that is not there.
 #include "physics/kernels/second_order.h"
 
 #include "physics/kernels/kept.h"
@@ -43,11 +42,6 @@ struct Slowed {
         smooth_lost(r.dt * kTwoThirds * r.drag * smooth),
         euler_lost(r.dt * r.drag * euler) {}
 };
-
-template <bool kFine>
-WEFT_INLINE Kept kept_at(ConstRow3 row, ConstRow3 left, int i) {
-  return {positive_zeros(load3(row, i)), kFine ? load3(left, i) : Wide3{}};
-}
 
 // Takes the corrections that sweeps have gathered. Velocities have them over ⅔h until then; those of an Euler step
 // belong over h. Which kind the substep was its inverse masses tell.

@@ -6,6 +6,7 @@
 //
 // (seed 000, "Spring or Physical constraint" and "Verlet's Step", with the velocity kept in place of
 // the previous position: the same method, without the rounding of x - x_previous.)
+#include "physics/kernels/leapfrog.h"
 #include "physics/kernels/plain_rows.h"
 
 namespace weft::WEFT_KERNELS {
@@ -100,7 +101,7 @@ void damped_spring_stencil(const StencilRow& r) {
 
 void integrate(const AdvanceRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
-    move(r.x, r.v, r.w, load3(r.f, i), r.advance, i);
+    move(r.x, r.v, r.left, r.w, load3(r.f, i), r.advance, i);
     store3(r.f, i, Wide3{});
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/model/push.h"
+#include "physics/model/remainders.h"
 
 namespace weft::physics {
 
@@ -19,11 +20,12 @@ struct Multipliers {
 };
 
 // `multipliers`: to be cleared before the sweeps; `corrections`: what these have found since the positions that
-// they were taken to, if they gather it. Either may be null.
+// they were taken to, if they gather it; `left`: where all that changes positions by sweeps keeps it. Each may be null.
 std::unique_ptr<RowStage> make_predict(const ClothParts& parts, Multipliers* multipliers,
-                                       Rows* corrections);
+                                       Rows* corrections, std::shared_ptr<Remainders> left);
 // After the sweeps: positions and velocities gain the corrections, which are then zero again.
-std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections);
+std::unique_ptr<RowStage> make_corrections(const ClothParts& parts, Rows& corrections,
+                                           std::shared_ptr<Remainders> left);
 
 // Moves a place or a velocity by a step and what rounding had left of those before, and keeps what it leaves now.
 inline void move_keeping(float& value, float& left, double step) {
@@ -36,18 +38,15 @@ inline void move_keeping(float& value, float& left, double step) {
 struct History {
   explicit History(const Particles& particles);
   std::size_t bytes() const {
-    return v_before.bytes() + v_end.bytes() + left.bytes() + v_left.bytes() +
-           inverse_mass.size() * sizeof(float);
+    return v_before.bytes() + v_end.bytes() + left.bytes() + inverse_mass.size() * sizeof(float);
   }
   // Whether a particle's velocity is what the last substep left, so that it has a smooth past.
   bool goes_on(const Particles& particles, int row, int column) const;
   // A change of velocity that was so all along: the past is another one by that, and by so much in one
   // component of the position before [m].
   void shift(Particles& particles, int component, int row, int column, float previous, float v);
-  // Whether what rounding leaves is kept, in substeps of dt.
-  bool keeps_left(double dt) const;
   Rows v_before, v_end;
-  Rows left, v_left;  // what positions and velocities lack by rounding [m, m/s], in fine substeps
+  Remainders left;
   AlignedArray<float> inverse_mass;
 };
 std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,

@@ -28,7 +28,8 @@ Advance advance_of(const ClothParts& parts, const Substep& s) {
           float(std::max(0.0, 1 - s.kick * parts.cloth.drag)),
           float(g[0] * s.kick),
           float(g[1] * s.kick),
-          float(g[2] * s.kick)};
+          float(g[2] * s.kick),
+          float(std::min(1.0, s.kick * parts.cloth.drag))};
 }
 
 }  // namespace weft::physics

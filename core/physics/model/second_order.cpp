@@ -8,10 +8,6 @@
 namespace weft::physics {
 namespace {
 
-// s: in shorter substeps, what rounding leaves of each is kept for the next. That takes a sixth longer; in longer ones
-// it is less than 1e-4 of the energy.
-constexpr double kFine = 1e-4;
-
 // Rows j … end-1 as one long row, padding and all.
 SecondOrderRow rows_of(const ClothParts& parts, History& h, Rows* corrections, int j, int end,
                        double dt) {
@@ -25,10 +21,9 @@ SecondOrderRow rows_of(const ClothParts& parts, History& h, Rows* corrections, i
   r.previous = l.previous.row(j);
   r.v_before = h.v_before.row(j);
   r.v_end = h.v_end.row(j);
-  if (h.keeps_left(dt)) {
-    r.left = h.left.row(j);
-    r.v_left = h.v_left.row(j);
-  }
+  const Left left = h.left.row(j);
+  r.left = left.x;
+  r.v_left = left.v;
   if (corrections) r.u = corrections->row(j);
   r.drag = float(parts.cloth.drag);
   r.w = l.w(j);
@@ -49,24 +44,19 @@ class Predict final : public RowStage {
   void restart() override {
     std::fill(dt_.begin(), dt_.end(), 0.0);
     history_.left.clear();
-    history_.v_left.clear();
     const AlignedArray<float>& mass = parts_.particles.inverse_mass;
     std::copy_n(mass.data(), mass.size(), history_.inverse_mass.data());
   }
   void keep(Keeper& keeper) override {
     Particles& l = parts_.particles;
-    bool fine = history_.left.bytes() > 0;
     keeper(dt_);
-    keeper(fine);
-    if (fine) make_room();
+    history_.left.keep(l, keeper);
     for (Rows* rows : {&l.previous, &history_.v_before, &history_.v_end}) l.keep(*rows, keeper);
-    for (Rows* rows : {&history_.left, &history_.v_left})
-      if (fine) l.keep(*rows, keeper);
     for (int j = 0; j < l.rows; ++j)
       keeper.of(history_.inverse_mass.data() + std::size_t(j) * std::size_t(l.stride), l.count(j));
   }
   void prepare(double dt) override {
-    if (history_.keeps_left(dt)) make_room();
+    history_.left.prepare(Remainders::fine(dt), parts_.particles);
   }
   // Where what the sweeps did is not in them yet, it adds that itself.
   Velocities velocities() const override {
@@ -84,13 +74,6 @@ class Predict final : public RowStage {
   }
 
  private:
-  // For what rounding leaves.
-  void make_room() {
-    if (history_.left.bytes() > 0) return;
-    const Particles& l = parts_.particles;
-    history_.left = Rows(l.rows, l.stride);
-    history_.v_left = Rows(l.rows, l.stride);
-  }
   void run_alike(int begin, int end, const Substep& s) {
     SecondOrderRow r = rows_of(parts_, history_, corrections_, begin, end, s.dt);
     const Vec3 g = gravity_at(parts_.scene, s.time);
@@ -154,10 +137,6 @@ void History::shift(Particles& particles, int component, int row, int column, fl
   particles.previous.at(component, row, column) += previous;
   v_before.at(component, row, column) += v;
   v_end.at(component, row, column) += v;
-}
-
-bool History::keeps_left(double dt) const {
-  return dt < kFine;
 }
 
 std::unique_ptr<RowStage> make_predict_second_order(const ClothParts& parts, History& history,

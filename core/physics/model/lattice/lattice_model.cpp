@@ -106,14 +106,18 @@ void LatticeModel::append_projections(StageList& list) {
     history_ = std::make_unique<History>(lattice_);
   else
     list.skip("second order", "order is 1");
-  list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, multipliers_.get(),
-                                                             corrections_.get())
-                                 : make_predict(parts_, multipliers_.get(), corrections_.get()));
+  const auto left = history_ ? nullptr : std::make_shared<Remainders>();
+  sweep.left = left;
+  list.stages.push_back(
+      history_
+          ? make_predict_second_order(parts_, *history_, multipliers_.get(), corrections_.get())
+          : make_predict(parts_, multipliers_.get(), corrections_.get(), left));
   list.choose("wind", make_wind(parts_, seed_), "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
   list.choose("tethers", solver.tethers ? make_attachments(parts_, *corrections_) : nullptr,
               solver.tethers ? "nothing is pinned" : "off in the scene");
-  if (!gather && solver.tethers) list.stages.push_back(make_corrections(parts_, *corrections_));
+  if (!gather && solver.tethers)
+    list.stages.push_back(make_corrections(parts_, *corrections_, left));
   // Where sweeps hold every constraint for itself or with its line, its length changes in their midst. Seed 000
   // asks constraints as they lie, however unevenly.
   const bool tears = parts_.cloth.tear_strain > 0 && gather && !stencils_.empty() &&
@@ -149,7 +153,7 @@ void LatticeModel::append_projections(StageList& list) {
   if (history_)
     list.stages.push_back(make_velocity_second_order(parts_, *history_, corrections_.get()));
   else if (corrections_)
-    list.stages.push_back(make_corrections(parts_, *corrections_));
+    list.stages.push_back(make_corrections(parts_, *corrections_, left));
 }
 
 void LatticeModel::append_limits(StageList& list) {

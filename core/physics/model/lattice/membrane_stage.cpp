@@ -8,10 +8,10 @@
 namespace weft::physics {
 namespace {
 
-class MembraneStage final : public PlainRowsStage {
+class MembraneStage final : public PlainLeapfrogStage {
  public:
   explicit MembraneStage(const LatticeParts& parts)
-      : PlainRowsStage(
+      : PlainLeapfrogStage(
             "membrane",
             std::string(bends(parts) ? "stretch, shear and bending" : "stretch and shear") +
                 " of the sheet" +
@@ -28,10 +28,9 @@ class MembraneStage final : public PlainRowsStage {
     share_[0] = share_[std::size_t(parts.lattice.columns) - 1] = 0.5f;
   }
   std::size_t bytes() const override {
-    return PlainRowsStage::bytes() + constants_.size() * sizeof(MembraneConstants) +
+    return PlainLeapfrogStage::bytes() + constants_.size() * sizeof(MembraneConstants) +
            bend_.size() * sizeof(BendStiffness) + share_.size() * sizeof(float);
   }
-  bool moves_particles() const override { return true; }
   void run(int begin, int end, const Substep& s) override {
     const Grid& grid = parts_.cloth.grid;
     const double hu = spacing_u(grid), hv = spacing_v(grid);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/model/lattice/stages.h"
+#include "physics/model/remainders.h"
 
 namespace weft::physics {
 
@@ -45,8 +46,25 @@ class PlainRowsStage : public RowStage {
     r.carry = carry(s);
   }
 
-  // The same, and what the leapfrog step asks, of rows of one inverse mass: calls run(rows) for every range
-  // of such.
+  LatticeParts parts_;
+
+ private:
+  std::size_t carried() const { return 7 * std::size_t(parts_.lattice.stride); }
+  float* carry(const Substep& s) { return carry_.data() + s.slot * carried(); }
+
+  AlignedArray<float> carry_;
+};
+
+// Those that move particles by forces.
+class PlainLeapfrogStage : public Leapfrog<PlainRowsStage> {
+ public:
+  template <class... Arguments>
+  PlainLeapfrogStage(const std::string& stage_name, const std::string& stage_detail,
+                     const LatticeParts& parts, Arguments... arguments)
+      : Leapfrog(parts, stage_name, stage_detail, parts, arguments...) {}
+
+ protected:
+  // Calls run(rows) for every range of rows of one inverse mass.
   template <class Rows, class Run>
   void for_alike(Rows r, int begin, int end, const Substep& s, Run&& run_rows) {
     const auto& weights = parts_.lattice.row_inverse_mass;
@@ -56,18 +74,11 @@ class PlainRowsStage : public RowStage {
       fill(r, first, last, s);
       r.alike = weights[first];
       r.advance = advance_of(parts_, s);
+      r.left = left_.row(0);
       run_rows(r);
       first = last;
     }
   }
-
-  LatticeParts parts_;
-
- private:
-  std::size_t carried() const { return 7 * std::size_t(parts_.lattice.stride); }
-  float* carry(const Substep& s) { return carry_.data() + s.slot * carried(); }
-
-  AlignedArray<float> carry_;
 };
 
 }  // namespace weft::physics

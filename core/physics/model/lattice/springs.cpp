@@ -12,13 +12,13 @@ constexpr int kGuard = 16;  // zero lanes that a stencil's kernel reads before a
 constexpr float kAlmost = 1 + 1e-6f;
 
 // The six stencils of a plain cloth in one kernel.
-class PlainSprings final : public PlainRowsStage {
+class PlainSprings final : public PlainLeapfrogStage {
  public:
   PlainSprings(const LatticeParts& parts, bool damped)
-      : PlainRowsStage("springs",
-                       std::string("structural, shear and bend springs") +
-                           (damped ? " with damping" : "") + ", leapfrog step",
-                       parts),
+      : PlainLeapfrogStage("springs",
+                           std::string("structural, shear and bend springs") +
+                               (damped ? " with damping" : "") + ", leapfrog step",
+                           parts),
         damped_(damped),
         springs_(std::size_t(parts.lattice.rows) * kPlainStencils) {
     for (int j = 0; j < parts.lattice.rows; ++j)
@@ -30,9 +30,8 @@ class PlainSprings final : public PlainRowsStage {
       }
   }
   std::size_t bytes() const override {
-    return PlainRowsStage::bytes() + springs_.size() * sizeof(SpringConstants);
+    return PlainLeapfrogStage::bytes() + springs_.size() * sizeof(SpringConstants);
   }
-  bool moves_particles() const override { return true; }
   void run(int begin, int end, const Substep& s) override {
     SpringRows r{};
     r.constants = springs_.data();
@@ -48,10 +47,10 @@ class PlainSprings final : public PlainRowsStage {
 };
 
 // Any stencils, one kernel call each: levels, subsets.
-class StencilSprings final : public RowStage {
+class StencilSprings final : public Leapfrog<RowStage> {
  public:
   StencilSprings(const LatticeParts& parts, int reach, bool damped)
-      : RowStage("springs",
+      : Leapfrog(parts, "springs",
                  std::to_string(parts.stencils.size()) + " spring stencils" +
                      (damped ? " with damping" : "") + ", leapfrog step",
                  reach, parts.constraints(), "constraints"),
@@ -63,14 +62,15 @@ class StencilSprings final : public RowStage {
     force_ = Rows((reach + 1) * slots, parts_.lattice.stride);
     scratch_ = AlignedArray<float>(kGuard + std::size_t(slots) * 3 * parts_.lattice.stride);
   }
-  std::size_t bytes() const override { return force_.bytes() + scratch_.size() * sizeof(float); }
+  std::size_t bytes() const override {
+    return Leapfrog::bytes() + force_.bytes() + scratch_.size() * sizeof(float);
+  }
 
   void start(const Substep& s) override {
     for (int k = 0; k <= reach; ++k)
       zero(force_.row(s.slot * (reach + 1) + k), parts_.lattice.stride);
   }
 
-  bool moves_particles() const override { return true; }
   void run(int j, const Substep& s) override {
     Lattice& l = parts_.lattice;
     const auto force = [&](int row) {
@@ -93,6 +93,7 @@ class StencilSprings final : public RowStage {
     a.w = l.w(j);
     a.f = force(j);
     a.advance = advance_of(parts_, s);
+    a.left = left_.row(j);
     parts_.kernels.particles.integrate(a);
   }
 

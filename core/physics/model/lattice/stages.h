@@ -54,6 +54,7 @@ struct SweepOptions {
   double strongest = 0;         // and the greatest that lasts to the next substep [N]
   LimitSweep limit_sweep = LimitSweep::once;  // of this kind; not `once`: with multipliers
   bool tears = false;                         // ends constraints past their tear strain
+  std::shared_ptr<Remainders> left;           // Jacobi, which moves particles itself; or null
 };
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
 // The same of a membrane, over its cells, with multipliers for kCellStresses; and the sweep of its damping, which comes

@@ -229,6 +229,7 @@ class PlainJacobi final : public PlainRowsStage {
         r.rest[f] = float(parts_.stencils[std::size_t(f)].rest);
       r.weight = weight_;
       r.inverse_dt = inverse_dt_;
+      if (options_.left) r.left = options_.left->row(0);
       parts_.kernels.lattice.jacobi_rows(r);
       first = last;
     }
@@ -305,6 +306,7 @@ class Jacobi final : public RowStage {
     a.w = l.w(j);
     a.f = sum(j);
     a.inverse_dt = velocity_gain(parts_.scene.solver, s.dt);
+    if (options_.left) a.left = options_.left->row(j);
     parts_.kernels.particles.apply_corrections(a);
   }
 

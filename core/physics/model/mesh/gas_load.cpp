@@ -93,7 +93,7 @@ class PressureStage final : public WholeStage {
     Particles& particles = parts_.particles;
     const bool forces = is_explicit(parts_.method);
     const double time = push_time(parts_, s.dt), kick = forces ? s.kick : time;
-    const bool keeps = history_ && history_->keeps_left(s.dt);
+    const bool keeps = history_ && history_->left.kept;
     for (int p = span.begin; p < span.end; ++p)
       for (const auto& [place, number] : gas_.members(p)) {
         const auto [j, i] = place;
@@ -103,8 +103,8 @@ class PressureStage final : public WholeStage {
           const double gained = gain * work_.gradients[std::size_t(p)][std::size_t(k)];
           float &x = particles.x.at(k, j, i), &v = particles.v.at(k, j, i);
           if (keeps) {
-            move_keeping(v, history_->v_left.at(k, j, i), gained);
-            move_keeping(x, history_->left.at(k, j, i), gained * time);
+            move_keeping(v, history_->left.v.at(k, j, i), gained);
+            move_keeping(x, history_->left.x.at(k, j, i), gained * time);
             continue;
           }
           v = float(double(v) + gained);

@@ -125,7 +125,7 @@ void MeshModel::append_projections(StageList& list) {
   if (solver.tethers) corrections_ = std::make_unique<Rows>(particles_.rows, particles_.stride);
   if (material_.membrane) strain_sweeps().append_places_before(list);
   list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, nullptr, nullptr)
-                                 : make_predict(parts_, nullptr, corrections_.get()));
+                                 : make_predict(parts_, nullptr, corrections_.get(), nullptr));
   append_gas(list);
   list.choose("wind", make_mesh_wind(parts_, order_, triangles_, seed_, tearing_.get()),
               "drag and lift are 0");
@@ -133,7 +133,7 @@ void MeshModel::append_projections(StageList& list) {
   if (solver.tethers && tethers_.empty()) tethers_ = attachments();
   list.choose("tethers", solver.tethers ? make_tethers(parts_, tethers_, *corrections_) : nullptr,
               solver.tethers ? "nothing is pinned" : "off in the scene");
-  if (solver.tethers) list.stages.push_back(make_corrections(parts_, *corrections_));
+  if (solver.tethers) list.stages.push_back(make_corrections(parts_, *corrections_, nullptr));
   if (material_.membrane)
     append_membrane(list);
   else if (material_.stiffness == 0)

@@ -50,9 +50,9 @@ class StoreRecords final : public RowStage {
         limit_(limit) {}
   void run(int j, const Substep& s) override {
     RecordRow row = record_row_of(parts_, records_, j, gain(s.dt));
-    if (history_ && history_->keeps_left(s.dt)) {
-      row.left = history_->left.row(j);
-      row.v_left = history_->v_left.row(j);
+    if (history_ && history_->left.kept) {
+      row.left = history_->left.x.row(j);
+      row.v_left = history_->left.v.row(j);
     }
     parts_.kernels.mesh.store_records(row);
   }

@@ -61,9 +61,9 @@ class Group {
     for_each_free([&](std::size_t n, double) {
       go_on = go_on && history_->goes_on(particles_, members_[n].j, members_[n].i);
     });
-    if (history_->keeps_left(dt_)) {
-      set(particles_.x, history_->left);
-      set(particles_.v, history_->v_left);
+    if (history_->left.kept) {
+      set(particles_.x, history_->left.x);
+      set(particles_.v, history_->left.v);
     } else {
       set(particles_.x, x_);
       set(particles_.v, v_);

@@ -241,7 +241,7 @@ class StrandSweeps::Solver : private TornParts {
 
   void put_back(const StrandBatch& b, Memory& m, double dt) {
     const float gain = velocity_gain(parts_.scene.solver, dt);
-    if (history_ && history_->keeps_left(dt)) return put_back_keeping(b, m, gain);
+    if (history_ && history_->left.kept) return put_back_keeping(b, m, gain);
     const Row3 x = parts_.particles.x.row(0), v = parts_.particles.v.row(0);
     const Row3 u = m.corrections.row(0);
     for (std::size_t n = 0; n < b.lanes.size(); ++n) {
@@ -263,7 +263,7 @@ class StrandSweeps::Solver : private TornParts {
     };
     const Row3 u = m.corrections.row(0), x = parts_.particles.x.row(0);
     const Row3 v = parts_.particles.v.row(0);
-    const Row3 left = history_->left.row(0), v_left = history_->v_left.row(0);
+    const Row3 left = history_->left.x.row(0), v_left = history_->left.v.row(0);
     put(u.x, x.x, left.x, v.x, v_left.x);
     put(u.y, x.y, left.y, v.y, v_left.y);
     put(u.z, x.z, left.z, v.z, v_left.z);

@@ -10,6 +10,7 @@
 #include "physics/kernels/mesh.h"
 #include "physics/model/mesh/batches.h"
 #include "physics/model/push.h"
+#include "physics/model/remainders.h"
 
 namespace weft::physics {
 namespace {
@@ -24,12 +25,12 @@ std::string words_of(const MeshMaterial& m) {
   return forces + (m.damped() ? " with damping" : "") + ", leapfrog step";
 }
 
-class TriangleStage final : public RowStage, private TornParts {
+class TriangleStage final : public Leapfrog<RowStage>, private TornParts {
  public:
   TriangleStage(const ClothParts& parts, const MeshOrder& order,
                 const std::vector<RestTriangle>& triangles, const MeshMaterial& material,
                 MeshTearing* tearing)
-      : RowStage("triangles", words_of(material), material.bends ? 2 : 1,
+      : Leapfrog(parts, "triangles", words_of(material), material.bends ? 2 : 1,
                  std::int64_t(triangles.size()), "triangles"),
         parts_(parts),
         triangles_(triangles),
@@ -46,8 +47,6 @@ class TriangleStage final : public RowStage, private TornParts {
     tearing->tell(*this);
   }
 
-  bool moves_particles() const override { return true; }
-
   void reserve_slots(int slots) override {
     for (AlignedArray<float>* records : {&position_, &velocity_, &force_})
       if (records != &velocity_ || damped_)
@@ -55,7 +54,7 @@ class TriangleStage final : public RowStage, private TornParts {
     loaded_.assign(std::size_t(slots), 0);
   }
   std::size_t bytes() const override {
-    return batches_.size() * sizeof(MeshBatch) + place_.size() * sizeof(int) +
+    return Leapfrog::bytes() + batches_.size() * sizeof(MeshBatch) + place_.size() * sizeof(int) +
            (position_.size() + velocity_.size() + force_.size()) * sizeof(float);
   }
 
@@ -139,7 +138,8 @@ class TriangleStage final : public RowStage, private TornParts {
             records(position_, s) + at,
             damped_ ? records(velocity_, s) + at : nullptr,
             records(force_, s) + at,
-            advance_of(parts_, s)};
+            advance_of(parts_, s),
+            left_.row(j)};
   }
 
   ClothParts parts_;
