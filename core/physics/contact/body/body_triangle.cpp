@@ -2,6 +2,7 @@
 
 #include "physics/contact/body/body_surface.h"
 #include "physics/contact/body/feature_through.h"
+#include "physics/contact/body/meeting.h"
 #include "physics/contact/moving_collider.h"
 
 namespace weft::physics {
@@ -94,9 +95,24 @@ class Search {
       const BodyMoment::Point point = body_.now.nearest(t.behind, f.triangle);
       return point.distance < -t.beside && dot(point.normal, t.outward) > 0;
     };
-    if (!crossed && !(t.before < kHardly * edge_ && inside())) return false;
+    if (!crossed && !(t.before < kHardly * edge_ && inside()) && !pierces(f)) return false;
     found_ = {{t.weights, {-t.depth, t.normal}}, t.way};
     return true;
+  }
+
+  // Whether two edges of the body from a corner on go through the triangle. Behind the tip of a thin body nothing else
+  // may tell: its own sides are nearer than those of the tip.
+  bool pierces(const Feature& f) const {
+    if (f.a != f.b) return false;
+    const Vec3 tip = body_.now.vertex(f.a);
+    int first = f.a;
+    for (const int n : body_.now.form().at_vertex(f.a))
+      for (const int v : body_.now.form().triangles[std::size_t(n)]) {
+        if (v == f.a || v == first || meets(tip, body_.now.vertex(v), c_.x).at > 1) continue;
+        if (first != f.a) return true;
+        first = v;
+      }
+    return false;
   }
 
   void look(const Feature& f, const Pair& pair) {
