@@ -277,7 +277,11 @@ TEST(Solvers, AutomaticSubstepsStretchAsTheClothDoesOrSaySo) {
         return report.strain.max_of_frames.value();
       };
       bool noted = false;
-      const double truth = peak(ways()[0], stiffness > 5e3 ? 400 : 128, noted);
+      // A sheet held by a point turns over as it falls: its greatest strain is 0.021 to 0.034 by as little as ten
+      // substeps more.
+      double truth = 0;
+      for (const int more : {0, 10, 20})
+        truth = std::max(truth, peak(ways()[0], (stiffness > 5e3 ? 400 : 128) + more, noted));
       for (const Way& way : ways()) {
         const double ratio = peak(way, kAutoSubsteps, noted) / truth;
         if (noted) continue;

@@ -75,7 +75,7 @@ TEST(FreeFall, SaysWhereSubstepsAreTooShort) {
     for (const double drag : {0.0, 1.0})
       for (const int substeps : {1, 100}) {
         Scene scene = scene_of(made_up({}));
-        scene.cloths[0].stiffness = {0.001, 0.001, 0};
+        scene.cloths[0].stiffness.structural = 0.001;
         scene.cloths[0].drag = drag;
         scene.solver.method = method;
         scene.time = {1e-4, substeps, 5};

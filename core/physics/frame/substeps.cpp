@@ -108,9 +108,10 @@ void note_rounding(const Cloths& cloths, const Solver& solver, Method method, do
   Farthest farthest;
   for (const auto& step : cloths) {
     const bool sweeps_keep = solver.order == 2 || !step->cloth().mesh.given();
-    const bool keeps = is_explicit(method) ? dt < forces_keep_below(step->parts())
-                                           : sweeps_keep && Remainders::fine(dt);
-    if (!keeps) farthest.look(step->particles());
+    const auto keeps = [&] {
+      return is_explicit(method) ? dt < forces_keep_below(step->parts()) : sweeps_keep;
+    };
+    if (!Remainders::fine(dt) || !keeps()) farthest.look(step->particles());
   }
   if (const double slowest = farthest.unit() / 2 / dt; slowest >= kSlow)
     notes.push_back("substeps of " + number(dt) +

@@ -24,8 +24,9 @@ bool slows_down(const ClothParts& parts) {
 }  // namespace
 
 double forces_keep_below(const ClothParts& parts) {
-  constexpr double kFarther = 0.5;  // of the stability limit
-  if (!slows_down(parts)) return 0;
+  constexpr double kFarther = 0.5;                                    // of the stability limit
+  const bool automatic = parts.scene.time.substeps == kAutoSubsteps;  // as long as the limit allows
+  if (automatic || !slows_down(parts)) return 0;
   const Spectrum spectrum = parts.model.spectrum(parts.particles.inverse_mass.span());
   return std::min(Remainders::kFine, kFarther * spectrum.largest_substep());
 }
@@ -44,9 +45,11 @@ void Remainders::clear() {
 }
 
 void Remainders::keep(const Particles& particles, Keeper& keeper) {
-  bool there = kept;
-  keeper(there);
-  if (!there) return;
+  keeper(kept);
+  if (!kept) {
+    if (keeper.puts_back()) clear();
+    return;
+  }
   make_room(*this, particles);
   particles.keep(x, keeper);
   particles.keep(v, keeper);

@@ -27,9 +27,9 @@ struct Remainders {
   Rows x, v;  // m, m/s; there once they have been kept
 };
 
-// Forces keep what rounding leaves in substeps shorter than this [s]: fine ones, of cloth from which drag or damping
-// takes energy; else 0. What loses none is not slow for long. Near the stability limit, where springs and membranes of
-// many particles run, it takes a quarter longer, and forces that feel the rounding of positions in every substep would
+// Forces keep what rounding leaves in substeps shorter than this [s]: fine ones that somebody asked for, of cloth from
+// which drag or damping takes energy; else 0. What loses none is not slow for long. Automatic substeps are near the
+// stability limit: there it takes a quarter longer, and forces that feel the rounding of positions in every substep would
 // shake the cloth twice as much.
 double forces_keep_below(const ClothParts& parts);
 
