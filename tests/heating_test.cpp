@@ -71,5 +71,24 @@ TEST(Heating, NothingIsToldOfWhatKeepsItsEnergy) {
   EXPECT_LT(told, 4);  // of 18
 }
 
+// A body that is in the cloth as they meet grows, and stretches it: that is put in.
+TEST(Heating, NothingIsToldOfWhatBodiesThatStartInsidePutIn) {
+  Sphere ball;
+  ball.radius = 0.3;
+  Box box;
+  box.half = {0.1, 0.1, 0.1};
+  for (const Shape& shape : {Shape(ball), Shape(box)})
+    for (const Vec3& gravity : {Vec3{}, Vec3{0, -9.81, 0}}) {
+      Scene scene;
+      scene.gravity = gravity;
+      Cloth& cloth = scene.cloths.emplace_back();
+      cloth.grid = {21, 21, {-0.5, 0, -0.5}, {1, 0, 0}, {0, 0, 1}, 0};
+      cloth.stiffness = {1000, 500, 50};
+      cloth.drag = 0;
+      scene.colliders.emplace_back().shape = shape;
+      EXPECT_FALSE(run(scene, 200).told) << shape.index() << ' ' << gravity[1];
+    }
+}
+
 }  // namespace
 }  // namespace weft

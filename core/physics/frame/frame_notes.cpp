@@ -25,6 +25,16 @@ double energy_of(const Cloths& cloths, double time, const TimeStep& step) {
   return sum;
 }
 
+// Until when bodies that were in cloths as they met grow, and so stretch it [s].
+double last_growth(const Cloths& cloths) {
+  double last = -1;
+  for (const auto& cloth : cloths)
+    for (const StartInside& start : cloth->starts())
+      if (start.particles > 0 || start.triangles > 0)
+        last = std::max(last, start.time + kPulledFrames * cloth->parts().scene.time.frame);
+  return last;
+}
+
 }  // namespace
 
 void add_once(std::vector<std::string>& notes, const std::string& note) {
@@ -48,7 +58,12 @@ void FrameNotes::look(const EndedFrame& frame, std::vector<std::string>& notes) 
 
 void FrameNotes::begin_anew(const Cloths& cloths, double time, const TimeStep& step) {
   driven_ = false;
+  count_energy(cloths, time, step);
+}
+
+void FrameNotes::count_energy(const Cloths& cloths, double time, const TimeStep& step) {
   first_energy_ = is_explicit(step.method) ? energy_of(cloths, time, step) : 0;
+  counted_at_ = time;
   greatest_motion_ = 0;
 }
 
@@ -61,6 +76,7 @@ void FrameNotes::keep(Keeper& keeper) {
   for (bool* told : {&clamps_, &left_strain_, &shaking_, &heating_, &driven_}) keeper(*told);
   keeper(told_);
   keeper(first_energy_);
+  keeper(counted_at_);
   keeper(greatest_motion_);
 }
 
@@ -190,6 +206,8 @@ void FrameNotes::note_heating(const EndedFrame& frame, std::vector<std::string>&
   constexpr double kNoticed = 0.1;  // of the greatest motion
   if (heating_ || driven_ || frame.contact || frame.sleeping || !is_explicit(frame.step.method))
     return;
+  if (last_growth(frame.cloths) > counted_at_)
+    return count_energy(frame.cloths, frame.time, frame.step);
   double held = 0;
   for (const auto& step : frame.cloths) {
     if (step->model().load() || !step->parts().scene.gravity_keys.empty()) return;

@@ -63,6 +63,7 @@ class FrameNotes {
   void note_pinched(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_left_strain(const EndedFrame& frame, std::vector<std::string>& notes);
   void note_shaking(const EndedFrame& frame, std::vector<std::string>& notes);
+  void count_energy(const Cloths& cloths, double time, const TimeStep& step);
   void note_heating(const EndedFrame& frame, std::vector<std::string>& notes);
 
   std::vector<Overlong> overlong_;       // of every cloth
@@ -72,8 +73,8 @@ class FrameNotes {
   PinchedSearch pinched_search_;
   int pressed_ = 0;  // frames in which sheets were pressed, one after another
   bool clamps_ = false, left_strain_ = false, shaking_ = false, heating_ = false;
-  // J; the energy as it was counted anew, and the greatest motion since, by forces.
-  double first_energy_ = 0, greatest_motion_ = 0;
+  // J; the energy as it was counted anew, at a time [s], and the greatest motion since, by forces.
+  double first_energy_ = 0, counted_at_ = 0, greatest_motion_ = 0;
   bool driven_ = false;  // in any frame since the energy was counted anew
   std::vector<std::string> told_;
 };
