@@ -27,10 +27,6 @@ struct Case {
   Call call;
 };
 
-Left left_of(Patch& p) {
-  return {p.previous.row(0), p.carry.row(0)};
-}
-
 AdvanceRow advance_row(Patch& p) {
   return {p.columns, p.x.row(0), p.v.row(0), p.weights(0), p.f.row(0), advance(), 100.0f};
 }
@@ -157,8 +153,12 @@ void add_springs(std::vector<Case>& cases) {
 }
 
 void add_moves(std::vector<Case>& cases) {
-  const auto move = [](auto kernel) {
-    return [=](const KernelTable& k, Patch& p) { (k.particles.*kernel)(advance_row(p)); };
+  const auto move = [](auto kernel, bool finely = false) {
+    return [=](const KernelTable& k, Patch& p) {
+      AdvanceRow r = advance_row(p);
+      if (finely) r.left = {p.previous.row(0), p.carry.row(0)};
+      (k.particles.*kernel)(r);
+    };
   };
   cases.push_back({"integrate", 2, move(&ParticleKernels::integrate)});
   cases.push_back({"predict", 2, [](const KernelTable& k, Patch& p) {
@@ -168,17 +168,10 @@ void add_moves(std::vector<Case>& cases) {
                    }});
   cases.push_back({"predict, corrections first", 2, move(&ParticleKernels::predict)});
   cases.push_back({"apply_corrections", 2, move(&ParticleKernels::apply_corrections)});
-  const auto move_finely = [](auto kernel) {
-    return [=](const KernelTable& k, Patch& p) {
-      AdvanceRow r = advance_row(p);
-      r.left = left_of(p);
-      (k.particles.*kernel)(r);
-    };
-  };
-  cases.push_back({"integrate, finely", 2, move_finely(&ParticleKernels::integrate)});
-  cases.push_back({"predict, finely", 2, move_finely(&ParticleKernels::predict)});
+  cases.push_back({"integrate, finely", 2, move(&ParticleKernels::integrate, true)});
+  cases.push_back({"predict, finely", 2, move(&ParticleKernels::predict, true)});
   cases.push_back(
-      {"apply_corrections, finely", 2, move_finely(&ParticleKernels::apply_corrections)});
+      {"apply_corrections, finely", 2, move(&ParticleKernels::apply_corrections, true)});
 }
 
 struct Features {

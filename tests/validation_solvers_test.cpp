@@ -1,6 +1,7 @@
 // What every method keeps of its word over substeps: errors that fall, no energy from nowhere, and strain that is
 // that of the cloth or told.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -201,11 +202,10 @@ TEST(Solvers, ForcesInFineSubstepsComeToTheirLimit) {
 }
 
 // In fine substeps drag takes less of a velocity than single precision tells of a factor near 1.
-TEST(Solvers, TheSecondOrderFallsAgainstDragAsItShould) {
-  constexpr double kDrag = 3, kGravity = 9.81;  // 1/s, m/s²
-  constexpr double kMass = 0.1;                 // kg
+TEST(Solvers, SheetsFallAgainstDragAsTheyShouldInFineSubsteps) {
+  constexpr double kDrag = 3, kGravity = 9.81, kMass = 0.1;  // 1/s, m/s², kg
   const double speed = kGravity / kDrag * (1 - std::exp(-kDrag));
-  for (const int substeps : {16, 64, 200, 1667}) {
+  const auto falls = [&](const Way& way, int substeps, double within) {
     Scene scene;
     Cloth& cloth = scene.cloths.emplace_back();
     cloth.grid = {9, 9, {0, 0, 0}, {0.5, 0, 0}, {0, 0, 0.5}, 0};
@@ -213,37 +213,22 @@ TEST(Solvers, TheSecondOrderFallsAgainstDragAsItShould) {
     cloth.drag = kDrag;
     scene.gravity = {0, -kGravity, 0};
     scene.time.substeps = substeps;
-    solve_by(scene, {"", Method::compliant, Sweep::line, 2});
-    Simulation simulation(scene, {.threads = 1});
-    for (int frame = 0; frame < 60; ++frame) simulation.advance_frame();
-    expect({"order 2, speed of a sheet that falls against drag for a second",
-            std::to_string(substeps) + " substeps", speed, 1e-5, "m/s"},
-           -simulation.report(false).momentum[1] / kMass);
-  }
-}
-
-// The same of the first order, and of forces.
-TEST(Solvers, EveryMethodFallsAgainstDragAsItShouldInFineSubsteps) {
-  constexpr double kDrag = 3, kGravity = 9.81, kMass = 0.1;  // 1/s, m/s², kg
-  const double speed = kGravity / kDrag * (1 - std::exp(-kDrag));
-  for (const Way& way : {Way{"springs", Method::spring, Sweep::gauss_seidel, 1},
-                         Way{"positional", Method::positional, Sweep::gauss_seidel, 1},
-                         Way{"compliant, Jacobi", Method::compliant, Sweep::jacobi, 1},
-                         Way{"compliant, lines", Method::compliant, Sweep::line, 1}}) {
-    Scene scene;
-    Cloth& cloth = scene.cloths.emplace_back();
-    cloth.grid = {9, 9, {0, 0, 0}, {0.5, 0, 0}, {0, 0, 0.5}, 0};
-    cloth.density = 0.4;
-    cloth.drag = kDrag;
-    scene.gravity = {0, -kGravity, 0};
-    scene.time.substeps = 1667;
     solve_by(scene, way);
     Simulation simulation(scene, {.threads = 1});
     for (int frame = 0; frame < 60; ++frame) simulation.advance_frame();
-    expect({"10⁵ substeps a second, speed of a sheet that falls against drag for a second",
-            way.name, speed, 3e-5, "m/s"},
+    expect({"speed of a sheet that falls against drag for a second",
+            std::string(way.name) + ", " + std::to_string(substeps) + " substeps", speed, within,
+            "m/s"},
            -simulation.report(false).momentum[1] / kMass);
-  }
+  };
+  for (const int substeps : {16, 64, 200, 1667})
+    falls({"order 2", Method::compliant, Sweep::line, 2}, substeps, 1e-5);
+  // Of the first order in drag.
+  for (const Way& way : {Way{"springs", Method::spring, Sweep::gauss_seidel, 1},
+                         Way{"positional", Method::positional, Sweep::gauss_seidel, 1},
+                         Way{"compliant, Jacobi", Method::compliant, Sweep::jacobi, 1},
+                         Way{"compliant, lines", Method::compliant, Sweep::line, 1}})
+    falls(way, 1667, 3e-5);
 }
 
 // How a sheet of 1 m is held.
@@ -277,11 +262,13 @@ TEST(Solvers, AutomaticSubstepsStretchAsTheClothDoesOrSaySo) {
         return report.strain.max_of_frames.value();
       };
       bool noted = false;
-      // A sheet held by a point turns over as it falls: its greatest strain is 0.021 to 0.034 by as little as ten
-      // substeps more.
-      double truth = 0;
-      for (const int more : {0, 10, 20})
-        truth = std::max(truth, peak(ways()[0], (stiffness > 5e3 ? 400 : 128) + more, noted));
+      // The middle of three: how soon a sheet held by a point turns over, and its greatest strain with that, is
+      // another in ten substeps more.
+      std::array<double, 3> of_fine{};
+      for (int k = 0; k < 3; ++k)
+        of_fine[std::size_t(k)] = peak(ways()[0], (stiffness > 5e3 ? 400 : 128) + 10 * k, noted);
+      std::ranges::sort(of_fine);
+      const double truth = of_fine[1];
       for (const Way& way : ways()) {
         const double ratio = peak(way, kAutoSubsteps, noted) / truth;
         if (noted) continue;

@@ -1,3 +1,4 @@
+// What rounding leaves (remainders.h).
 #include "physics/model/remainders.h"
 
 #include <algorithm>
