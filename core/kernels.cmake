@@ -19,6 +19,7 @@ foreach(simd scalar sse2 avx2 avx512)
   target_compile_options(weft_kernels_${simd} PRIVATE ${flags_${simd}} -fno-math-errno
     -fno-trapping-math -falign-functions=64 -Wno-psabi)
   target_link_libraries(weft_kernels_${simd} PRIVATE weft_options)
+  weft_precompile(weft_kernels_${simd} <physics/kernels/row_kernels.h>)
   target_sources(weft_core PRIVATE $<TARGET_OBJECTS:weft_kernels_${simd}>)
 endforeach()
 # With sanitizers kernels would take most of the build. Multiply-adds that no instruction does are calls, and so are the

@@ -12,9 +12,9 @@ namespace weft {
 namespace text {
 namespace {
 
-class Reader {
+class ObjReader {
  public:
-  Reader(std::string_view text, const std::string& name, MeshFile& file)
+  ObjReader(std::string_view text, const std::string& name, MeshFile& file)
       : text_(without_mark(text)), raw_{file, name} {}
 
   void run() {
@@ -200,7 +200,7 @@ class Reader {
 
 MeshFile read_obj(std::string_view text, const std::string& name) {
   MeshFile file;
-  text::Reader(text, name, file).run();
+  text::ObjReader(text, name, file).run();
   return file;
 }
 
