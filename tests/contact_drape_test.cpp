@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "contact_scenes.h"
+#include "machines.h"
 
 namespace weft {
 namespace {
@@ -47,13 +48,11 @@ TEST(ContactDrape, SameBitsForAnyThreadsAndInstructionSet) {
     Scene scene = drape(shape, Method::spring);
     scene.cloths[0] = flat_sheet(70, 1, {0, 0.25, 0});  // large enough to be shared out
     std::vector<std::uint64_t> hashes;
-    for (const int threads : {1, 2, 3})
-      for (const Simd simd : {Simd::scalar, Simd::avx2, Simd::best}) {
-        if (!simd_available(simd) || (threads == 2 && simd != Simd::best)) continue;
-        Simulation simulation(scene, {threads, simd, 1, false});
-        advance(simulation, 0.2);
-        hashes.push_back(simulation.hash());
-      }
+    for (const Options& options : machines()) {
+      Simulation simulation(scene, options);
+      advance(simulation, 0.2);
+      hashes.push_back(simulation.hash());
+    }
     for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
   }
 }

@@ -59,19 +59,26 @@ inline void advance(Simulation& simulation, double seconds) {
 }
 
 // How a sheet folds hangs on the last bit of where it starts: of five starts, each jittered by a seed
-// of its own, the middle one is told.
-inline double median_of_starts(const Scene& scene, double seconds,
-                               const std::function<double(const Simulation&)>& measure) {
-  std::array<double, 5> measured;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
+// of its own, the middle one of each measure is told.
+template <class... Measures>
+std::array<double, sizeof...(Measures)> medians_of_starts(const Scene& scene, double seconds,
+                                                          const Measures&... measures) {
+  constexpr std::size_t kStarts = 5;
+  std::array<std::array<double, kStarts>, sizeof...(Measures)> measured;
+  for (std::size_t i = 0; i < kStarts; ++i) {
     Options options;
     options.seed = i + 1;
     Simulation simulation(scene, options);
     advance(simulation, seconds);
-    measured[i] = measure(simulation);
+    std::size_t n = 0;
+    ((measured[n++][i] = measures(simulation)), ...);
   }
-  std::sort(measured.begin(), measured.end());
-  return measured[measured.size() / 2];
+  std::array<double, sizeof...(Measures)> medians;
+  for (std::size_t n = 0; n < medians.size(); ++n) {
+    std::sort(measured[n].begin(), measured[n].end());
+    medians[n] = measured[n][kStarts / 2];
+  }
+  return medians;
 }
 
 // The same velocity for every particle.
