@@ -8,10 +8,11 @@
 // (Hairer, Wanner, "Solving Ordinary Differential Equations II", V.1.) A particle whose
 // velocity is no longer what the substep before left, because a body or a limit has changed it,
 // has no smooth past to extrapolate: it takes this substep by implicit Euler, x* = x_n, with h² for
-// its share of every correction. Before the first substep of all, and the first after a change of h, lies
-// free flight, x_{n-1} = x_n - h v_n + ½h² a, v_{n-1} = v_n - h a, a = g - c v_n. Both kinds go through the
-// same sweeps: the constraints are solved with ⅔h and inverse masses scaled by 1/(1 + ⅔h c), or by
-// 9/4/(1 + h c). Zeros become positive, as in advance.cpp.
+// its share of every correction. Both kinds go through the same sweeps: the constraints are solved with ⅔h and inverse
+// masses scaled by 1/(1 + ⅔h c), or by 9/4/(1 + h c). Zeros become positive, as in advance.cpp.
+//
+// So do all in the first substep, and in the first after a change of h; a single one is off by h² only. Without
+// constraints they move by the mean of both velocities, which is free flight.
 //
 // In fine substeps what rounding leaves of a step goes into the next (kept.h): else velocities would tell of a motion
 // that is not there.
@@ -72,23 +73,15 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
     // Of the others that are free, too; those that are not are held in the end.
     WideInt smooth = ~WideInt{};
     if constexpr (kKnown) {
-      smooth = free;
-      if (!r.fresh) smooth = smooth & equal(v.value, load3(r.v_end, i));
+      smooth = r.fresh ? WideInt{} : free & equal(v.value, load3(r.v_end, i));
     } else {
       take<kFine>(r, slowed, mass, i, x, v);
     }
     const auto either = [&](auto if_smooth, auto if_euler) {
       return kKnown ? select(smooth, if_smooth, if_euler) : if_smooth;
     };
-    Wide3 by_x, by_v;  // in the substep before
-    if (r.fresh) {
-      by_v = (g - v.value * wide(r.drag)) * wide(h);
-      by_x = v.value * wide(h) - by_v * wide(0.5f * h);
-      x.left = v.left = Wide3{};
-    } else {
-      by_x = x.value - load3(r.previous, i);
-      by_v = v.value - load3(r.v_before, i);
-    }
+    // In the substep before.
+    const Wide3 by_x = x.value - load3(r.previous, i), by_v = v.value - load3(r.v_before, i);
     store3(r.previous, i, x.value);
     store3(r.v_before, i, v.value);
     const Wide step = either(wide(h2), wide(h));
@@ -96,7 +89,8 @@ WEFT_INLINE void predict(const SecondOrderRow& given) {
     Kept to = x, velocity = v;
     const Wide3 gain = fma(g, step, either(by_v * wide(kThird), Wide3{}));
     velocity.move<kFine>(gain - (v.value + gain) * lost);
-    to.move<kFine>(fma(velocity.value, step, either(by_x * wide(kThird), Wide3{})));
+    const Wide3 back = r.fresh ? (v.value - velocity.value) * wide(0.5f * h) : Wide3{};
+    to.move<kFine>(fma(velocity.value, step, either(by_x * wide(kThird), back)));
     store3(r.x, i, select(free, to.value, x.value));
     // Corrections will be added to v over ⅔h; an Euler step's belong over h.
     store3(r.v, i, select(free, velocity.value * either(wide(1), wide(1.5f)), v.value));

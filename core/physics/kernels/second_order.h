@@ -19,7 +19,7 @@ struct SecondOrderRow {
   Row3 v_left;   // and v [m/s]
   float* w;      // inverse mass, scaled while the constraints are solved [1/kg]
   const float* mass;  // inverse mass proper [1/kg]
-  bool fresh;         // nothing is known of the substep before
+  bool fresh;         // nothing is known of the substep before; then v does not wait
   float dt;           // s
   float drag;         // 1/s
   float gx, gy, gz;   // m/s²

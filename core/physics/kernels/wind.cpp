@@ -10,7 +10,8 @@
 //   w T ΣF / (1 + a + b²),  a = w T Σ A/3 drag (u·n),  b = w T Σ A/3 lift |u|
 //
 // by drag, as much as in the exact motion of a plate against still air; by both, never more than the whole
-// relative motion.
+// relative motion. Where the second order pushes in every substep, drag is that of the velocity at the substep's end,
+// u - gain, and 1 + a becomes (1 + 2a + √(1 + 4a))/2.
 #include "physics/kernels/gather.h"
 #include "physics/kernels/mesh.h"
 
@@ -146,7 +147,8 @@ void push(const PushRow& r) {
   for (int i = 0; i < padded(r.columns); i += kLanes) {
     const Wide w = load(r.w + i), time = w * r.time, resists = w * r.resists;
     const Wide drag = resists * load(r.air.drag + i), lift = resists * load(r.air.lift + i);
-    const Wide3 gained = load3(r.air.f, i) * (time / (1.0f + drag + lift * lift));
+    const Wide slowed = r.at_end ? 0.5f + drag + 0.5f * sqrt(1.0f + 4.0f * drag) : 1.0f + drag;
+    const Wide3 gained = load3(r.air.f, i) * (time / (slowed + lift * lift));
     store3(r.v, i, load3(r.v, i) + gained);
     store3(r.x, i, load3(r.x, i) + gained * wide(r.dt));
     store3(r.air.f, i, Wide3{});

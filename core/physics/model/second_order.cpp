@@ -1,6 +1,8 @@
 // Stages "predict" and "velocity" of the second-order substep (kernels/second_order.cpp).
 #include "physics/kernels/second_order.h"
 
+#include <cassert>
+
 #include "physics/model/path.h"
 #include "physics/model/projected_motion.h"
 #include "physics/step/keeper.h"
@@ -80,6 +82,7 @@ class Predict final : public RowStage {
     r.fresh = dt_[begin] != s.dt;
     std::fill(dt_.begin() + begin, dt_.begin() + end, s.dt);
     r.v_waits = !s.velocities_known;
+    assert(!r.fresh || !r.v_waits);
     r.gx = float(g[0]);
     r.gy = float(g[1]);
     r.gz = float(g[2]);

@@ -56,8 +56,9 @@ void WindStage::run(int j, const Substep& s) {
   // A push of the second order is two thirds of what it comes to in the substeps after it, of which its own knows so
   // much and the others all.
   const double time = push_time(parts_, s.dt), resists = (steps - 1) * s.dt + time;
+  const bool at_end = parts_.scene.solver.order == 2 && !is_explicit(parts_.method) && steps == 1;
   parts_.kernels.particles.push({p.count(j), p.x.row(j), p.v.row(j), p.w(j), sums(j, s),
-                                 float(steps * time), float(resists), float(time)});
+                                 float(steps * time), float(resists), float(time), at_end});
 }
 
 // For how many substeps this one pushes; 0: another one does. It is the one whose end, where it
