@@ -8,20 +8,23 @@
 #include "physics/frame/energy_now.h"
 #include "physics/frame/projection_substep.h"
 #include "physics/model/number.h"
+#include "physics/model/remainders.h"
 #include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
 
 constexpr int kFramesBetweenLooks = 8;
+constexpr double kNever = -1;  // s
 
-// J
+// J; rigid constraints hold none.
 double energy_of(const Cloths& cloths, double time, const TimeStep& step) {
   double sum = 0;
-  for (const auto& cloth : cloths)
-    sum += energy_now(*cloth, cloth->particles().inverse_mass.span(),
-                      measured_velocities(*cloth, time, step), time, {})
-               .total();
+  for (const auto& cloth : cloths) {
+    const EnergyNow now = energy_now(*cloth, cloth->particles().inverse_mass.span(),
+                                     measured_velocities(*cloth, time, step), time, {});
+    sum += is_explicit(step.method) ? now.total() : now.kinetic + now.gravity;
+  }
   return sum;
 }
 
@@ -58,11 +61,13 @@ void FrameNotes::look(const EndedFrame& frame, std::vector<std::string>& notes) 
 
 void FrameNotes::begin_anew(const Cloths& cloths, double time, const TimeStep& step) {
   driven_ = false;
-  count_energy(cloths, time, step);
+  counted_at_ = kNever;
+  // What begins longer than rigid constraints allow snaps back first.
+  if (is_explicit(step.method)) count_energy(cloths, time, step);
 }
 
 void FrameNotes::count_energy(const Cloths& cloths, double time, const TimeStep& step) {
-  first_energy_ = is_explicit(step.method) ? energy_of(cloths, time, step) : 0;
+  first_energy_ = energy_of(cloths, time, step);
   counted_at_ = time;
   greatest_motion_ = 0;
 }
@@ -201,17 +206,22 @@ void FrameNotes::note_shaking(const EndedFrame& frame, std::vector<std::string>&
   }
 }
 
-// Forces make energy where vibrations near the stability limit grow.
+// Forces make energy where vibrations near the stability limit grow, sweeps over rigid constraints of what rounding
+// leaves of lengths, which is all motion of fine substeps (in others the same sweeps slow down what begins too long, for
+// many frames). What compliant sweeps leave is strain (note_left_strain()).
 void FrameNotes::note_heating(const EndedFrame& frame, std::vector<std::string>& notes) {
   constexpr double kNoticed = 0.1;  // of the greatest motion
-  if (heating_ || driven_ || frame.contact || frame.sleeping || !is_explicit(frame.step.method))
+  const Method method = frame.step.method;
+  if (heating_ || driven_ || frame.contact || frame.sleeping) return;
+  if (!is_explicit(method) && !(method == Method::positional && Remainders::fine(frame.step.dt)))
     return;
-  if (last_growth(frame.cloths) > counted_at_)
+  if (counted_at_ == kNever || last_growth(frame.cloths) > counted_at_)
     return count_energy(frame.cloths, frame.time, frame.step);
   double held = 0;
   for (const auto& step : frame.cloths) {
     if (step->model().load() || !step->parts().scene.gravity_keys.empty()) return;
-    held += step->model().held_energy(step->particles().x, 0, frame.threads);
+    if (is_explicit(method))
+      held += step->model().held_energy(step->particles().x, 0, frame.threads);
   }
   greatest_motion_ = std::max(greatest_motion_, frame.energy.kinetic());
   const double most = first_energy_ + kNoticed * greatest_motion_;
@@ -220,10 +230,14 @@ void FrameNotes::note_heating(const EndedFrame& frame, std::vector<std::string>&
   const double energy = energy_of(frame.cloths, frame.time, frame.step);
   if (energy <= most) return;
   heating_ = true;
-  notes.push_back("frame " + std::to_string(frame.number) + ": forces have made " +
-                  number(energy - first_energy_) +
-                  " J of nothing, as vibrations near the stability limit grow; substeps of " +
-                  number(frame.step.dt / 2) + " s do not");
+  const std::string made = " have made " + number(energy - first_energy_) + " J of nothing";
+  notes.push_back("frame " + std::to_string(frame.number) +
+                  (is_explicit(method)
+                       ? ": forces" + made +
+                             ", as vibrations near the stability limit grow; substeps of " +
+                             number(frame.step.dt / 2) + " s do not"
+                       : ": sweeps over rigid constraints" + made +
+                             "; longer substeps, line sweeps or method compliant make less"));
 }
 
 void FrameNotes::tell(const Cloths& cloths, std::int64_t frames, std::vector<std::string>& notes) {
