@@ -6,8 +6,8 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)  # programs at an address that the syste
 
 option(WEFT_HARDENING "Build with what keeps a fault in memory from becoming worse than a stop" ON)
 
-# Headers that most sources include, compiled once for each target with many, and small targets in one piece: a third
-# less time for a whole build. With a compiler cache each source for itself is faster, and shows that it includes what
+# Headers that most sources include, compiled once for each target with many, and the command and the Python module in
+# one piece each: a third less time for a whole build. With a compiler cache each source for itself is faster, and shows that it includes what
 # it needs.
 if(CMAKE_CXX_COMPILER_LAUNCHER)
   set(precompiled OFF)

@@ -2,6 +2,7 @@
 // of reach left alone.
 #include <cstdio>
 
+#include "cases.h"
 #include "contact_scenes.h"
 #include "machines.h"
 
@@ -29,8 +30,10 @@ const std::vector<Shape>& drapes() {
 }
 
 TEST(ContactDrape, NoParticleSinksIn) {
+  Cases cases(5);
   for (const Method method : {Method::spring, Method::compliant})
     for (const Shape& shape : drapes()) {
+      if (!cases.next()) continue;
       Simulation simulation(drape(shape, method));
       double deepest = 0;
       for (int n = 0; n < 90; ++n) {
@@ -44,7 +47,9 @@ TEST(ContactDrape, NoParticleSinksIn) {
 }
 
 TEST(ContactDrape, SameBitsForAnyThreadsAndInstructionSet) {
+  Cases cases(2);
   for (const Shape& shape : drapes()) {
+    if (!cases.next()) continue;
     Scene scene = drape(shape, Method::spring);
     scene.cloths[0] = flat_sheet(70, 1, {0, 0.25, 0});  // large enough to be shared out
     std::vector<std::uint64_t> hashes;

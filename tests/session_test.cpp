@@ -161,7 +161,7 @@ TEST_P(Sessions, StayWholeWhateverIsAsked) {
           session.post([back = n % 7](Player& player) { player.go_back(back); });
           break;
         case 3:
-          session.post([threads = 1 + n % 3, simd = n % 2 == 0 ? Simd::best : Simd::sse2](
+          session.post([threads = 1 + n % 3, simd = n % 2 == 0 ? Simd::best : Simd::scalar](
                            Player& player) { player.set_options(threads, simd); });
           break;
         case 4:

@@ -5,14 +5,25 @@
 
 namespace weft {
 
-#define WEFT_EACH_SIMD(apply) apply(scalar) apply(sse2) apply(avx2) apply(avx512)
-
-#define WEFT_DECLARE(simd)               \
-  namespace kernels_##simd {             \
+// WEFT_SETS: WEFT_SET(name) for each set that this build has kernels for (kernels.cmake).
+#define WEFT_SET(name)                   \
+  namespace kernels_##name {             \
     const physics::KernelTable& table(); \
   }
-WEFT_EACH_SIMD(WEFT_DECLARE)
-#undef WEFT_DECLARE
+WEFT_SETS
+#undef WEFT_SET
+
+namespace {
+
+bool built(Simd simd) {
+#define WEFT_SET(name) \
+  if (simd == Simd::name) return true;
+  WEFT_SETS
+#undef WEFT_SET
+  return simd == Simd::best;
+}
+
+}  // namespace
 
 const char* simd_name(Simd simd) {
   switch (simd) {
@@ -31,6 +42,7 @@ const char* simd_name(Simd simd) {
 }
 
 bool simd_available(Simd simd) {
+  if (!built(simd)) return false;
   switch (simd) {
     case Simd::avx2:
       return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
@@ -46,17 +58,17 @@ namespace physics {
 
 const KernelTable& kernel_table(Simd simd) {
   switch (simd) {
-#define WEFT_CASE(name) \
-  case Simd::name:      \
+#define WEFT_SET(name) \
+  case Simd::name:     \
     return kernels_##name::table();
-    WEFT_EACH_SIMD(WEFT_CASE)
-#undef WEFT_CASE
-    case Simd::best:
+    WEFT_SETS
+#undef WEFT_SET
+    default:
       break;
   }
-  for (Simd widest : {Simd::avx512, Simd::avx2})
+  for (Simd widest : {Simd::avx512, Simd::avx2, Simd::sse2})
     if (simd_available(widest)) return kernel_table(widest);
-  return kernel_table(Simd::sse2);
+  return kernel_table(Simd::scalar);
 }
 
 }  // namespace physics
