@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "cases.h"
 #include "weft/simulation.h"
 
 namespace weft {
@@ -58,25 +59,25 @@ inline void advance(Simulation& simulation, double seconds) {
   for (int frame = 0; frame < int(std::lround(frames)); ++frame) simulation.advance_frame();
 }
 
-// How a sheet folds hangs on the last bit of where it starts: of five starts, each jittered by a seed
-// of its own, the middle one of each measure is told.
+// How a sheet folds hangs on the last bit of where it starts: of three starts (five in the long form), each jittered by
+// a seed of its own, the middle one of each measure is told.
 template <class... Measures>
 std::array<double, sizeof...(Measures)> medians_of_starts(const Scene& scene, double seconds,
                                                           const Measures&... measures) {
-  constexpr std::size_t kStarts = 5;
-  std::array<std::array<double, kStarts>, sizeof...(Measures)> measured;
-  for (std::size_t i = 0; i < kStarts; ++i) {
+  const std::size_t starts = whole_sweeps() ? 5 : 3;
+  std::array<std::vector<double>, sizeof...(Measures)> measured;
+  for (std::size_t i = 0; i < starts; ++i) {
     Options options;
     options.seed = i + 1;
     Simulation simulation(scene, options);
     advance(simulation, seconds);
     std::size_t n = 0;
-    ((measured[n++][i] = measures(simulation)), ...);
+    (measured[n++].push_back(measures(simulation)), ...);
   }
   std::array<double, sizeof...(Measures)> medians;
   for (std::size_t n = 0; n < medians.size(); ++n) {
     std::sort(measured[n].begin(), measured[n].end());
-    medians[n] = measured[n][kStarts / 2];
+    medians[n] = measured[n][starts / 2];
   }
   return medians;
 }

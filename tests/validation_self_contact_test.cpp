@@ -63,7 +63,7 @@ TEST(SelfContact, CourseRuleKeepsLayersApart) {
     return simulation.report().penetration.self_max / thickness;
   };
   const char* const law =
-      "sheet that folds onto itself, by the course's rule, after 4 s, median of five starts";
+      "sheet that folds onto itself, by the course's rule, after 4 s, median of some starts";
   const auto [crossed, overlapping] = medians_of_starts(scene, 4, crossings, overlap);
   expect({law, "scene selfCollision: crossings", 0, 0, "triangle pairs"}, crossed);
   expect({law, "scene selfCollision: greatest overlap", 0, 0.2, "of the thickness"}, overlapping);
