@@ -17,13 +17,17 @@ endif()
 option(WEFT_PRECOMPILED "Precompile the headers that most sources include" ${precompiled})
 set(weft_common_headers <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory>
   <optional> <span> <string> <utility> <variant> <vector>)
+# weft_precompile(TARGET HEADER…): those and the common ones.
 function(weft_precompile target)
   if(WEFT_PRECOMPILED)
     target_precompile_headers(${target} PRIVATE ${weft_common_headers} ${ARGN})
   endif()
 endfunction()
 
+# g++ 12 takes strings in precompiled headers for ones that overflow (its bug 105651), and sources that are built in one
+# piece for headers.
 set(weft_false_alarms -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-subobject-linkage)
+
 add_library(weft_hardening INTERFACE)
 add_library(weft_options INTERFACE)
 target_link_libraries(weft_options INTERFACE weft_hardening)
@@ -33,8 +37,6 @@ target_compile_options(weft_options INTERFACE
   # warns falsely about std::string in g++ 12.
   $<$<CXX_COMPILER_ID:GNU>:-Wshadow=local> $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<CXX_COMPILER_ID:Clang>:-Wshadow>
-  # g++ 12 takes strings in precompiled headers for ones that overflow (its bug 105651), and sources that are built
-  # in one piece for headers.
   "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${WEFT_PRECOMPILED}>>:${weft_false_alarms}>"
   # The same bits from every compiler and instruction set: nothing is fused that the source does not fuse.
   -ffp-contract=off)

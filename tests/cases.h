@@ -4,14 +4,15 @@
 
 namespace weft {
 
+// Whether all is run.
 inline bool whole_sweeps() {
   return std::getenv("WEFT_FULL") != nullptr;
 }
 
 class Cases {
  public:
-  // The short form is every so manieth case. A number without a factor in common with the lengths of the loops
-  // about it meets every value of each.
+  // The short form is one case in `every`. A number without a factor in common with the lengths of the loops about it
+  // meets every value of each.
   explicit Cases(int every) : every_(whole_sweeps() ? 1 : every) {}
 
   // Whether to run the next case.

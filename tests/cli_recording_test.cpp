@@ -3,6 +3,7 @@
 #include <tuple>
 #include <vector>
 
+#include "machines.h"
 #include "program.h"
 #include "weft/read_scene.h"
 #include "weft/recording.h"
@@ -98,8 +99,9 @@ TEST(Recording, HoldsValuesOverTime) {
       "colliders": [{"sphere": {"center": [0.5, -0.4, 0.5], "radius": 0.2},
         "keys": [[0, 0.5,-0.4,0.5], [0.3, 0.6,0,0.5]]}]})");
   ASSERT_EQ(run_weft(folder, "run s.json --frames 12 --record a.rec").exit_code, 0);
-  for (const char* simd : {"", " --simd scalar"}) {
-    const Outcome outcome = run_weft(folder, std::string("run --replay a.rec --threads 3") + simd);
+  for (const Simd simd : {Simd::scalar, wide_simd()}) {
+    const Outcome outcome =
+        run_weft(folder, std::string("run --replay a.rec --threads 3 --simd ") + simd_name(simd));
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   }
 }

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "machines.h"
 #include "program.h"
 
 namespace weft {
@@ -58,11 +59,12 @@ TEST(CliRun, ThreadsSimdAndSeedReachTheSimulation) {
   const Folder folder;
   small_scene(folder);
   const Json one = report_of(folder, "--frames 5 --threads 1 --simd scalar --seed 7");
-  const Json two = report_of(folder, "--frames 5 --threads 2 --seed 7");
+  const std::string wide = simd_name(wide_simd());
+  const Json two = report_of(folder, "--frames 5 --threads 2 --seed 7 --simd " + wide);
   EXPECT_EQ(one["threads"], 1);
   EXPECT_EQ(two["threads"], 2);
   EXPECT_EQ(one["build"]["simd"], "scalar");
-  EXPECT_NE(two["build"]["simd"], "scalar");
+  EXPECT_EQ(two["build"]["simd"], wide);
   EXPECT_EQ(one["hash"], two["hash"]);
 }
 

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "folder.h"
+#include "machines.h"
 #include "weft/random.h"
 #include "weft/read_scene.h"
 
@@ -161,7 +162,7 @@ TEST_P(Sessions, StayWholeWhateverIsAsked) {
           session.post([back = n % 7](Player& player) { player.go_back(back); });
           break;
         case 3:
-          session.post([threads = 1 + n % 3, simd = n % 2 == 0 ? Simd::best : Simd::scalar](
+          session.post([threads = 1 + n % 3, simd = n % 2 == 0 ? Simd::best : wide_simd()](
                            Player& player) { player.set_options(threads, simd); });
           break;
         case 4:

@@ -82,7 +82,7 @@ Simd parse_simd(const std::string& name) {
   }
   if (name == "best") return Simd::best;
   throw Failure{kBadCommandLine,
-                {{"--simd", "this machine does not run " + name, list(available)}}};
+                {{"--simd", "this build or machine does not run " + name, list(available)}}};
 }
 
 std::int64_t frame_count(const RunArguments& arguments, const Time& time,

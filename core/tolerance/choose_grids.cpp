@@ -18,7 +18,7 @@ constexpr double kBytes = 1000;  // that a particle takes, with what is kept of 
 constexpr int kRungs = 4;
 // Of distances between grids. With 1 a fourth of random sheets were up to a tenth beyond what was promised
 // (bench/tolerance --grids).
-constexpr double kGridSafety = 1.25;
+constexpr double kSafety = 1.25;
 constexpr int kTries = 6;           // ladders
 constexpr double kMostWork = 1e11;  // of a rung, Trial::work; about two minutes on one thread
 
@@ -157,8 +157,7 @@ class GridSearch {
       const InTime in_time = substeps(o.way, grids, kAnyWork);
       if (!in_time.kept) return search;
       const Ladder rungs = ladder(o.way, grids, in_time.substeps);
-      const std::optional<double> times =
-          rungs.needed((asked_.error - in_time.error) / kGridSafety);
+      const std::optional<double> times = rungs.needed((asked_.error - in_time.error) / kSafety);
       search.falls = rungs.falls();
       // On the way that the rungs go, for cells of one shape.
       const int finer_than_first = times ? int(std::ceil(kFinest * *times)) : kFinest;

@@ -62,7 +62,7 @@ void FrameNotes::look(const EndedFrame& frame, std::vector<std::string>& notes) 
 void FrameNotes::begin_anew(const Cloths& cloths, double time, const TimeStep& step) {
   driven_ = false;
   counted_at_ = kNever;
-  // What begins longer than rigid constraints allow snaps back first.
+  // What begins longer than rigid constraints allow snaps back first: their energy is counted at the first look.
   if (is_explicit(step.method)) count_energy(cloths, time, step);
 }
 
@@ -206,9 +206,10 @@ void FrameNotes::note_shaking(const EndedFrame& frame, std::vector<std::string>&
   }
 }
 
-// Forces make energy where vibrations near the stability limit grow, sweeps over rigid constraints of what rounding
-// leaves of lengths, which is all motion of fine substeps (in others the same sweeps slow down what begins too long, for
-// many frames). What compliant sweeps leave is strain (note_left_strain()).
+// Forces make energy where vibrations near the stability limit grow. Sweeps over rigid constraints make it in fine
+// substeps, where the rounding of lengths is as large as the motion. They are not looked at in coarser ones: there they
+// take many frames to shorten what begins too long, which is motion that was put in. What compliant sweeps leave is
+// strain (note_left_strain()).
 void FrameNotes::note_heating(const EndedFrame& frame, std::vector<std::string>& notes) {
   constexpr double kNoticed = 0.1;  // of the greatest motion
   const Method method = frame.step.method;

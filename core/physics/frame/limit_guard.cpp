@@ -9,7 +9,7 @@ namespace {
 // Of a limit: strain beyond it that is let be, as where a load has just come; and with which a limit holds well.
 constexpr double kLetBe = 0.1, kHeld = 0.03;
 constexpr double kCured = 0.7;  // of what was beyond: more is left where finer substeps do not help
-constexpr int kFinestHeld = 8, kFramesHeld = 10, kFramesHopeless = 60;
+constexpr int kFinest = 8, kFramesHeld = 10, kFramesHopeless = 60;
 
 // The greatest strain of a cloth beyond its limit, of the limit.
 double greatest_excess(const Cloths& cloths, const Sleeping* sleeping) {
@@ -32,7 +32,7 @@ bool LimitGuard::asks_again(const Cloths& cloths, const Sleeping* sleeping) {
     hopeless_ = kFramesHopeless;
     return false;
   }
-  if (excess_ <= kLetBe || hopeless_ > 0 || finer_ == kFinestHeld) return false;
+  if (excess_ <= kLetBe || hopeless_ > 0 || finer_ == kFinest) return false;
   again_ = true;
   before_ = excess_;
   finer_ *= 2;

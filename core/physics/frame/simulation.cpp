@@ -33,7 +33,8 @@ SceneError::SceneError(std::vector<Fault> found)
 Simulation::Simulation(Scene scene, Options options) {
   if (auto faults = validate(scene); !faults.empty()) throw SceneError(std::move(faults));
   if (!simd_available(options.simd))
-    throw std::invalid_argument(std::string("this machine has no ") + simd_name(options.simd));
+    throw std::invalid_argument(std::string("this build or machine has no ") +
+                                simd_name(options.simd));
   if (options.threads < 0 || options.threads > 256)
     throw std::invalid_argument("threads is " + std::to_string(options.threads) + " (0 to 256)");
   const Vec3 origin = origin_of(scene);

@@ -17,13 +17,6 @@ using namespace physics;
 
 namespace {
 
-Simd resolve(Simd simd) {
-  if (simd != Simd::best) return simd;
-  for (Simd s : {Simd::avx512, Simd::avx2})
-    if (simd_available(s)) return s;
-  return Simd::sse2;
-}
-
 // Frames that the scene's own length asks to keep times of, at most a million.
 std::size_t frames_of(const Time& time) {
   return std::size_t(clamp_to_int(time.seconds / time.frame, 1, 1000000)) + 1;
@@ -35,7 +28,7 @@ Simulation::State::State(Scene given, const Options& given_options, const Vec3& 
                          MakeModel make)
     : placed(std::move(given), about),
       options(given_options),
-      simd(resolve(options.simd)),
+      simd(resolved(options.simd)),
       runner(options.threads, scene.cloths.size()),
       time_step{.method = scene.solver.method, .spectra = {}},
       times(frames_of(scene.time)),

@@ -25,7 +25,9 @@ struct KernelTable {
   const ColliderKernels* const* colliders;  // of every shape, in the order of weft::Shape
 };
 
-// The kernels built for one instruction set (`best` is resolved by the caller).
+// The kernels built for one instruction set; of one that is not built it aborts.
 const KernelTable& kernel_table(Simd simd);
+// What `best` stands for in this build, on this machine; any other stands for itself.
+Simd resolved(Simd simd);
 
 }  // namespace weft::physics

@@ -11,8 +11,9 @@
 // its share of every correction. Both kinds go through the same sweeps: the constraints are solved with ⅔h and inverse
 // masses scaled by 1/(1 + ⅔h c), or by 9/4/(1 + h c). Zeros become positive, as in advance.cpp.
 //
-// So do all in the first substep, and in the first after a change of h; a single one is off by h² only. Without
-// constraints they move by the mean of both velocities, which is free flight.
+// All particles take the first substep, and the first after a change of h, by implicit Euler: the error of a single one
+// is of order h², and so leaves the second order as it is. x* is such that without constraints they move by the mean of
+// the velocities before and after, which is exact in free flight.
 //
 // In fine substeps what rounding leaves of a step goes into the next (kept.h): else velocities would tell of a motion
 // that is not there.

@@ -1,4 +1,5 @@
 // Which instruction set to run: the names, what this machine has, and the kernels built for it.
+#include <cstdlib>
 #include <initializer_list>
 
 #include "physics/kernels/kernels.h"
@@ -56,19 +57,23 @@ bool simd_available(Simd simd) {
 
 namespace physics {
 
+Simd resolved(Simd simd) {
+  if (simd != Simd::best) return simd;
+  for (const Simd widest : {Simd::avx512, Simd::avx2, Simd::sse2})
+    if (simd_available(widest)) return widest;
+  return Simd::scalar;
+}
+
 const KernelTable& kernel_table(Simd simd) {
-  switch (simd) {
+  switch (resolved(simd)) {
 #define WEFT_SET(name) \
   case Simd::name:     \
     return kernels_##name::table();
     WEFT_SETS
 #undef WEFT_SET
     default:
-      break;
+      std::abort();  // simd_available() has said so
   }
-  for (Simd widest : {Simd::avx512, Simd::avx2, Simd::sse2})
-    if (simd_available(widest)) return kernel_table(widest);
-  return kernel_table(Simd::scalar);
 }
 
 }  // namespace physics

@@ -10,8 +10,8 @@
 //   w T ΣF / (1 + a + b²),  a = w T Σ A/3 drag (u·n),  b = w T Σ A/3 lift |u|
 //
 // by drag, as much as in the exact motion of a plate against still air; by both, never more than the whole
-// relative motion. Where the second order pushes in every substep, drag is that of the velocity at the substep's end,
-// u - gain, and 1 + a becomes (1 + 2a + √(1 + 4a))/2.
+// relative motion. With order 2, where air pushes in every substep, drag is that of the velocity after the push, as
+// constraint forces are those of the positions after it: 1 + a becomes (1 + 2a + √(1 + 4a))/2.
 #include "physics/kernels/gather.h"
 #include "physics/kernels/mesh.h"
 

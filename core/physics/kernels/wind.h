@@ -43,7 +43,8 @@ struct PushRow {
   float time;     // s, that the air pushes for
   float resists;  // s, that what is gained resists it for
   float dt;       // s; how far positions follow the velocity that is gained
-  bool at_end;    // what resists is the wind at the velocity gained; else that of the exact motion of a plate
+  bool
+      at_end;  // drag is that of the velocity after the push; else as in the exact motion of a plate
 };
 
 }  // namespace weft::physics

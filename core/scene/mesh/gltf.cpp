@@ -21,9 +21,9 @@ using Uv = TriangleMesh::Uv;
 // Joints and targets of all nodes: some 100 MB.
 constexpr std::size_t kMostMovingParts = std::size_t{1} << 20;
 
-class GltfReader {
+class Reader {
  public:
-  GltfReader(const GltfValue& document, GltfData& data, const std::string& name, MeshFile& file)
+  Reader(const GltfValue& document, GltfData& data, const std::string& name, MeshFile& file)
       : document_(document), data_(data), raw_{file, name} {
     raw_.first_vertex = 0;
     raw_.words = [this](int triangle) { return words_of(std::size_t(triangle - 1)); };
@@ -229,7 +229,7 @@ MeshFile read_gltf(std::string_view bytes, const std::string& name, const std::s
   MeshFile file;
   text::read_gltf_file(bytes, name, folder, file.faults,
                        [&](const text::GltfValue& document, text::GltfData& data) {
-                         text::GltfReader(document, data, name, file).run(false);
+                         text::Reader(document, data, name, file).run(false);
                        });
   return file;
 }
@@ -240,7 +240,7 @@ PointCacheFile read_gltf_motion(std::string_view bytes, const std::string& name,
   text::read_gltf_file(
       bytes, name, folder, file.faults, [&](const text::GltfValue& document, text::GltfData& data) {
         MeshFile mesh;
-        text::GltfReader reader(document, data, name, mesh);
+        text::Reader reader(document, data, name, mesh);
         reader.run(true);
         file.faults = mesh.faults;
         if (!file.faults.empty()) return;

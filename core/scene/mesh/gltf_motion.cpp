@@ -21,7 +21,7 @@ constexpr std::size_t kMostSamples = std::size_t{1} << 17;
 constexpr std::size_t kMostWork = std::size_t{1} << 34;
 
 // Of all samplers: the weights of one export, twice.
-constexpr std::size_t kMostSampled = std::size_t{1} << 25;
+constexpr std::size_t kMostNumbers = std::size_t{1} << 25;
 
 enum class Path { translation, rotation, scale, weights };
 constexpr const char* kPaths[] = {"translation", "rotation", "scale", "weights"};
@@ -109,8 +109,8 @@ class Animation {
           read.path == Path::rotation ? GltfCurve::Kind::rotation : GltfCurve::Kind::numbers);
     read.curve = known->second;
     numbers_ += fresh ? curves_.back().size() : 0;
-    if (numbers_ > kMostSampled)
-      played_.refuse("the samplers have more values", std::to_string(kMostSampled) + " of all");
+    if (numbers_ > kMostNumbers)
+      played_.refuse("the samplers have more values", std::to_string(kMostNumbers) + " of all");
     channels_.push_back(read);
   }
 

@@ -12,9 +12,9 @@ namespace weft {
 namespace text {
 namespace {
 
-class ObjReader {
+class Reader {
  public:
-  ObjReader(std::string_view text, const std::string& name, MeshFile& file)
+  Reader(std::string_view text, const std::string& name, MeshFile& file)
       : text_(without_mark(text)), raw_{file, name} {}
 
   void run() {
@@ -200,7 +200,7 @@ class ObjReader {
 
 MeshFile read_obj(std::string_view text, const std::string& name) {
   MeshFile file;
-  text::ObjReader(text, name, file).run();
+  text::Reader(text, name, file).run();
   return file;
 }
 

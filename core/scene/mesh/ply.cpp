@@ -24,9 +24,9 @@ struct Row {
   }
 };
 
-class PlyReader {
+class Reader {
  public:
-  PlyReader(std::string_view bytes, const std::string& name, MeshFile& file)
+  Reader(std::string_view bytes, const std::string& name, MeshFile& file)
       : bytes_(bytes), raw_{file, name} {
     raw_.first_vertex = 0;
   }
@@ -275,7 +275,7 @@ class PlyReader {
 
 MeshFile read_ply(std::string_view bytes, const std::string& name) {
   MeshFile file;
-  text::PlyReader(text::without_mark(bytes), name, file).run();
+  text::Reader(text::without_mark(bytes), name, file).run();
   return file;
 }
 

@@ -41,9 +41,9 @@ class Numbers {
   std::size_t at_ = 0;
 };
 
-class PointCacheReader {
+class Reader {
  public:
-  PointCacheReader(std::string_view bytes, const std::string& name, int points)
+  Reader(std::string_view bytes, const std::string& name, int points)
       : bytes_(bytes), name_(name), points_(points) {}
 
   PointCacheFile run() {
@@ -152,7 +152,7 @@ void append(std::string& bytes, std::uint32_t value) {
 }  // namespace
 
 PointCacheFile parse_point_cache(std::string_view bytes, const std::string& name, int points) {
-  return PointCacheReader(bytes, name, points).run();
+  return Reader(bytes, name, points).run();
 }
 
 PointCacheFile read_point_cache(const std::string& path, int points) {

@@ -8,7 +8,7 @@
 namespace weft::text {
 namespace {
 
-constexpr double kFlatAtRest = 1e-6, kShortest = 1e-6;  // of the longest edge; m
+constexpr double kFlat = 1e-6, kShortest = 1e-6;  // of the longest edge; m
 
 std::string triangle_words(const TriangleMesh& mesh, std::size_t t) {
   const auto& [a, b, c] = mesh.triangles[t];
@@ -30,7 +30,7 @@ std::optional<Fault> fault_of_pattern(const ClothMesh& mesh, const std::string& 
     const auto [shortest, longest] = std::minmax({side(a, b), side(b, c), side(c, a)});
     const double area = mesh.uv_scale * mesh.uv_scale *
                         std::abs((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
-    if (!(area > kFlatAtRest * longest * longest))
+    if (!(area > kFlat * longest * longest))
       return Fault{place + "/rest", triangle_words(shape, t) + " has no area on the pattern",
                    "texture coordinates of all corners that are not in line"};
     if (shortest < kShortest)

@@ -8,7 +8,7 @@ namespace {
 
 // What may come near is known so much farther than a triangle's reach, as a share of it; and triangles may grow so
 // much longer until it is looked for again.
-constexpr double kReachMargin = 0.5, kGrown = 1.1;
+constexpr double kMargin = 0.5, kGrown = 1.1;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ void FeatureProbe::renew(Group& group, const ColliderRow& row, const AboutTriang
   all.add(triangle.box);
   const Vec3 middle = times(plus(all.low, all.high), 0.5);
   group.triangle = row.body.now.nearest(middle, group.triangle).triangle;
-  group.near.find(row.body.now, row.time, all, (1 + kReachMargin) * triangle.reach, most,
+  group.near.find(row.body.now, row.time, all, (1 + kMargin) * triangle.reach, most,
                   group.triangle);
 }
 

@@ -12,7 +12,7 @@ namespace {
 constexpr float kIntervals = 8, kFaster = 1.25f;
 // Of the greatest allowance, that bodies at rest have.
 constexpr float kAtRest = 0.1f;
-constexpr std::size_t kFewStrayed = 64;  // that one thread does faster
+constexpr std::size_t kFewBlocks = 64;  // that one thread does faster
 
 }  // namespace
 
@@ -42,7 +42,7 @@ auto Allowances::mean(const Displacement* moved) const -> Way {
 // visit(block).
 template <class Visit>
 void Allowances::for_each_block(Threads& threads, const Visit& visit) const {
-  threads.share(strayed_.size(), strayed_.size() < kFewStrayed, visit);
+  threads.share(strayed_.size(), strayed_.size() < kFewBlocks, visit);
 }
 
 bool Allowances::hold(const Place* place, const Displacement* moved, Threads& threads) {

@@ -10,8 +10,8 @@ namespace {
 
 // Of all normals about a vertex: the greatest diagonal of the box about them, φ = 29°; with s cos φ is 0.65.
 constexpr float kSpread = 0.9f;
-constexpr float kLeastStretch = 0.75f;       // s
-constexpr std::size_t kFewTriangles = 4096;  // triangles that one thread does faster
+constexpr float kLeastStretch = 0.75f;  // s
+constexpr std::size_t kFew = 4096;      // triangles that one thread does faster
 
 void subtract(const float* a, const float* b, float (&to)[3]) {
   for (int k = 0; k < 3; ++k) to[k] = a[k] - b[k];
@@ -107,7 +107,7 @@ bool BesideTriangles::is_flat(const Fan& fan) const {
 
 void BesideTriangles::list(const Place* place, const std::vector<std::uint8_t>& passing,
                            Threads& threads) {
-  const bool few = triangles_.size() < kFewTriangles;
+  const bool few = triangles_.size() < kFew;
   const auto for_each_part = [&](std::size_t count, const auto& work) {
     threads.share((count + kAtOnce - 1) / kAtOnce, few,
                   [&](std::size_t k) { work(k, k * kAtOnce, std::min(count, (k + 1) * kAtOnce)); });

@@ -10,9 +10,9 @@
 namespace weft::physics {
 namespace {
 
-constexpr std::size_t kMeasuredAtOnce = 256;  // pairs of squares that are measured in one go
-constexpr std::size_t kFewLists = 8;          // that one thread does faster
-constexpr int kFirstOfKey = 36;  // bits of a contact's key that follow its first number
+constexpr std::size_t kAtOnce = 256;  // pairs of squares that are measured in one go
+constexpr std::size_t kFewLists = 8;  // that one thread does faster
+constexpr int kFirstOfKey = 36;       // bits of a contact's key that follow its first number
 
 bool is_none(const Displacement& d) {
   return d.u[0] == 0 && d.u[1] == 0 && d.u[2] == 0;
@@ -95,12 +95,11 @@ void SelfContact::keep_owned(const SquarePairs& pairs, std::size_t first, Measur
 void SelfContact::measure_surfaces(const SquarePairs& pairs, SurfaceSearch search, float reach,
                                    Threads& threads) {
   pairs_ = &pairs;
-  const std::size_t pieces = (pairs.count + kMeasuredAtOnce - 1) / kMeasuredAtOnce;
+  const std::size_t pieces = (pairs.count + kAtOnce - 1) / kAtOnce;
   if (measured_.size() < pieces) measured_.resize(pieces);
   for (std::size_t k = pieces; k < measured_.size(); ++k) measured_[k].count = 0;
   threads.share(pieces, pieces < kFewLists, [&](std::size_t k) {
-    const std::size_t first = k * kMeasuredAtOnce,
-                      count = std::min(pairs.count - first, kMeasuredAtOnce);
+    const std::size_t first = k * kAtOnce, count = std::min(pairs.count - first, kAtOnce);
     Measured& found = measured_[k];
     if (found.room.size() < count * kKindsOfPair) found.room.resize(count * kKindsOfPair);
     found.count = std::size_t(kernels_.sheets.surface_pairs(
@@ -122,7 +121,7 @@ void SelfContact::find_among_surfaces(Threads& threads) {
   std::vector<Contact<4>>& contacts = surfaces_->contacts();
   for (std::size_t k = 0; k < measured_.size(); ++k)
     for (const SurfaceContact& found : measured_[k].found()) {
-      const std::size_t pair = k * kMeasuredAtOnce + std::size_t(found.pair);
+      const std::size_t pair = k * kAtOnce + std::size_t(found.pair);
       Contact<4> c;
       c.key = std::uint64_t(pairs_->owner[pair]) << kFirstOfKey |
               std::uint64_t(pairs_->neighbour[pair]) << 4 | std::uint64_t(found.kind);

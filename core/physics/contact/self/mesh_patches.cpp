@@ -13,8 +13,8 @@
 namespace weft::physics {
 namespace {
 
-constexpr std::size_t kFewVertices = 4096;  // vertices that one thread copies faster
-constexpr double kDetour = 2;               // along edges, of the straight way between neighbours
+constexpr std::size_t kFew = 4096;  // vertices that one thread copies faster
+constexpr double kDetour = 2;       // along edges, of the straight way between neighbours
 
 // Small meshes in small patches, so that they have some; large ones in large, so that there are few.
 std::size_t patch_size(std::size_t vertices) {
@@ -72,7 +72,7 @@ MeshPatches::MeshPatches(const ClothModel& model, std::vector<Vec3> rest)
 }
 
 void MeshPatches::copy(Threads& threads) {
-  threads.share(std::size_t(points_->rows), rest_.size() < kFewVertices, [&](std::size_t row) {
+  threads.share(std::size_t(points_->rows), rest_.size() < kFew, [&](std::size_t row) {
     const int j = int(row);
     auto n = std::size_t(points_->first[row]);
     for (int i = 0; i < points_->count(j); ++i, ++n) {

@@ -8,7 +8,7 @@ namespace {
 
 // Thicknesses, by edges over the seam: a surface keeps off by half of what lies between at rest, and edges are
 // up to a third longer than the straight way.
-constexpr double kBesideSeams = 2.6;
+constexpr double kBeside = 2.6;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ OverSeams::OverSeams(const std::vector<Sheet>& sheets, const std::vector<NamedSh
       const auto [row, column] = sheet.points->place(int(vertex));
       return named[s].name(row, column);
     };
-    const auto near = sheet.mesh->sewn_neighbours(kBesideSeams * double(sheet.thickness));
+    const auto near = sheet.mesh->sewn_neighbours(kBeside * double(sheet.thickness));
     for (std::size_t v = 0; v < near.size(); ++v) {
       std::vector<std::int32_t>& of = near_[std::size_t(body(v))];
       for (const int vertex : near[v]) of.push_back(body(std::size_t(vertex)));

@@ -17,7 +17,7 @@ namespace weft::physics {
 namespace {
 
 // Thicknesses at rest: pairs nearer than that that are no neighbours are beside each other.
-constexpr double kBesideSquares = 2.6;
+constexpr double kBeside = 2.6;
 // Of a sheet's own distances, that surfaces are kept apart at least (kernels/surface.cpp).
 constexpr float kFlatSurface = 0.5f;
 // Of the thickness: wider where the list of pairs was good for a few runs only, narrower where it was
@@ -27,15 +27,15 @@ constexpr int kFewRuns = 3, kManyRuns = 8;
 constexpr int kRunsToEdges = 16;  // until what was not flat is looked at again
 // Of the thickness, that what does not touch, but may, moves against each other between two runs.
 constexpr float kMotion = 0.03f;
-constexpr int kMostSubsteps = 32;            // between two looks
-constexpr std::size_t kFewParticles = 4096;  // particles that one thread does faster
+constexpr int kMostSubsteps = 32;   // between two looks
+constexpr std::size_t kFew = 4096;  // particles that one thread does faster
 constexpr int kRowsOfBand = 8;
 
 // Their names are still to be given. Rows are whole groups of lanes.
 std::vector<NamedSheet> named(const std::vector<Sheet>& sheets) {
   std::vector<NamedSheet> named;
   for (const Sheet& s : sheets) {
-    const float range = s.mesh ? 0 : s.thickness * float(kBesideSquares);
+    const float range = s.mesh ? 0 : s.thickness * float(kBeside);
     named.push_back({s.columns, s.points->rows, s.uu, s.uv, s.vv, range * range,
                      (s.columns + 15) / 16 * 16, 0});
   }
@@ -196,7 +196,7 @@ BodyBlock SelfContact::bodies_of(const Band& band) {
 // Where all is now, and how far it has moved in the interval.
 void SelfContact::gather(Threads& threads) {
   copy_meshes(sheets_, threads);
-  threads.share(bands_.size(), particles_ < kFewParticles,
+  threads.share(bands_.size(), particles_ < kFew,
                 [&](std::size_t b) { kernels_.sheets.gather_bodies(bodies_of(bands_[b])); });
 }
 
@@ -227,7 +227,7 @@ void SelfContact::list_sites(Threads& threads) {
     if (blocks[b].active) count_ += std::size_t(blocks[b].rows) * std::size_t(blocks[b].columns);
   }
   const Row3 to = search_.points();
-  threads.share(blocks.size(), count_ < kFewParticles, [&](std::size_t b) {
+  threads.share(blocks.size(), count_ < kFew, [&](std::size_t b) {
     const Block& block = blocks[b];
     if (!block.active) return;
     std::size_t at = first_site_[b];

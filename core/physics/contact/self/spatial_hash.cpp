@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kTablePerParticle = 4;  // buckets
 constexpr std::int64_t kSmallestTable = 1024;
-constexpr std::size_t kFewSorted = 4096;  // particles that one thread sorts faster
+constexpr std::size_t kFew = 4096;  // particles that one thread sorts faster
 
 std::int64_t modulo(std::int64_t a, std::int64_t m) {
   const std::int64_t r = a % m;
@@ -83,7 +83,7 @@ void SpatialHash::build(ConstRow3 x, const std::int32_t* names, std::size_t part
   shift_ = 0;
   while (((table_ - 1) >> shift_) >= kParts) ++shift_;
   // Counts of every part and share, then where each begins: part after part, share after share.
-  const bool few = particles < kFewSorted;
+  const bool few = particles < kFew;
   threads.share(kShares, few, [&](std::size_t share) { count(x, int(share)); });
   std::int32_t before = 0;
   for (int p = 0; p <= kParts; ++p)

@@ -11,8 +11,8 @@ namespace weft::physics {
 namespace {
 
 constexpr std::size_t kFewParticles = 4096;
-constexpr std::size_t kPairsAtOnce = 1024;  // pairs that are looked through in one go
-constexpr std::size_t kFewPieces = 8;       // that one thread does faster
+constexpr std::size_t kAtOnce = 1024;  // pairs that are looked through in one go
+constexpr std::size_t kFewPieces = 8;  // that one thread does faster
 // Runs after which a pair that was near is measured again, to sleep: that costs as much as to look for contacts.
 constexpr std::size_t kTurns = 8;
 
@@ -43,12 +43,10 @@ void NearSquares::share_squares(Threads& threads, const Visit& visit) const {
     });
   }
   for (const auto& part : parts_)
-    threads.share((part->end - part->first + kPairsAtOnce - 1) / kPairsAtOnce, few,
-                  [&](std::size_t k) {
-                    const std::size_t first = part->first + k * kPairsAtOnce;
-                    for (std::size_t n = first; n < std::min(part->end, first + kPairsAtOnce); ++n)
-                      visit(n);
-                  });
+    threads.share((part->end - part->first + kAtOnce - 1) / kAtOnce, few, [&](std::size_t k) {
+      const std::size_t first = part->first + k * kAtOnce;
+      for (std::size_t n = first; n < std::min(part->end, first + kAtOnce); ++n) visit(n);
+    });
 }
 
 // How far corners have come from each other.
@@ -150,12 +148,12 @@ void NearSquares::drop_alike(SquarePairs& pairs, const Place* place, Room& room)
 template <class Work>
 void NearSquares::add_pieces(std::size_t pairs, SquarePairs& to, Threads& threads,
                              const Work& work) {
-  const std::size_t pieces = (pairs + kPairsAtOnce - 1) / kPairsAtOnce;
+  const std::size_t pieces = (pairs + kAtOnce - 1) / kAtOnce;
   if (found_.size() < pieces) found_.resize(pieces);
   if (rooms_.size() < pieces) rooms_.resize(pieces);
   threads.share(pieces, pieces < kFewPieces, [&](std::size_t k) {
-    const std::size_t first = k * kPairsAtOnce;
-    work(k, first, std::min(pairs - first, kPairsAtOnce));
+    const std::size_t first = k * kAtOnce;
+    work(k, first, std::min(pairs - first, kAtOnce));
   });
   to.add(found_, pieces);
 }
@@ -259,7 +257,7 @@ void NearSquares::add_asked_beside(float range, float box_range, const Place* pl
              [&](std::size_t k, std::size_t first, std::size_t count) {
                SquarePairs& found = found_[k];
                std::vector<float>& change = rooms_[k].measured;
-               change.resize(kPairsAtOnce + SquarePairs::kPadding);
+               change.resize(kAtOnce + SquarePairs::kPadding);
                beside_.alike(corner_pairs_.owner.data() + first,
                              corner_pairs_.neighbour.data() + first, count, place, change.data());
                found.reserve(count);

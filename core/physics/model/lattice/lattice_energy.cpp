@@ -17,8 +17,7 @@
 namespace weft::physics {
 namespace {
 
-constexpr double kRoundingOfPositions =
-    4e-7;                           // of positions in single precision, of the scene's size
+constexpr double kRounding = 4e-7;  // of positions in single precision, of the scene's size
 constexpr double kHalfUnit = 6e-8;  // of their last place, likewise
 
 }  // namespace
@@ -150,7 +149,7 @@ StretchRow LatticeModel::stretch_row(const Rows& x, double dt) const {
   const Cloth& cloth = parts_.cloth;
   const double projected = std::min(1.0, 2 * cloth.positional_k * parts_.scene.solver.iterations);
   StretchRow r{};
-  r.slack = float(kRoundingOfPositions * greatest_coordinate(x));
+  r.slack = float(kRounding * greatest_coordinate(x));
   r.share = is_explicit(method_) ? kInfinite : method_ == Method::positional ? float(projected) : 1;
   r.inverse_dt2 = dt > 0 ? float(1 / (dt * dt)) : kAtOnce;
   return r;
@@ -187,7 +186,7 @@ double LatticeModel::held_energy(const Rows& x, double dt, Threads& threads) con
       is_membrane() || solves_membrane() ? membrane_energy(x) : stretch_energy(x, dt, threads);
   if (solves_membrane())
     sum += pull().stiffness * double(parts_.constraints()) *
-           std::pow(kRoundingOfPositions * greatest_coordinate(x), 2);
+           std::pow(kRounding * greatest_coordinate(x), 2);
   if (parts_.cloth.bending.given()) sum += bending_energy(parts_.cloth, lattice_.gather(x));
   return sum;
 }
