@@ -42,9 +42,8 @@ target_compile_options(weft_options INTERFACE
   -ffp-contract=off)
 if(WEFT_SANITIZE)
   # Null pointers are seen by the address sanitizer too; alignment is what the wide loads need anyway;
-  # both checks at every access would double the time of the build. Warnings are errors in the other builds; here
-  # g++ gives more false ones.
-  target_compile_options(weft_options INTERFACE -Wno-error -fsanitize=${WEFT_SANITIZE}
+  # both checks at every access would double the time of the build. g++ gives more false warnings here.
+  target_compile_options(weft_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-error> -fsanitize=${WEFT_SANITIZE}
     -fno-sanitize=null,alignment,vptr -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(weft_options INTERFACE -fsanitize=${WEFT_SANITIZE})
 elseif(WEFT_HARDENING)
