@@ -98,7 +98,9 @@ class NearSquares {
   void prune(float range, const Place* place, const Displacement* moved, Threads& threads);
   void widen_boxes(const Place* place, Threads& threads);
   void drop_beyond_allowances(SquarePairs& pairs, float range, const Place* place, Room& room);
-  void measure_gaps(const SquarePairs& pairs, const Place* place, Room& room) const;
+  template <class Until, class Sleeps>
+  void drop_asleep(SquarePairs& pairs, std::size_t turn, const Until& until, const Place* place,
+                   Room& room, const Sleeps& sleeps) const;
   bool sleeps(const SquarePairs& pairs, std::size_t pair, float farther);
   void drop_far(SquarePairs& pairs, float range, const Place* place, Room& room);
   void drop_alike(SquarePairs& pairs, const Place* place, Room& room);
@@ -151,7 +153,7 @@ class NearSquares {
   std::vector<float> allowance_;  // m, of every square: the greatest of its corners,
   std::vector<float> way_;        // and how far it has come at most, with that
   std::vector<Room> rooms_;       // of every piece of a list
-  std::size_t turn_ = 0;
+  std::size_t turn_ = 0, prunes_ = 0;
   float within_range_ = 0;     // m: of within_
   float most_ = 0, skin_ = 0;  // m: most_ is what any pair is kept apart at most
   std::size_t all_squares_ = 0;

@@ -13,7 +13,8 @@ namespace {
 constexpr std::size_t kFewParticles = 4096;
 constexpr std::size_t kAtOnce = 1024;  // pairs that are looked through in one go
 constexpr std::size_t kFewPieces = 8;  // that one thread does faster
-// Runs after which a pair that was near is measured again, to sleep: that costs as much as to look for contacts.
+// Runs, or lists pruned, after which a pair that was near is measured again, to sleep: that costs as much as to look for
+// contacts.
 constexpr std::size_t kTurns = 8;
 
 }  // namespace
@@ -81,22 +82,41 @@ void NearSquares::drop_pairs(SquarePairs& pairs, const Drop& drop) {
   pairs.pad();
 }
 
-// How far apart those of a list are.
-void NearSquares::measure_gaps(const SquarePairs& pairs, const Place* place, Room& room) const {
-  room.measured.resize(std::max(room.measured.size(), pairs.count + SquarePairs::kPadding));
-  kernels_.sheets.square_gaps({place, squares_.data(), int(pairs.count), pairs.owner.data(),
-                               pairs.neighbour.data(), room.measured.data()});
+// Takes those out of a list for which sleeps(pair, how far apart its squares are) holds. Measured are those that have
+// slept, by until(number), and others by turns.
+template <class Until, class Sleeps>
+void NearSquares::drop_asleep(SquarePairs& pairs, std::size_t turn, const Until& until,
+                              const Place* place, Room& room, const Sleeps& sleeps) const {
+  SquarePairs& asked = room.asked;
+  asked.count = 0;
+  asked.reserve(pairs.count);
+  for (std::size_t pair = 0; pair < pairs.count; ++pair) {
+    const std::int32_t number = pairs.number[pair];
+    if (until(number) != CornerWays::kAlways || (std::size_t(number) + turn) % kTurns == 0)
+      asked.put(pairs.owner[pair], pairs.neighbour[pair], std::int32_t(pair));
+  }
+  if (asked.count == 0) return;
+  asked.pad();
+  std::vector<float>& gap = room.measured;
+  gap.resize(std::max(gap.size(), asked.count + SquarePairs::kPadding));
+  kernels_.sheets.square_gaps({place, squares_.data(), int(asked.count), asked.owner.data(),
+                               asked.neighbour.data(), gap.data()});
+  std::size_t next = 0;
+  drop_pairs(pairs, [&](std::size_t pair) {
+    if (next == asked.count || asked.number[next] != std::int32_t(pair)) return false;
+    return sleeps(pair, gap[next++]);
+  });
 }
 
 // Takes those out of the list that cannot come within range; they sleep.
 void NearSquares::drop_beyond_allowances(SquarePairs& pairs, float range, const Place* place,
                                          Room& room) {
-  measure_gaps(pairs, place, room);
-  drop_pairs(pairs, [&](std::size_t pair) {
+  const auto until = [&](std::int32_t number) -> float& { return until_[std::size_t(number)]; };
+  drop_asleep(pairs, prunes_, until, place, room, [&](std::size_t pair, float gap) {
     const auto a = std::size_t(pairs.owner[pair]), b = std::size_t(pairs.neighbour[pair]);
-    const float beyond = room.measured[pair] - range - (allowance_[a] + allowance_[b]);
-    float& until = until_[std::size_t(pairs.number[pair])];
-    until = beyond > 0 ? (way_[a] + way_[b] + beyond) * kRoundedDown : CornerWays::kAlways;
+    const float beyond = gap - range - (allowance_[a] + allowance_[b]);
+    until(pairs.number[pair]) =
+        beyond > 0 ? (way_[a] + way_[b] + beyond) * kRoundedDown : CornerWays::kAlways;
     return beyond > 0;
   });
 }
@@ -111,25 +131,11 @@ bool NearSquares::sleeps(const SquarePairs& pairs, std::size_t pair, float farth
   return farther > came;
 }
 
-// Takes those out that share a corner and come nowhere near by how far apart they are otherwise. Measured are those
-// that have slept, and others by turns.
+// Takes those out that share a corner and come nowhere near by how far apart they are otherwise.
 void NearSquares::drop_far(SquarePairs& pairs, float range, const Place* place, Room& room) {
-  SquarePairs& asked = room.asked;
-  asked.count = 0;
-  asked.reserve(pairs.count);
-  for (std::size_t pair = 0; pair < pairs.count; ++pair) {
-    const std::int32_t number = pairs.number[pair];
-    if (beside_.until(number) != CornerWays::kAlways || (std::size_t(number) + turn_) % kTurns == 0)
-      asked.put(pairs.owner[pair], pairs.neighbour[pair], std::int32_t(pair));
-  }
-  if (asked.count == 0) return;
-  asked.pad();
-  measure_gaps(asked, place, room);
-  std::size_t next = 0;
-  drop_pairs(pairs, [&](std::size_t pair) {
-    if (next == asked.count || asked.number[next] != std::int32_t(pair)) return false;
-    return sleeps(pairs, pair, room.measured[next++] - range);
-  });
+  const auto until = [&](std::int32_t number) { return beside_.until(number); };
+  drop_asleep(pairs, turn_, until, place, room,
+              [&](std::size_t pair, float gap) { return sleeps(pairs, pair, gap - range); });
 }
 
 // Takes those out that share a corner and lie alike; they sleep.
@@ -187,6 +193,7 @@ void NearSquares::prune(float range, const Place* place, const Displacement* mov
   allowances_.give(place, moved, threads);
   widen_boxes(place, threads);
   pruned_.count = 0;
+  ++prunes_;
   add_pieces(listed_.count, pruned_, threads,
              [&](std::size_t k, std::size_t first, std::size_t count) {
                SquarePairs& found = found_[k];
