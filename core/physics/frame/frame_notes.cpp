@@ -8,23 +8,20 @@
 #include "physics/frame/energy_now.h"
 #include "physics/frame/projection_substep.h"
 #include "physics/model/number.h"
-#include "physics/model/remainders.h"
 #include "physics/step/keeper.h"
 
 namespace weft::physics {
 namespace {
 
 constexpr int kFramesBetweenLooks = 8;
-constexpr double kNever = -1;  // s
 
-// J; rigid constraints hold none.
+// J
 double energy_of(const Cloths& cloths, double time, const TimeStep& step) {
   double sum = 0;
-  for (const auto& cloth : cloths) {
-    const EnergyNow now = energy_now(*cloth, cloth->particles().inverse_mass.span(),
-                                     measured_velocities(*cloth, time, step), time, {});
-    sum += is_explicit(step.method) ? now.total() : now.kinetic + now.gravity;
-  }
+  for (const auto& cloth : cloths)
+    sum += energy_now(*cloth, cloth->particles().inverse_mass.span(),
+                      measured_velocities(*cloth, time, step), time, {})
+               .total();
   return sum;
 }
 
@@ -61,13 +58,11 @@ void FrameNotes::look(const EndedFrame& frame, std::vector<std::string>& notes) 
 
 void FrameNotes::begin_anew(const Cloths& cloths, double time, const TimeStep& step) {
   driven_ = false;
-  counted_at_ = kNever;
-  // What begins longer than rigid constraints allow snaps back first: their energy is counted at the first look.
-  if (is_explicit(step.method)) count_energy(cloths, time, step);
+  count_energy(cloths, time, step);
 }
 
 void FrameNotes::count_energy(const Cloths& cloths, double time, const TimeStep& step) {
-  first_energy_ = energy_of(cloths, time, step);
+  first_energy_ = is_explicit(step.method) ? energy_of(cloths, time, step) : 0;
   counted_at_ = time;
   greatest_motion_ = 0;
 }
@@ -206,23 +201,17 @@ void FrameNotes::note_shaking(const EndedFrame& frame, std::vector<std::string>&
   }
 }
 
-// Forces make energy where vibrations near the stability limit grow. Sweeps over rigid constraints make it in fine
-// substeps, where the rounding of lengths is as large as the motion. They are not looked at in coarser ones: there they
-// take many frames to shorten what begins too long, which is motion that was put in. What compliant sweeps leave is
-// strain (note_left_strain()).
+// Forces make energy where vibrations near the stability limit grow.
 void FrameNotes::note_heating(const EndedFrame& frame, std::vector<std::string>& notes) {
   constexpr double kNoticed = 0.1;  // of the greatest motion
-  const Method method = frame.step.method;
-  if (heating_ || driven_ || frame.contact || frame.sleeping) return;
-  if (!is_explicit(method) && !(method == Method::positional && Remainders::fine(frame.step.dt)))
+  if (heating_ || driven_ || frame.contact || frame.sleeping || !is_explicit(frame.step.method))
     return;
-  if (counted_at_ == kNever || last_growth(frame.cloths) > counted_at_)
+  if (last_growth(frame.cloths) > counted_at_)
     return count_energy(frame.cloths, frame.time, frame.step);
   double held = 0;
   for (const auto& step : frame.cloths) {
     if (step->model().load() || !step->parts().scene.gravity_keys.empty()) return;
-    if (is_explicit(method))
-      held += step->model().held_energy(step->particles().x, 0, frame.threads);
+    held += step->model().held_energy(step->particles().x, 0, frame.threads);
   }
   greatest_motion_ = std::max(greatest_motion_, frame.energy.kinetic());
   const double most = first_energy_ + kNoticed * greatest_motion_;
@@ -231,14 +220,10 @@ void FrameNotes::note_heating(const EndedFrame& frame, std::vector<std::string>&
   const double energy = energy_of(frame.cloths, frame.time, frame.step);
   if (energy <= most) return;
   heating_ = true;
-  const std::string made = " have made " + number(energy - first_energy_) + " J of nothing";
-  notes.push_back("frame " + std::to_string(frame.number) +
-                  (is_explicit(method)
-                       ? ": forces" + made +
-                             ", as vibrations near the stability limit grow; substeps of " +
-                             number(frame.step.dt / 2) + " s do not"
-                       : ": sweeps over rigid constraints" + made +
-                             "; longer substeps, line sweeps or method compliant make less"));
+  notes.push_back("frame " + std::to_string(frame.number) + ": forces have made " +
+                  number(energy - first_energy_) +
+                  " J of nothing, as vibrations near the stability limit grow; substeps of " +
+                  number(frame.step.dt / 2) + " s do not");
 }
 
 void FrameNotes::tell(const Cloths& cloths, std::int64_t frames, std::vector<std::string>& notes) {

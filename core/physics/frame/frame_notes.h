@@ -73,7 +73,7 @@ class FrameNotes {
   PinchedSearch pinched_search_;
   int pressed_ = 0;  // frames in which sheets were pressed, one after another
   bool clamps_ = false, left_strain_ = false, shaking_ = false, heating_ = false;
-  // J; the energy as it was counted anew, at a time [s; negative: not yet], and the greatest motion since.
+  // J; the energy as it was counted anew, at a time [s], and the greatest motion since, by forces.
   double first_energy_ = 0, counted_at_ = 0, greatest_motion_ = 0;
   bool driven_ = false;  // in any frame since the energy was counted anew
   std::vector<std::string> told_;

@@ -53,6 +53,7 @@ struct SweepOptions {
   double held = 0;              // what forces hold of it: as much or less,
   double strongest = 0;         // and the greatest that lasts to the next substep [N]
   LimitSweep limit_sweep = LimitSweep::once;  // of this kind; not `once`: with multipliers
+  bool backwards = false;                     // the last constraint first
   bool tears = false;                         // ends constraints past their tear strain
   std::shared_ptr<Remainders> left;           // Jacobi, which moves particles itself; or null
 };

@@ -1,7 +1,7 @@
 // Stages "gauss_seidel" and "jacobi": one sweep of projections over all constraint stencils.
 //
 // Gauss–Seidel goes by row offset dj, along the rows first, then colour by colour, stencil by
-// stencil: constraints a of one row alternate by a/|di|, those between rows by j/dj, so that the
+// stencil, or all that backwards: constraints a of one row alternate by a/|di|, those between rows by j/dj, so that the
 // constraints of a stencil and colour are disjoint and may be solved side by side. The order depends
 // on nothing but the scene.
 #include <algorithm>
@@ -26,6 +26,9 @@ class ProjectedStencils {
       : parts_(parts), options_(options) {
     for (std::size_t f = 0; f < parts.stencils.size(); ++f)
       if (parts.stencils[f].dj == dj && swept(parts.stencils[f], options)) add(f);
+    if (!options.backwards) return;
+    std::ranges::reverse(members_);
+    std::ranges::reverse(rows_);
   }
 
   // Bend constraints join second neighbours; the strain limit is one on the cloth's own edges.
@@ -127,8 +130,9 @@ class ProjectedStencils {
     if (options_.multipliers) r.lambda = options_.multipliers->row(index, 0);
     if (stencil.dj == 0) {
       m.lanes = AlignedArray<std::int32_t>(std::size_t(kColours) * l.stride);
+      const int first = options_.backwards ? 1 : 0;
       for (int a = 0; a < r.count; ++a)
-        m.lanes[std::size_t(a / stencil.di % kColours) * l.stride + a] = -1;
+        m.lanes[std::size_t((a / stencil.di + first) % kColours) * l.stride + a] = -1;
       r.lanes = m.lanes.data();
     }
   }
@@ -333,13 +337,16 @@ float compliance_of(const LatticeParts& parts, const Stencil& f, int j, double d
 
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages) {
   const std::string name = options.limit > 0 ? "strain_limit" : "gauss_seidel";
+  Stages sweep;
   for (int dj = 0; dj <= greatest_reach(parts); ++dj)
     for (int colour = 0; colour < (dj > 0 ? kColours : 1); ++colour) {
       auto stencils = std::make_unique<ProjectedStencils>(parts, options, dj);
       if (stencils->constraints() > 0)
-        stages.push_back(
+        sweep.push_back(
             std::make_unique<GaussSeidel>(parts, name, dj, colour, std::move(stencils)));
     }
+  if (options.backwards) std::ranges::reverse(sweep);
+  std::ranges::move(sweep, std::back_inserter(stages));
 }
 
 // What the forces hold lies below the limit by the share that a sudden load may take until they have met it. One
