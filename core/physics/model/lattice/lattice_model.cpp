@@ -17,14 +17,11 @@ bool keeps_previous(const Solver& solver, Method method) {
   return !is_explicit(method) && solver.order == 2;
 }
 
-// Whether sweeps over rigid constraints go back the way they came. One way, they leave of errors p e with complex p, and
-// motion z² = p (2 z - 1) (sweeps.cpp, relaxation()) grows where p is near 1. In long substeps implicit Euler takes more
-// than that, in fine ones it does not. There and back, sweeps are symmetric, and p is real and not negative (Young 1971,
-// "Iterative Solution of Large Linear Systems").
-bool goes_back(const Scene& scene, Method method) {
+// Whether Gauss-Seidel sweeps go over rigid constraints in substeps so short that implicit Euler takes hardly any energy.
+bool rigid_in_fine_substeps(const Scene& scene, Method method) {
   const Time& time = scene.time;
-  return method == Method::positional && time.substeps != kAutoSubsteps &&
-         Remainders::fine(time.frame / time.substeps);
+  return method == Method::positional && scene.solver.sweep == Sweep::gauss_seidel &&
+         time.substeps != kAutoSubsteps && Remainders::fine(time.frame / time.substeps);
 }
 
 }  // namespace
@@ -148,19 +145,20 @@ void LatticeModel::append_projections(StageList& list) {
     for (int n = 0; n < solver.iterations; ++n)
       if (solves_membrane() && parts_.cloth.membrane.damping > 0)
         append_membrane_damping(parts_, *corrections_, list.stages);
-    for (int n = 0; n < solver.iterations && !stencils_.empty(); ++n) {
-      sweep.tears = tears && n + 1 == solver.iterations;
+    // One way, sweeps leave of errors p e with complex p, and motion (of the first order z² = p (2 z - 1), as in
+    // sweeps.cpp) grows where p is near 1, but where implicit Euler takes more than that. There and back they are
+    // symmetric, and p is real and not negative (Young 1971, "Iterative Solution of Large Linear Systems").
+    const bool rigid = rigid_in_fine_substeps(parts_.scene, method_);
+    const int sweeps = solver.iterations + (rigid ? solver.iterations % 2 : 0);
+    for (int n = 0; n < sweeps && !stencils_.empty(); ++n) {
+      sweep.backwards = (rigid || solver.order == 2) && n % 2 == 1;
+      sweep.tears = tears && n + 1 == sweeps;
       if (solver.sweep == Sweep::jacobi)
         list.stages.push_back(make_jacobi(parts_, sweep));
       else if (solves_membrane())
         append_membrane_sweep(parts_, sweep, list.stages);
       else
         append_gauss_seidel(parts_, sweep, list.stages);
-      if (solver.sweep != Sweep::gauss_seidel || !goes_back(parts_.scene, method_)) continue;
-      SweepOptions back = sweep;
-      back.backwards = true;
-      back.tears = false;
-      append_gauss_seidel(parts_, back, list.stages);
     }
   }
   // What comes last stays as solved, and stretching undoes more of bending than that of stretching.
