@@ -18,10 +18,11 @@ bool keeps_previous(const Solver& solver, Method method) {
 }
 
 // Whether Gauss-Seidel sweeps go over rigid constraints in substeps so short that implicit Euler takes hardly any energy.
+// (Automatic substeps are that short only where a frame is.)
 bool rigid_in_fine_substeps(const Scene& scene, Method method) {
   const Time& time = scene.time;
   return method == Method::positional && scene.solver.sweep == Sweep::gauss_seidel &&
-         time.substeps != kAutoSubsteps && Remainders::fine(time.frame / time.substeps);
+         Remainders::fine(time.frame / std::max(time.substeps, 1));
 }
 
 }  // namespace
