@@ -23,9 +23,24 @@ inline bool has_screen_tools() {
              "command -v ffmpeg >/dev/null") == 0;
 }
 
+constexpr int kScreenWidth = 1280, kScreenHeight = 800;
+
+// Mean difference of two pictures beside the panel, 0 … 255.
+inline double difference(const std::string& a, const std::string& b) {
+  if (a.size() != b.size() || a.empty()) return 255;
+  double sum = 0, count = 0;
+  for (int y = 100; y < kScreenHeight - 80; ++y)
+    for (int x = 3 * 360; x < 3 * kScreenWidth; ++x) {
+      const auto at = static_cast<std::size_t>(3 * kScreenWidth * y + x);
+      sum += std::abs(static_cast<unsigned char>(a[at]) - static_cast<unsigned char>(b[at]));
+      ++count;
+    }
+  return sum / count;
+}
+
 class Screen {
  public:
-  static constexpr int kWidth = 1280, kHeight = 800;
+  static constexpr int kWidth = kScreenWidth, kHeight = kScreenHeight;
 
   explicit Screen(const Folder& folder, int width = kWidth, int height = kHeight)
       : folder_(folder), size_(std::to_string(width) + "x" + std::to_string(height)) {
@@ -177,6 +192,28 @@ class Screen {
     return now;
   }
 
+  // Off everything, so that no help covers the picture. The window has seen it, and all that was done before.
+  void point_aside() const {
+    type("mousemove 100 790");
+    wait_for("pointer", {100, 790});
+  }
+  // Until a picture is as expected and in full, and stays for half a second while nothing happens in the window.
+  std::string settled_picture(const std::string& what,
+                              const std::function<bool(const std::string&)>& condition) const {
+    std::string before, now = picture();
+    nlohmann::json state_before, state = this->now();
+    for (int k = 0; k < 100; ++k) {
+      before = now, state_before = state;
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+      now = picture(), state = this->now();
+      if (condition(now) && state == state_before && !state["coarse"].get<bool>() &&
+          difference(now, before) < 1e-3)
+        return now;
+    }
+    ADD_FAILURE() << "never seen at rest: " << what;
+    return now;
+  }
+
   // Whether the viewer has not ended; it is left for finish().
   bool runs() const {
     siginfo_t ended{};
@@ -264,18 +301,5 @@ class Window : public testing::Test {
   }
   Folder folder;
 };
-
-// Mean difference of two pictures beside the panel, 0 … 255.
-inline double difference(const std::string& a, const std::string& b) {
-  if (a.size() != b.size() || a.empty()) return 255;
-  double sum = 0, count = 0;
-  for (int y = 100; y < Screen::kHeight - 80; ++y)
-    for (int x = 3 * 360; x < 3 * Screen::kWidth; ++x) {
-      const auto at = static_cast<std::size_t>(3 * Screen::kWidth * y + x);
-      sum += std::abs(static_cast<unsigned char>(a[at]) - static_cast<unsigned char>(b[at]));
-      ++count;
-    }
-  return sum / count;
-}
 
 }  // namespace weft

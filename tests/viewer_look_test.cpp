@@ -48,11 +48,9 @@ TEST_F(Window, LooksHaveControlsOfTheirOwn) {
   screen.wait("its controls", [](const Json& now) { return now["controls"].contains("metallic"); });
   // Each changes the picture; what is drawn at rest is in full quality, and so always the same.
   const auto settled = [&](const std::string& than) {
-    screen.type("mousemove 100 790");  // off the control, so that no help covers the picture
-    screen.wait_picture("another picture",
-                        [&](const std::string& now) { return difference(now, than) > 0.01; });
-    screen.wait_for("coarse", false);
-    return screen.picture();
+    screen.point_aside();
+    return screen.settled_picture(
+        "another picture", [&](const std::string& now) { return difference(now, than) > 0.01; });
   };
   const std::string standard = settled("");
   std::string before = standard;
@@ -81,23 +79,19 @@ TEST_F(Window, FabricsAreWornAndQualityIsChosen) {
   Screen screen(folder);
   screen.open("sphere --paused");
   screen.step_to(2);
-  std::string before = screen.picture();
   screen.click("denim");
   screen.wait_for("look", "fabric");
-  screen.type("mousemove 100 790");
-  screen.wait_picture("blue cloth", [&](const std::string& rgb) {
+  screen.point_aside();
+  const std::string before = screen.settled_picture("blue cloth", [&](const std::string& rgb) {
     std::size_t blue = 0;
     for (std::size_t k = 0; k + 2 < rgb.size(); k += 3)
       blue += static_cast<unsigned char>(rgb[k + 2]) > 1.35 * static_cast<unsigned char>(rgb[k]);
     return blue > 10000;
   });
-  screen.wait_for("coarse", false);
-  before = screen.picture();
   screen.click("Look");
   screen.click("quality");
-  const Json at = screen.now()["controls"]["quality"];
-  screen.type("sleep 0.5 mousemove " + at[0].dump() + " " + std::to_string(at[1].get<int>() + 98) +
-              " sleep 0.5 click 1 sleep 0.5 mousemove 100 790");
+  screen.click("quality fine");
+  screen.point_aside();
   screen.wait_picture("a fine picture",
                       [&](const std::string& now) { return difference(now, before) > 0.05; });
   EXPECT_TRUE(screen.now()["faults"].empty()) << screen.now()["faults"];
@@ -134,17 +128,15 @@ TEST_F(Window, MapsAreReplacedByFiles) {
     screen.type("key ctrl+a key BackSpace type '" + path + "'");
     screen.key("Return");
     screen.wait_for("typing", false);
-    screen.type("mousemove 100 790");
+    screen.point_aside();
   };
   const auto changed = [&](const std::string& than) {
-    screen.wait_picture("another picture",
-                        [&](const std::string& now) { return difference(now, than) > 0.05; });
-    screen.wait_for("coarse", false);
-    return screen.picture();
+    return screen.settled_picture(
+        "another picture", [&](const std::string& now) { return difference(now, than) > 0.05; });
   };
-  screen.type("mousemove 100 790");
-  screen.wait_for("coarse", false);
-  const std::string own = screen.picture();
+  screen.point_aside();
+  const auto any = [](const std::string&) { return true; };
+  const std::string own = screen.settled_picture("the standard look", any);
   std::string before = own;
   for (const auto& [control, file] : {std::pair("base colour map", "color.png"),
                                       {"metallic map", "none.png"},
@@ -167,7 +159,7 @@ TEST_F(Window, MapsAreReplacedByFiles) {
   screen.click("files");
   screen.wait("room", [](const Json& now) { return now["controls"].contains("Standard look"); });
   screen.click("Standard look");
-  screen.type("sleep 0.5 mousemove 100 790");
+  screen.point_aside();
   screen.wait_picture("the program's own maps",
                       [&](const std::string& now) { return difference(now, own) < 0.01; });
   EXPECT_EQ(screen.quit(), 0) << screen.said();
@@ -207,7 +199,8 @@ TEST_F(Window, EachClothHasColoursOfItsOwn) {
   };
   screen.type(beside(-25, 0) + " sleep 0.5 click 1 sleep 0.5");   // the field, left of its name
   screen.type(beside(30, 170) + " sleep 0.5 click 1 sleep 0.5");  // a grey in the picker
-  screen.type("key Escape sleep 0.5 mousemove 100 790");
+  screen.type("key Escape sleep 0.5");
+  screen.point_aside();
   screen.wait_picture("another second cloth", [&](const std::string& now) {
     return count(now, 1) < green / 2 && count(now, 0) > red - red / 10;
   });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <iterator>
+#include <string>
 
 #include "panel/colors.h"
 #include "panel/panel.h"
@@ -109,6 +110,20 @@ void draw_colors(Workspace& workspace) {
   }
 }
 
+// One of the words, which are in the enum's order.
+template <class Enum>
+void choose(const char* label, Enum& value, std::initializer_list<const char*> words) {
+  if (ImGui::BeginCombo(label, words.begin()[static_cast<int>(value)])) {
+    for (int k = 0; const char* word : words) {
+      if (ImGui::Selectable(word, k == static_cast<int>(value))) value = static_cast<Enum>(k);
+      mark(std::string(label) + " " + word);
+      ++k;
+    }
+    ImGui::EndCombo();
+  }
+  mark(label);
+}
+
 void draw_material(Workspace& workspace) {
   LookSettings& s = workspace.settings;
   const std::string_view look = workspace.look->name;
@@ -117,10 +132,7 @@ void draw_material(Workspace& workspace) {
   draw_colors(workspace);
   bool plain = false;
   if (is("fabric")) {
-    int weave = static_cast<int>(s.weave);
-    if (ImGui::Combo("weave", &weave, "plain\0twill\0satin\0leather\0"))
-      s.weave = static_cast<Weave>(weave);
-    mark("weave");
+    choose("weave", s.weave, {"plain", "twill", "satin", "leather"});
     slider("threads [1/m]", s.threads, 50, 2000, "%.0f", ImGuiSliderFlags_Logarithmic);
     tooltip("Threads finer than the picture shows are flat");
     slider("sheen", s.sheen, 0, 1);
@@ -168,10 +180,7 @@ void draw_looks(Workspace& workspace) {
   heading("Material");
   draw_material(workspace);
   heading("Picture");
-  int quality = static_cast<int>(s.quality);
-  if (ImGui::Combo("quality", &quality, "automatic\0quick\0standard\0fine\0"))
-    s.quality = static_cast<Quality>(quality);
-  mark("quality");
+  choose("quality", s.quality, {"automatic", "quick", "standard", "fine"});
   tooltip(
       "fine: ambient occlusion, softer shadows, and the cloth's thickness at its border; quick: "
       "less "

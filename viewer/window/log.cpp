@@ -37,6 +37,7 @@ void Log::write(const Workspace& workspace, const View& view, const Hands& hands
   for (const Collider& body : s.bodies) bodies.push_back(place_of(moved(body.shape, s.origin)));
   text::Json places = text::Json::object();
   for (const auto& [name, at] : controls) places[name] = {std::lround(at.x), std::lround(at.y)};
+  const ImVec2 pointer = ImGui::IsMousePosValid() ? ImGui::GetIO().MousePos : ImVec2(-1, -1);
   const Vec3f eye = workspace.camera.eye(), target = workspace.camera.target();
   const text::Json line{{"scene", workspace.document().name()},
                         {"frame", s.frame},
@@ -47,6 +48,7 @@ void Log::write(const Workspace& workspace, const View& view, const Hands& hands
                         {"look", workspace.look->name},
                         {"coarse", view.coarse()},
                         {"tool", kTools[static_cast<int>(hands.tool)]},
+                        {"pointer", {std::lround(pointer.x), std::lround(pointer.y)}},
                         {"busy", hands.busy()},
                         {"waiting", hands.waits()},
                         {"typing", ImGui::GetIO().WantTextInput},
