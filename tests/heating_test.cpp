@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cases.h"
+#include "made_up_mesh.h"
 #include "weft/simulation.h"
 
 namespace weft {
@@ -185,21 +187,65 @@ TEST(Heating, NothingIsToldOfRigidConstraintsThatBeginTooLong) {
 }
 
 // Springs that are too stiff for their substeps keep strain that sweeps leave (a note tells), but it does not come out.
+// A level sheet of 1 m, as a grid or as an irregular mesh, that sweeps by colours solve.
+Scene swept(bool irregular, int columns, int rows, const std::vector<std::pair<int, int>>& pins) {
+  Scene scene = level_sheet(columns, rows, pins);
+  if (irregular) {
+    scene.cloths[0] = {};
+    scene.cloths[0].drag = 0;
+    scene.cloths[0].mesh.shape = made_up({.nx = columns, .ny = rows, .shift = 0.3});
+    for (const auto& [i, j] : pins) scene.cloths[0].pins.push_back({j * columns + i, 0, {}});
+  }
+  scene.solver.method = Method::compliant;
+  scene.solver.sweep = Sweep::gauss_seidel;
+  return scene;
+}
+
 TEST(Heating, TheSecondOrderMakesNoMotionBySeveralSweeps) {
-  for (const double stiffness : {1e5, 1e6})
-    for (const int substeps : {64, 128})
-      for (const int iterations : {2, 3, 4}) {
-        if (iterations == 3 && !whole_sweeps()) continue;
-        Scene scene = level_sheet(17, 17, {{0, 0}, {16, 0}});
-        scene.cloths[0].stiffness = {stiffness, stiffness, 1};
-        scene.solver.method = Method::compliant;
-        scene.solver.sweep = Sweep::gauss_seidel;
-        scene.solver.order = 2;
-        scene.solver.iterations = iterations;
-        scene.time.substeps = substeps;
-        EXPECT_LT(lifted(scene, 80).gain, 0.01)
-            << stiffness << " N/m, " << substeps << " substeps, " << iterations << " iterations";
-      }
+  Cases cases(5);
+  for (const bool irregular : {false, true})
+    for (const bool membrane : {false, true})
+      for (const double stiffness : {1e5, 1e6})
+        for (const int substeps : {64, 128})
+          for (const int iterations : {2, 3, 4}) {
+            if (!cases.next()) continue;
+            Scene scene = swept(irregular, 17, 17, {{0, 0}, {16, 0}});
+            Cloth& cloth = scene.cloths[0];
+            const double half = stiffness / 2;
+            if (membrane)
+              cloth.membrane = {stiffness, stiffness, half / 2, half, 0};
+            else if (irregular)
+              cloth.stiffness.structural = stiffness;
+            else
+              cloth.stiffness = {stiffness, stiffness, 1};
+            scene.solver.order = 2;
+            scene.solver.iterations = iterations;
+            scene.time.substeps = substeps;
+            EXPECT_LT(lifted(scene, 80).gain, 0.01)
+                << (irregular ? "mesh" : "grid") << (membrane ? " of a membrane, " : ", ")
+                << stiffness << " N/m, " << substeps << " substeps, " << iterations
+                << " iterations";
+          }
+}
+
+// As where nothing gives, in substeps so short that implicit Euler takes little.
+TEST(Heating, StiffSpringsMakeNoMotionInFineSubsteps) {
+  Cases cases(3);
+  for (const bool irregular : {false, true})
+    for (const double stiffness : {1e7, 1e9})
+      for (const int substeps : {400, 1667})
+        for (const int iterations : {1, 2, 3}) {
+          if (!cases.next()) continue;
+          Scene scene = swept(irregular, 13, 9, {{0, 0}});
+          Kinds& springs = scene.cloths[0].stiffness;
+          springs.structural = stiffness;
+          if (!irregular) springs = {stiffness, stiffness / 2, 0};
+          scene.solver.iterations = iterations;
+          scene.time.substeps = substeps;
+          EXPECT_LT(lifted(scene, 40).gain, 0.01)
+              << (irregular ? "mesh, " : "grid, ") << stiffness << " N/m, " << substeps
+              << " substeps, " << iterations << " iterations";
+        }
 }
 
 }  // namespace

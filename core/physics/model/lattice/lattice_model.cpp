@@ -2,10 +2,13 @@
 #include "physics/model/lattice/lattice_model.h"
 
 #include <algorithm>
+#include <limits>
 
+#include "physics/model/colour_sweeps.h"
 #include "physics/model/keyed_pins.h"
 #include "physics/model/lattice/cuts.h"
 #include "physics/model/lattice/plain_rows.h"
+#include "physics/model/lattice/stability.h"
 #include "physics/model/number.h"
 #include "physics/model/path.h"
 
@@ -15,14 +18,6 @@ namespace {
 // Whether a stage asks where particles were before the substep.
 bool keeps_previous(const Solver& solver, Method method) {
   return !is_explicit(method) && solver.order == 2;
-}
-
-// Whether Gauss-Seidel sweeps go over rigid constraints in substeps so short that implicit Euler takes hardly any energy.
-// (Automatic substeps are that short only where a frame is.)
-bool rigid_in_fine_substeps(const Scene& scene, Method method) {
-  const Time& time = scene.time;
-  return method == Method::positional && scene.solver.sweep == Sweep::gauss_seidel &&
-         Remainders::fine(time.frame / std::max(time.substeps, 1));
 }
 
 }  // namespace
@@ -94,13 +89,22 @@ void LatticeModel::append_forces(StageList& list) {
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
 }
 
+// Of colour_sweeps(); 0: sweeps make no motion. (Over cells of membranes they make none, and Jacobi's have no direction.)
+double LatticeModel::stiffness_rate() const {
+  const Solver& solver = parts_.scene.solver;
+  if (solver.sweep != Sweep::gauss_seidel || solves_membrane()) return 0;
+  if (method_ == Method::positional) return std::numeric_limits<double>::infinity();
+  return greatest_stiffness(parts_.cloth) / lightest_mass(parts_.cloth);
+}
+
 void LatticeModel::append_projections(StageList& list) {
   const Solver& solver = parts_.scene.solver;
   list.skip("springs", "constraints are projected with this method");
   SweepOptions sweep;
   sweep.compliant = method_ == Method::compliant;
   const bool lines = solver.sweep == Sweep::line;
-  if (sweep.compliant && !lines && solver.iterations > 1)
+  const ColourSweeps sweeps = colour_sweeps(parts_.scene, stiffness_rate());
+  if (sweep.compliant && !lines && sweeps.count > 1)
     multipliers_ = std::make_unique<Multipliers>(
         lattice_, solves_membrane() ? kCellStresses : stencils_.size());
   sweep.multipliers = multipliers_.get();
@@ -146,14 +150,9 @@ void LatticeModel::append_projections(StageList& list) {
     for (int n = 0; n < solver.iterations; ++n)
       if (solves_membrane() && parts_.cloth.membrane.damping > 0)
         append_membrane_damping(parts_, *corrections_, list.stages);
-    // One way, sweeps leave of errors p e with complex p, and motion (of the first order z² = p (2 z - 1), as in
-    // sweeps.cpp) grows where p is near 1, but where implicit Euler takes more than that. There and back they are
-    // symmetric, and p is real and not negative (Young 1971, "Iterative Solution of Large Linear Systems").
-    const bool rigid = rigid_in_fine_substeps(parts_.scene, method_);
-    const int sweeps = solver.iterations + (rigid ? solver.iterations % 2 : 0);
-    for (int n = 0; n < sweeps && !stencils_.empty(); ++n) {
-      sweep.backwards = (rigid || solver.order == 2) && n % 2 == 1;
-      sweep.tears = tears && n + 1 == sweeps;
+    for (int n = 0; n < sweeps.count && !stencils_.empty(); ++n) {
+      sweep.backwards = sweeps.backwards(n);
+      sweep.tears = tears && n + 1 == sweeps.count;
       if (solver.sweep == Sweep::jacobi)
         list.stages.push_back(make_jacobi(parts_, sweep));
       else if (solves_membrane())

@@ -51,6 +51,7 @@ class LatticeModel final : public ClothModel {
  private:
   void append_forces(StageList& list);
   void append_projections(StageList& list);
+  double stiffness_rate() const;
   std::vector<Joined> cut_constraints() const;  // that the cloth's cuts cross
   SurfaceMesh whole_surface() const;
   const BendLinks* bend_links() const { return tearing_ ? tearing_->bend_links() : nullptr; }

@@ -141,12 +141,23 @@ void MeshModel::append_projections(StageList& list) {
   else if (solver.sweep == Sweep::line)
     append_strands(list);
   else
-    midst_.edges = edge_sweeps().append_edges(solver.iterations, history_.get(), list);
+    midst_.edges = edge_sweeps().append_edges(sweeps_by_colours(), history_.get(), list);
   if (material_.bends)
     sweeps().append_hinges(history_.get(), list);
   else
     list.skip("bending", "bending is 0");
   if (history_) list.stages.push_back(make_velocity_second_order(parts_, *history_, nullptr));
+}
+
+// Over membranes, sweeps make no motion of the first order.
+ColourSweeps MeshModel::sweeps_by_colours() const {
+  const Membrane& m = parts_.cloth.membrane;
+  double stiffest = 0;
+  if (!material_.membrane)
+    stiffest = material_.stiffness * *std::ranges::max_element(edges_.triangles);
+  else if (history_)
+    stiffest = std::max({m.warp, m.weft, m.shear});
+  return colour_sweeps(parts_.scene, stiffest / *std::ranges::min_element(masses_));
 }
 
 void MeshModel::append_strands(StageList& list) {
@@ -192,7 +203,7 @@ void MeshModel::append_membrane(StageList& list) {
   const Solver& solver = parts_.scene.solver;
   StrainSweeps& strains = strain_sweeps();
   if (solver.sweep != Sweep::line || tearing_) {
-    sweeps_->append_strains(solver.iterations, true, history_.get(), list);
+    sweeps_->append_strains(sweeps_by_colours(), true, history_.get(), list);
     midst_.triangles = strains.midst();
     return;
   }
@@ -201,7 +212,7 @@ void MeshModel::append_membrane(StageList& list) {
                       strands(), history_.get());
   for (int n = 0; n < solver.iterations; ++n) {
     list.stages.push_back(sweeps.stage(1, n == 0));
-    sweeps_->append_strains(1, false, history_.get(), list);
+    sweeps_->append_strains({1, false}, false, history_.get(), list);
   }
 }
 

@@ -63,6 +63,7 @@ class MeshModel final : public ClothModel {
   void append_gas(StageList& list);
   void append_membrane(StageList& list);
   void append_strands(StageList& list);
+  ColourSweeps sweeps_by_colours() const;
   MeshSweeps& sweeps();  // of bending, where there is any
   MeshSweeps& edge_sweeps();
   StrainSweeps& strain_sweeps();

@@ -229,16 +229,18 @@ void MeshSweeps::append_seams(StageList& list) {
     list.stages.push_back(std::move(seams));
 }
 
-std::vector<const float*> MeshSweeps::append_edges(int iterations, History* history,
+std::vector<const float*> MeshSweeps::append_edges(ColourSweeps sweeps, History* history,
                                                    StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 1));
-  for (int n = 0; n < iterations; ++n) {
-    for (int c = 0; c < int(edges_.size()); ++c) {
+  const int last = int(edges_.size()) - 1;
+  for (int n = 0; n < sweeps.count; ++n) {
+    for (int k = 0; k <= last; ++k) {
+      const int c = sweeps.backwards(n) ? last - k : k;
       EdgeColour& colour = edges_[std::size_t(c)];
-      if (iterations > 1 && colour.lambda.size() == 0)
+      if (sweeps.count > 1 && colour.lambda.size() == 0)
         colour.lambda = AlignedArray<float>(colour.batches.size() * kBatch);
       list.stages.push_back(std::make_unique<SweepEdges>(
-          parts_, colour, records_, EdgeOptions{c, n == 0, 0, n + 1 == iterations}));
+          parts_, colour, records_, EdgeOptions{c, n == 0, 0, n + 1 == sweeps.count}));
     }
     append_seams(list);
   }
@@ -257,12 +259,14 @@ void MeshSweeps::make_strains(const std::vector<RestTriangle>& triangles, bool k
   follow_torn();
 }
 
-void MeshSweeps::append_strains(int iterations, bool fresh, History* history, StageList& list) {
+void MeshSweeps::append_strains(ColourSweeps sweeps, bool fresh, History* history,
+                                StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 1));
-  for (int n = 0; n < iterations && strains_->damps_before(); ++n)
+  for (int n = 0; n < sweeps.count && strains_->damps_before(); ++n)
     strains_->append(1, {false, false, true}, list);
-  for (int n = 0; n < iterations; ++n) {
-    strains_->append(iterations, {fresh && n == 0, n + 1 == iterations}, list);
+  for (int n = 0; n < sweeps.count; ++n) {
+    strains_->append(sweeps.count,
+                     {fresh && n == 0, n + 1 == sweeps.count, false, sweeps.backwards(n)}, list);
     append_seams(list);
   }
   list.stages.push_back(make_store_records(parts_, records_, false, history));

@@ -1,11 +1,12 @@
 // Sweeps over a mesh's constraints: edges as compliant constraints or as a strain limit, and the bending of
-// triangles. All are Gauss–Seidel by colours in a fixed order, one row stage a colour: in the order of rows, or
-// forward and backward in turn, sweeps of one constraint after another blow up on meshes. Vertices lie in
+// triangles. All are Gauss–Seidel by colours in a fixed order, one row stage a colour: in the order of rows, forward
+// or backward in turn, sweeps of one constraint after another blow up on meshes. Vertices lie in
 // records meanwhile (kernels/mesh_sweep.h), where a stage of its own puts them, and from where another takes
 // them back.
 #pragma once
 
 #include "physics/kernels/mesh_sweep.h"
+#include "physics/model/colour_sweeps.h"
 #include "physics/model/mesh/batches.h"
 #include "physics/model/mesh/mesh_tearing.h"
 #include "physics/model/mesh/seams.h"
@@ -43,12 +44,11 @@ class MeshSweeps : private TornParts {
   void make_strains(const std::vector<RestTriangle>& triangles, bool keeps_stress);
 
   // `history`: of the second order, else null.
-  // Edges as compliant constraints, so many times one after the other; positions and velocities gain the
-  // corrections at the end. Returns where the last tells squared lengths, of each edge; none: nothing tears by strain.
-  std::vector<const float*> append_edges(int iterations, History* history, StageList& list);
+  // Edges as compliant constraints; positions and velocities gain the corrections at the end. Returns where the last tells squared lengths, of each edge; none: nothing tears by strain.
+  std::vector<const float*> append_edges(ColourSweeps sweeps, History* history, StageList& list);
   void append_hinges(History* history, StageList& list);
   // The membrane of triangles, likewise; `fresh`: from no stress.
-  void append_strains(int iterations, bool fresh, History* history, StageList& list);
+  void append_strains(ColourSweeps sweeps, bool fresh, History* history, StageList& list);
   // Nothing is longer than 1 + strain times its length.
   void append_limit(double strain, StageList& list);
 

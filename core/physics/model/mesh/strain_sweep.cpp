@@ -141,7 +141,9 @@ std::vector<const float*> StrainSweeps::midst() const {
 }
 
 void StrainSweeps::append(int iterations, StrainPass pass, StageList& list) {
-  for (int c = 0; c < int(colours_.size()); ++c) {
+  const int last = int(colours_.size()) - 1;
+  for (int n = 0; n <= last; ++n) {
+    const int c = pass.backwards ? last - n : n;
     StrainColour& colour = colours_[std::size_t(c)];
     if (iterations > 1) make_room(colour);
     list.stages.push_back(std::make_unique<SweepStrains>(

@@ -18,9 +18,9 @@ struct StrainColour {
 };
 
 // What a sweep is among others: the first of a substep, and of stress; the last of one, which tells lengths; or of
-// damping alone, before the others.
+// damping alone, before the others. `backwards`: through the colours from the last to the first.
 struct StrainPass {
-  bool fresh, last, damps = false;
+  bool fresh, last, damps = false, backwards = false;
 };
 
 class StrainSweeps {
