@@ -213,6 +213,7 @@ void EnergyGuard::look(const EnergySum& all, bool driven) {
 }
 
 void EnergyGuard::accept(int substeps) {
+  begins_ = false;
   highest_ = std::max(highest_, potential_);
   released_ = fall_;
   put_in_ += substeps * rounding_;

@@ -80,6 +80,8 @@ class EnergyGuard {
   bool holds() const { return kinetic_ <= bound(); }
   // Takes the frame last looked at, of so many substeps, for good.
   void accept(int substeps);
+  // Whether no frame has been taken since open().
+  bool begins() const { return begins_; }
   // What was put in, and released by gravity, so far; the motion last looked at, and its potential of gravity [J].
   double given() const { return put_in_ + released_; }
   double kinetic() const { return kinetic_; }
@@ -101,7 +103,7 @@ class EnergyGuard {
   double released_ = 0;   // J; by gravity so far
   // J; of the frame last looked at: motion, potential, what gravity has released.
   double kinetic_ = 0, potential_ = 0, fall_ = 0;
-  bool driven_ = false;
+  bool driven_ = false, begins_ = true;
 };
 
 }  // namespace weft::physics

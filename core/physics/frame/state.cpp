@@ -46,7 +46,7 @@ Simulation::State::State(Scene given, const Options& given_options, const Vec3& 
     plan.notes.push_back("the system starts no more than " + std::to_string(threads.count()) +
                          " of " + std::to_string(threads.asked()) +
                          " threads (a limit on processes or memory); the result is the same");
-  if (!changed.empty()) fall_back(changed);
+  if (!changed.empty()) fall_back("", changed);
   began_ = {time_step.method, scene.solver, time_step.substeps,
             plan.fallback,    plan.notes,   guard_.energy()};
 }

@@ -136,7 +136,7 @@ struct Simulation::State {
   void note_models(std::vector<std::string>& notes) const;
   void begin_again();
   void go_on_as(Method as, const Solver& solver);
-  void fall_back(const std::string& note);
+  void fall_back(const std::string& where, const std::string& what);
 
   // interaction.cpp
   physics::ClothStep& step_with(int cloth, int particle);

@@ -258,7 +258,8 @@ void Simulation::State::set_substeps(int count) {
   take_substeps(count);
   if (scene.time.substeps != kAutoSubsteps && count != scene.time.substeps)
     fall_back("springs need " + std::to_string(count) + " substeps a frame from frame " +
-              std::to_string(frame + 1) + " on, as far as the sheet is stretched");
+                  std::to_string(frame + 1),
+              " on, as far as the sheet is stretched");
 }
 
 // Runs the frame again, if the verdict says so, or ends it; returns whether it runs again.
@@ -274,12 +275,11 @@ bool Simulation::State::carry_out(Verdict verdict) {
         step->particles().v.scale(float(guard_.energy().reduction()));
         step->restart();  // what stages keep of the motion
       }
-      fall_back(which +
+      fall_back(which,
                 " gained energy from nowhere; velocities were reduced to what is left without it");
       return false;
     case Verdict::unstable:
-      fall_back(which +
-                " is stretched beyond what any substep carries; its motion is not accurate");
+      fall_back(which, " is stretched beyond what any substep carries; its motion is not accurate");
       return false;
     case Verdict::change_method:
       put_back();
@@ -293,7 +293,7 @@ bool Simulation::State::carry_out(Verdict verdict) {
     case Verdict::refine:
       put_back();
       take_substeps(2 * count);
-      fall_back(which + " gained energy from nowhere; it and all after it run with more substeps");
+      fall_back(which, " gained energy from nowhere; it and all after it run with more substeps");
       break;
     case Verdict::refine_for_limits:
       put_back();
@@ -303,6 +303,8 @@ bool Simulation::State::carry_out(Verdict verdict) {
       break;
   }
   restart_stages();
+  // Shorter substeps, or other sweeps, feel more of what the start holds.
+  if (guard_.energy().begins()) open_guard();
   return true;
 }
 
@@ -360,8 +362,10 @@ void Simulation::State::go_on_as(Method as, const Solver& solver) {
   plan_changed();
 }
 
-void Simulation::State::fall_back(const std::string& note) {
-  if (!plan.fallback) plan.notes.push_back(note);
+// One note tells of each kind, where it happened first.
+void Simulation::State::fall_back(const std::string& where, const std::string& what) {
+  const auto told = [&](const std::string& note) { return note.ends_with(what); };
+  if (std::none_of(plan.notes.begin(), plan.notes.end(), told)) plan.notes.push_back(where + what);
   plan.fallback = true;
 }
 
