@@ -69,14 +69,13 @@ void Ledger::project_every(double dt) {
   dt_ = dt;
 }
 
-double Ledger::share(const std::vector<Vec3>& x, const std::vector<Vec3>& v) {
+Ledger::Balance Ledger::balance(const std::vector<Vec3>& x, const std::vector<Vec3>& v) {
   const double height = gravity(x);
   highest_ = std::max(highest_, height);
   released_ = std::max(released_, highest_ - height);
   const bool whole = cloth_.tear_strain == 0 && cloth_.cuts.empty();
   const double kept = whole ? bent(x) + elastic(x) : 0;
-  const double held = kinetic(v) + kept;
-  return held == 0 ? 0 : held / (put_in_ + released_ + noise(x));  // all of it may be pinned
+  return {kinetic(v) + kept, put_in_ + released_ + noise(x)};
 }
 
 double Ledger::mass(std::size_t p) const {

@@ -32,8 +32,12 @@ class Ledger {
   // From here on constraints are projected every dt [s].
   void project_every(double dt);
 
-  // The energy of a state in what has been put in so far.
-  double share(const std::vector<Vec3>& x, const std::vector<Vec3>& v);
+  // The energy of a state, and what has been put in so far [J].
+  struct Balance {
+    double held = 0, put_in = 0;
+    double share() const { return held == 0 ? 0 : held / put_in; }  // all of it may be pinned
+  };
+  Balance balance(const std::vector<Vec3>& x, const std::vector<Vec3>& v);
 
  private:
   double mass(std::size_t p) const;

@@ -128,8 +128,10 @@ Verdict run_stress(const StressCase& c) {
       springs = false;
       ledger.project_every(simulation.dt());
     }
-    verdict.energy = std::max(verdict.energy, ledger.share(as_points(simulation.positions()),
-                                                           as_points(simulation.velocities())));
+    verdict.energy = std::max(
+        verdict.energy,
+        ledger.balance(as_points(simulation.positions()), as_points(simulation.velocities()))
+            .share());
   }
   if (simulation.plan().fallback) verdict.fate = Fate::saved;
   if (!(verdict.energy <= kBound)) verdict.fate = Fate::unbounded;
@@ -147,7 +149,8 @@ Verdict run_course_stress(const StressCase& c) {
   Verdict verdict;
   for (int frame = frames_of(c, substeps); frame > 0; --frame) {
     peer->advance_frame();
-    const double share = ledger.share(as_points(peer->positions()), as_points(peer->velocities()));
+    const double share =
+        ledger.balance(as_points(peer->positions()), as_points(peer->velocities())).share();
     if (!std::isfinite(share)) {
       verdict.fate = Fate::not_finite;
       return verdict;

@@ -127,7 +127,10 @@ double Campaign::elapsed() const {
 bool Campaign::more(std::uint64_t& next) const {
   if (settings_.seconds > 0 && elapsed() > settings_.seconds) return false;
   const auto wanted = [&] {
-    return !done_.contains(next) && (settings_.compare.empty() || other_.contains(next));
+    if (done_.contains(next)) return false;
+    const auto other = other_.find(next);
+    return settings_.compare.empty() ||
+           (other != other_.end() && other->second.ms < settings_.quick);
   };
   const std::uint64_t end = settings_.first + settings_.count;
   while (next < end && !wanted()) ++next;

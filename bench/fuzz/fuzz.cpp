@@ -56,6 +56,8 @@ void add_options(CLI::App& app, Settings& s, Wanted& w) {
   app.add_flag("--resume", s.resume, "leaves out the seeds that the log has already");
   app.add_option("--compare", s.compare, "results must be those of another build's log")
       ->check(CLI::ExistingFile);
+  app.add_option("--quick", s.quick, "leaves out scenes that took the other build more ms")
+      ->needs("--compare");
   app.add_option("--folder", s.folder, "where scenes that fail are written")->capture_default_str();
   app.add_flag("--one", w.one, "runs each scene once, in one of the ways that must not matter");
   app.add_option("--show", w.show, "prints the scene of a seed, and writes its meshes here");

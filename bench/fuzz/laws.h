@@ -26,6 +26,7 @@ class Laws {
 
   std::list<bench::Ledger> ledgers_;  // one for each cloth, or none
   bool springs_;
+  bool together_ = false;  // cloths meet each other, and pass energy on
   bool momentum_kept_;
   weft::Vec3 momentum_{};  // kg m/s, at the start
   double flow_ = 0;        // kg m/s, the greatest Σ m|v| so far
