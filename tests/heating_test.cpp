@@ -201,13 +201,13 @@ Scene swept(bool irregular, int columns, int rows, const std::vector<std::pair<i
   return scene;
 }
 
-TEST(Heating, TheSecondOrderMakesNoMotionBySeveralSweeps) {
+TEST(Heating, TheSecondOrderMakesNoMotionBySweeps) {
   Cases cases(5);
   for (const bool irregular : {false, true})
     for (const bool membrane : {false, true})
       for (const double stiffness : {1e5, 1e6})
         for (const int substeps : {64, 128})
-          for (const int iterations : {2, 3, 4}) {
+          for (const int iterations : {1, 2, 3, 4}) {
             if (!cases.next()) continue;
             Scene scene = swept(irregular, 17, 17, {{0, 0}, {16, 0}});
             Cloth& cloth = scene.cloths[0];

@@ -7,24 +7,27 @@
 namespace weft::physics {
 namespace {
 
-// By the method's order: substeps that take little of what moves [s], and from which rate dt² what they solve is stiff.
-// Measured on 150 sheets and meshes of the second order: in two seconds, 2 to 5 sweeps make more than a tenth of the
-// motion at 5 and above in substeps of 1/1920 s and below, in others hardly any. Of the first order, where one sweep
-// keeps no multipliers, at 0.9 in substeps of 1e-5 s, not at 0.3.
+// Substeps that take little of what moves [s], and from which rate dt² what they solve is stiff.
 struct Limits {
   double substep, stiff;
 };
-constexpr Limits kFirst{Remainders::kFine, 0.3}, kSecond{6e-4, 3};
+// Of the second order, measured on 150 sheets and meshes: in two seconds, 2 to 5 sweeps that go one way make more than a
+// tenth of the motion at 5 and above in substeps of 1/1920 s and below, in others hardly any; one sweep does from 2 on.
+constexpr Limits kSecond{6e-4, 3}, kSecondAlone{6e-4, 1};
+// Of the first, where one sweep keeps no multipliers, at 0.9 in substeps of 1e-5 s, not at 0.3.
+constexpr Limits kFirst{Remainders::kFine, 0.3};
 
 }  // namespace
 
-// Of the second order, one sweep stays one. (Automatic substeps are fine only where frames are.)
+// (Automatic substeps are short only where frames are.)
 ColourSweeps colour_sweeps(const Scene& scene, double rate) {
   const Solver& solver = scene.solver;
-  const Limits& limits = solver.order == 2 ? kSecond : kFirst;
+  const bool first = solver.order == 1, alone = solver.iterations == 1;
+  const Limits& limits = first ? kFirst : alone ? kSecondAlone : kSecond;
   const double dt = scene.time.frame / std::max(scene.time.substeps, 1);
   const bool back = dt < limits.substep && rate * dt * dt > limits.stiff;
-  return {solver.iterations + (back && solver.order == 1 ? solver.iterations % 2 : 0), back};
+  const int odd = back && (first || alone) ? solver.iterations % 2 : 0;
+  return {solver.iterations + odd, back};
 }
 
 }  // namespace weft::physics

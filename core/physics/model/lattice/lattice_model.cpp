@@ -89,10 +89,11 @@ void LatticeModel::append_forces(StageList& list) {
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
 }
 
-// Of colour_sweeps(); 0: sweeps make no motion. (Over cells of membranes they make none, and Jacobi's have no direction.)
+// Of colour_sweeps(); 0: sweeps make no motion. (Over cells of membranes one makes some, of the second order, but several
+// do not, whichever way they go. Jacobi's have no direction.)
 double LatticeModel::stiffness_rate() const {
   const Solver& solver = parts_.scene.solver;
-  if (solver.sweep != Sweep::gauss_seidel || solves_membrane()) return 0;
+  if (solver.sweep != Sweep::gauss_seidel || (solves_membrane() && solver.order == 1)) return 0;
   if (method_ == Method::positional) return std::numeric_limits<double>::infinity();
   return greatest_stiffness(parts_.cloth) / lightest_mass(parts_.cloth);
 }
