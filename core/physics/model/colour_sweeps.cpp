@@ -30,4 +30,13 @@ ColourSweeps colour_sweeps(const Scene& scene, double rate) {
   return {solver.iterations + odd, back};
 }
 
+void note_sweeps(const ColourSweeps& sweeps, const Solver& solver,
+                 std::vector<std::string>& notes) {
+  if (sweeps.count == solver.iterations) return;
+  notes.push_back(
+      "an odd number of gauss_seidel sweeps over what is this stiff makes motion in substeps this "
+      "short; " +
+      std::to_string(sweeps.count) + " run in place of " + std::to_string(solver.iterations));
+}
+
 }  // namespace weft::physics

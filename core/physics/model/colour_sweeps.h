@@ -6,6 +6,9 @@
 // much. So they go back where what is stiff is solved in so short substeps that motion would grow.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "weft/scene.h"
 
 namespace weft::physics {
@@ -18,5 +21,7 @@ struct ColourSweeps {
 
 // `rate`: the greatest stiffness of a constraint times the greatest inverse mass [1/s²]; infinite: rigid ones.
 ColourSweeps colour_sweeps(const Scene& scene, double rate);
+// Adds a note where more run than the scene asks for.
+void note_sweeps(const ColourSweeps& sweeps, const Solver& solver, std::vector<std::string>& notes);
 
 }  // namespace weft::physics

@@ -195,6 +195,8 @@ std::vector<std::string> LatticeModel::notes() const {
         "with order 2 the strain limit is one pass a substep, as with colours, and keeps momentum "
         "to some "
         "thousandths");
+  if (!is_explicit(method_) && !stencils_.empty())
+    note_sweeps(colour_sweeps(parts_.scene, stiffness_rate()), parts_.scene.solver, notes);
   const Membrane& m = parts_.cloth.membrane;
   if (!m.given() || is_membrane() || solves_membrane()) return notes;
   std::string note =

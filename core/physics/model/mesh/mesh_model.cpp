@@ -141,7 +141,7 @@ void MeshModel::append_projections(StageList& list) {
   else if (solver.sweep == Sweep::line)
     append_strands(list);
   else
-    midst_.edges = edge_sweeps().append_edges(sweeps_by_colours(), history_.get(), list);
+    midst_.edges = edge_sweeps().append_edges(sweeps_asked(), history_.get(), list);
   if (material_.bends)
     sweeps().append_hinges(history_.get(), list);
   else
@@ -149,8 +149,13 @@ void MeshModel::append_projections(StageList& list) {
   if (history_) list.stages.push_back(make_velocity_second_order(parts_, *history_, nullptr));
 }
 
+bool MeshModel::sweeps_by_colours() const {
+  const bool lines = parts_.scene.solver.sweep == Sweep::line;
+  return material_.membrane ? !lines || tearing_ : !lines && material_.stiffness > 0;
+}
+
 // Over membranes, sweeps make no motion of the first order.
-ColourSweeps MeshModel::sweeps_by_colours() const {
+ColourSweeps MeshModel::sweeps_asked() const {
   const Membrane& m = parts_.cloth.membrane;
   double stiffest = 0;
   if (!material_.membrane)
@@ -202,8 +207,8 @@ StrainSweeps& MeshModel::strain_sweeps() {
 void MeshModel::append_membrane(StageList& list) {
   const Solver& solver = parts_.scene.solver;
   StrainSweeps& strains = strain_sweeps();
-  if (solver.sweep != Sweep::line || tearing_) {
-    sweeps_->append_strains(sweeps_by_colours(), true, history_.get(), list);
+  if (sweeps_by_colours()) {
+    sweeps_->append_strains(sweeps_asked(), true, history_.get(), list);
     midst_.triangles = strains.midst();
     return;
   }
@@ -254,6 +259,8 @@ std::vector<std::string> MeshModel::notes() const {
     notes.push_back(
         "strands do not follow tears of a membrane: gauss_seidel sweeps run in place of line, "
         "which hold less for the same substeps");
+  if (!is_explicit(method_) && sweeps_by_colours())
+    note_sweeps(sweeps_asked(), parts_.scene.solver, notes);
   const std::size_t loose = mesh_.edges.size();
   if (loose > 0 && !parts_.cloth.sewing)
     notes.push_back(std::to_string(loose) +

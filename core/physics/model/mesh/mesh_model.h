@@ -63,7 +63,8 @@ class MeshModel final : public ClothModel {
   void append_gas(StageList& list);
   void append_membrane(StageList& list);
   void append_strands(StageList& list);
-  ColourSweeps sweeps_by_colours() const;
+  bool sweeps_by_colours() const;
+  ColourSweeps sweeps_asked() const;
   MeshSweeps& sweeps();  // of bending, where there is any
   MeshSweeps& edge_sweeps();
   StrainSweeps& strain_sweeps();
