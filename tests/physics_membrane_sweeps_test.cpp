@@ -40,6 +40,23 @@ TEST(MembraneSweeps, MoveAsForcesInFineSubstepsOrManySweeps) {
   }
 }
 
+// Damping takes what it should, however many sweeps share it.
+TEST(MembraneSweeps, DampAsForcesInAnyNumberOfSweeps) {
+  for (const double damping : {5e-4, 2e-3}) {
+    Scene scene = curtain(13, {3000, 2000, 200, 80, damping});
+    scene.cloths[0].bending = {};
+    const std::vector<double> truth = after(by_forces(scene), 30);
+    for (const int order : {1, 2})
+      for (const Sweep sweep : {Sweep::gauss_seidel, Sweep::line})
+        for (const int iterations : {1, 2, 3, 6}) {
+          Scene sweeps = by_sweeps(scene, sweep, order, order == 1 ? 512 : 128);
+          sweeps.solver.iterations = iterations;
+          EXPECT_LT(apart(after(sweeps, 30), truth), 4e-4)
+              << damping << ", order " << order << ", sweep " << int(sweep) << ", " << iterations;
+        }
+  }
+}
+
 // A strip that is slowly drawn out, of cells that are long or hardly resist shear: what a sweep leaves falls with
 // the substep, whatever the order, and nothing swings up.
 TEST(MembraneSweeps, OfLongOrSoftCellsStretchLessTheFinerTheyAre) {

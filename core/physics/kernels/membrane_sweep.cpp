@@ -16,7 +16,7 @@
 //
 // Damping is a sweep of its own before these, over how strains grow by the way that particles are about to go:
 //
-//   r = rate (e - e_before),  Δs = r/(rate A + 1/k)
+//   r = rate (e - e_before) + s/k,  Δs = r/(rate A + 1/k),  s <- s - Δs
 //
 // Within the others it would ask them to hold strains where they were. In long substeps a single sweep cannot, and
 // neither stretches what falls as it should nor takes back what is stretched.
@@ -361,7 +361,8 @@ void sweep_what_is_left(const MembraneSweep& p) {
 }  // namespace
 
 void sweep_membrane(const MembraneSweep& p) {
-  if (p.rate > 0) return sweep_what_is_left<false, true>(p);
+  if (p.rate > 0)
+    return p.stress ? sweep_what_is_left<true, true>(p) : sweep_what_is_left<false, true>(p);
   p.stress ? sweep_what_is_left<true, false>(p) : sweep_what_is_left<false, false>(p);
 }
 

@@ -105,9 +105,10 @@ void LatticeModel::append_projections(StageList& list) {
   sweep.compliant = method_ == Method::compliant;
   const bool lines = solver.sweep == Sweep::line;
   const ColourSweeps sweeps = colour_sweeps(parts_.scene, stiffness_rate());
+  const bool damps = solves_membrane() && parts_.cloth.membrane.damping > 0;
   if (sweep.compliant && !lines && sweeps.count > 1)
     multipliers_ = std::make_unique<Multipliers>(
-        lattice_, solves_membrane() ? kCellStresses : stencils_.size());
+        lattice_, solves_membrane() ? kCellStresses * (damps ? 2 : 1) : stencils_.size());
   sweep.multipliers = multipliers_.get();
   // Jacobi sweeps find all corrections of a particle at once, and need not gather them.
   const bool gather = solver.sweep != Sweep::jacobi;
@@ -148,9 +149,8 @@ void LatticeModel::append_projections(StageList& list) {
     list.skip("line", "sweep is not line");
     if (stencils_.empty())
       list.skip(gather ? "gauss_seidel" : "jacobi", "the cloth has no constraints");
-    for (int n = 0; n < solver.iterations; ++n)
-      if (solves_membrane() && parts_.cloth.membrane.damping > 0)
-        append_membrane_damping(parts_, *corrections_, list.stages);
+    for (int n = 0; n < sweeps.count && damps; ++n)
+      append_membrane_damping(parts_, *corrections_, multipliers_.get(), list.stages);
     for (int n = 0; n < sweeps.count && !stencils_.empty(); ++n) {
       sweep.backwards = sweeps.backwards(n);
       sweep.tears = tears && n + 1 == sweeps.count;

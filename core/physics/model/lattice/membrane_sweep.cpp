@@ -37,8 +37,9 @@ class SweepCells final : public RowStage {
     s.scale = scale_.data();
     set_stiffness(parts.cloth.membrane);
     if (options.multipliers) {
-      s.stress = options.multipliers->row(0, 0);
-      s.stress_plane = options.multipliers->row(1, 0) - s.stress;
+      const std::size_t first = damps ? kCellStresses : 0;
+      s.stress = options.multipliers->row(first, 0);
+      s.stress_plane = options.multipliers->row(first + 1, 0) - s.stress;
     }
     for (std::size_t f = 0; f < kCellStencils && parts.tearing; ++f) {
       const Stencil& stencil = parts.stencils[f];
@@ -106,9 +107,11 @@ void append_membrane_sweep(const LatticeParts& parts, const SweepOptions& option
   append(parts, options, false, stages);
 }
 
-void append_membrane_damping(const LatticeParts& parts, Rows& corrections, Stages& stages) {
+void append_membrane_damping(const LatticeParts& parts, Rows& corrections, Multipliers* multipliers,
+                             Stages& stages) {
   SweepOptions options;
   options.corrections = &corrections;
+  options.multipliers = multipliers;
   append(parts, options, true, stages);
 }
 

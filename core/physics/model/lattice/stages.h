@@ -59,10 +59,11 @@ struct SweepOptions {
 };
 void append_gauss_seidel(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
 // The same of a membrane, over its cells, with multipliers for kCellStresses; and the sweep of its damping, which comes
-// before.
+// before, with as many that follow those.
 inline constexpr std::size_t kCellStencils = 4, kCellStresses = 8;
 void append_membrane_sweep(const LatticeParts& parts, const SweepOptions& options, Stages& stages);
-void append_membrane_damping(const LatticeParts& parts, Rows& corrections, Stages& stages);
+void append_membrane_damping(const LatticeParts& parts, Rows& corrections, Multipliers* multipliers,
+                             Stages& stages);
 // A strain limit that holds: sweeps by forces that last, which stay in `forces`.
 void append_held_limit(const LatticeParts& parts, Multipliers& forces, Stages& stages);
 // The strain limit, one constraint after the other.

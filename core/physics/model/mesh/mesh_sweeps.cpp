@@ -263,7 +263,7 @@ void MeshSweeps::append_strains(ColourSweeps sweeps, bool fresh, History* histor
                                 StageList& list) {
   list.stages.push_back(make_load_records(parts_, records_, 1));
   for (int n = 0; n < sweeps.count && strains_->damps_before(); ++n)
-    strains_->append(1, {false, false, true}, list);
+    strains_->append(sweeps.count, {n == 0, false, true}, list);
   for (int n = 0; n < sweeps.count; ++n) {
     strains_->append(sweeps.count,
                      {fresh && n == 0, n + 1 == sweeps.count, false, sweeps.backwards(n)}, list);

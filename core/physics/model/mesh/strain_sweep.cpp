@@ -42,7 +42,7 @@ class SweepStrains final : public RowStage {
     sweep.rate = float(m.damping / s.dt);
     sweep.damps = pass_.damps;
     sweep.fresh = pass_.fresh;
-    if (!pass_.damps && colour_.stress.size() > 0)
+    if (colour_.stress.size() > 0)
       sweep.stress = colour_.stress.data() + std::ptrdiff_t(kStrains * kBatch) * first;
     if (pass_.last && colour_.midst.size() > 0)
       sweep.midst = colour_.midst.data() + std::ptrdiff_t(kStrains * kBatch) * first;
