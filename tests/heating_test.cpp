@@ -234,6 +234,19 @@ TEST(Heating, TheSecondOrderMakesNoMotionBySweeps) {
           }
 }
 
+// How long substeps are is known once the stages are there.
+TEST(Heating, TheSecondOrderMakesNoMotionInAutomaticSubsteps) {
+  for (const bool irregular : {false, true}) {
+    Scene scene = swept(irregular, 65, 33, {{0, 0}, {0, 32}});
+    scene.cloths[0].stiffness.structural = 1e5;
+    if (irregular) scene.cloths[0].mesh.scale = 0.5;
+    scene.solver.order = 2;
+    const Result result = lifted(scene, 60);
+    EXPECT_TRUE(result.more_sweeps) << irregular;
+    EXPECT_LT(result.gain, 0.01) << irregular;
+  }
+}
+
 // As where nothing gives, in substeps so short that implicit Euler takes little.
 TEST(Heating, StiffSpringsMakeNoMotionInFineSubsteps) {
   Cases cases(3);

@@ -15,8 +15,8 @@ namespace fuzz {
 
 struct Settings {
   std::uint64_t first = 0, count = 100;
-  double seconds = 0;  // after which none is started; 0: no end
-  double limit = 120;  // s of processor time, of one scene
+  double seconds = 0;    // after which none is started; 0: no end
+  double limit = 120;    // s of processor time, of one scene
   double quick = 1e300;  // ms that the other build took, of scenes that are compared
   int jobs = 1;
   bool resume = false;

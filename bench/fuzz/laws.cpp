@@ -148,8 +148,8 @@ bool pinned_anywhere(const Scene& scene) {
 Laws::Laws(const Simulation& simulation) : springs_(bench::runs_springs(simulation)) {
   const Scene& scene = simulation.scene();
   const bool outside = outside_of_all(simulation);
-  // What a mesh has of energy is not counted.
   together_ = collides_with_itself(scene);
+  // What a mesh has of energy is not counted.
   if (!driven(scene) && !has_wind(scene) && !by_course(scene) && outside && !has_meshes(scene) &&
       !moves_by_steps(simulation))
     open_ledgers(simulation);

@@ -43,6 +43,12 @@ void ClothStep::choose_anew(Method method) {
   for (; !added.empty(); added.pop_back()) add_stage(std::move(added.back()));
 }
 
+bool ClothStep::take_substep(double dt) {
+  const bool others = model_->take_substep(dt);
+  if (others) choose_anew(method_);
+  return others;
+}
+
 void ClothStep::make_schedule() {
   const Particles& p = particles();
   schedule_ = std::make_unique<Schedule>(

@@ -77,6 +77,8 @@ class ClothStep {
   // Chooses the stages anew for this method and the scene's solver as it is now. Added stages stay;
   // what the others carry from substep to substep starts anew.
   void choose_anew(Method method);
+  // Substeps have this length from now on [s]; whether the stages were chosen anew for that.
+  bool take_substep(double dt);
   // Lets a cloth tear from now on.
   void allow_tearing();
   std::size_t bytes() const;

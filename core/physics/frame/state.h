@@ -127,6 +127,7 @@ struct Simulation::State {
   void choose_method_and_substeps();
   int explicit_substeps(std::vector<std::string>& notes);
   void take_substeps(int count);
+  bool suit_stages();
   void set_substeps(int count);
   int substeps_within(double limit) const;
   double stretched_limit() const;

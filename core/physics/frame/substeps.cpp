@@ -196,7 +196,9 @@ void Simulation::State::choose_method_and_substeps() {
     note_gas(scene, count, notes);
     note_tearing(scene, time_step.method, count, notes);
   }
-  note_rounding(cloths, scene.solver, time_step.method, scene.time.frame / count, notes);
+  time_step.take(count, scene.time.frame);
+  suit_stages();
+  note_rounding(cloths, scene.solver, time_step.method, time_step.dt, notes);
   if (is_explicit(time_step.method))
     note_shaking(scene, cloths, time_step.spectra, scene.time.frame / count, notes);
   note_turning(scene, scene.time.frame / count, notes);
@@ -247,8 +249,19 @@ int Simulation::State::explicit_substeps(std::vector<std::string>& notes) {
   return asked;
 }
 
+// Whether stages were chosen anew for the substeps' length.
+bool Simulation::State::suit_stages() {
+  bool others = false;
+  for (auto& step : cloths) others |= step->take_substep(time_step.dt);
+  return others;
+}
+
 void Simulation::State::take_substeps(int count) {
   time_step.take(count, scene.time.frame);
+  if (suit_stages()) {
+    plan_changed();
+    note_models(plan.notes);
+  }
   plan.substeps = time_step.substeps;
   plan.dt = time_step.dt;
   for (PlannedStage& s : plan.stages) s.calls_per_frame = time_step.substeps;

@@ -8,9 +8,10 @@
 //
 // (Macklin, Müller, Chentanez 2016; the rate of strain is that of Green's strain over the substep, which turning
 // leaves alone.) Where strands take turns with triangles, damping is in these equations. Colours alone have a sweep of
-// it before theirs, r = rate (e - e_before) + C⁻¹ s, Δs = (rate A + C⁻¹)⁻¹ r (membrane_sweep.cpp says why). No root but one: A is made of the metric u·u, u·v, v·v. A triangle that is pressed together has
-// small derivatives, and a step by these would go far beyond where they hold, so A has the metric with its
-// principal values raised to 1 at least: its step is short rather than long, what it comes to is the same.
+// it before theirs, r = rate (e - e_before) + C⁻¹ s, Δs = (rate A + C⁻¹)⁻¹ r (membrane_sweep.cpp says why). No root but
+// one: A is made of the metric u·u, u·v, v·v. A triangle that is pressed together has small derivatives, and a step by
+// these would go far beyond where they hold, so A has the metric with its principal values raised to 1 at least: its step
+// is short rather than long, what it comes to is the same.
 #include "physics/kernels/mesh_sweep.h"
 #include "physics/kernels/records.h"
 #include "physics/kernels/row_kernels.h"

@@ -82,6 +82,11 @@ class ClothModel {
   // then, after those of contact, what may not be exceeded at a substep's end.
   virtual void append_motion(Method method, StageList& list) = 0;
   virtual void append_limits(StageList& list) = 0;
+  // Substeps have this length from now on [s]; true: they take other stages than those that were appended.
+  virtual bool take_substep(double dt) {
+    (void)dt;
+    return false;
+  }
   virtual double mass(int particle) const = 0;  // kg, held or not
 
   // The triangles that are left.

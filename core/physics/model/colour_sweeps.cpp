@@ -1,7 +1,5 @@
 #include "physics/model/colour_sweeps.h"
 
-#include <algorithm>
-
 #include "physics/model/remainders.h"
 
 namespace weft::physics {
@@ -19,12 +17,9 @@ constexpr Limits kFirst{Remainders::kFine, 0.3};
 
 }  // namespace
 
-// (Automatic substeps are short only where frames are.)
-ColourSweeps colour_sweeps(const Scene& scene, double rate) {
-  const Solver& solver = scene.solver;
+ColourSweeps colour_sweeps(const Solver& solver, double dt, double rate) {
   const bool first = solver.order == 1, alone = solver.iterations == 1;
   const Limits& limits = first ? kFirst : alone ? kSecondAlone : kSecond;
-  const double dt = scene.time.frame / std::max(scene.time.substeps, 1);
   const bool back = dt < limits.substep && rate * dt * dt > limits.stiff;
   const int odd = back && (first || alone) ? solver.iterations % 2 : 0;
   return {solver.iterations + odd, back};

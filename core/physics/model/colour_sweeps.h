@@ -17,10 +17,12 @@ struct ColourSweeps {
   int count;
   bool back;  // every second one, through the colours from the last to the first
   bool backwards(int n) const { return back && n % 2 == 1; }
+  bool operator==(const ColourSweeps&) const = default;
 };
 
-// `rate`: the greatest stiffness of a constraint times the greatest inverse mass [1/s²]; infinite: rigid ones.
-ColourSweeps colour_sweeps(const Scene& scene, double rate);
+// In substeps of dt [s]. `rate`: the greatest stiffness of a constraint times the greatest inverse mass [1/s²]; infinite:
+// rigid ones.
+ColourSweeps colour_sweeps(const Solver& solver, double dt, double rate);
 // Adds a note where more run than the scene asks for.
 void note_sweeps(const ColourSweeps& sweeps, const Solver& solver, std::vector<std::string>& notes);
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "physics/model/colour_sweeps.h"
 #include "physics/model/keyed_pins.h"
 #include "physics/model/lattice/cuts.h"
 #include "physics/model/lattice/plain_rows.h"
@@ -98,13 +97,22 @@ double LatticeModel::stiffness_rate() const {
   return greatest_stiffness(parts_.cloth) / lightest_mass(parts_.cloth);
 }
 
+ColourSweeps LatticeModel::sweeps_due() const {
+  return colour_sweeps(parts_.scene.solver, dt_, stiffness_rate());
+}
+
+bool LatticeModel::take_substep(double dt) {
+  dt_ = dt;
+  return !is_explicit(method_) && sweeps_due() != sweeps_;
+}
+
 void LatticeModel::append_projections(StageList& list) {
   const Solver& solver = parts_.scene.solver;
   list.skip("springs", "constraints are projected with this method");
   SweepOptions sweep;
   sweep.compliant = method_ == Method::compliant;
   const bool lines = solver.sweep == Sweep::line;
-  const ColourSweeps sweeps = colour_sweeps(parts_.scene, stiffness_rate());
+  const ColourSweeps sweeps = sweeps_ = sweeps_due();
   const bool damps = solves_membrane() && parts_.cloth.membrane.damping > 0;
   if (sweep.compliant && !lines && sweeps.count > 1)
     multipliers_ = std::make_unique<Multipliers>(
@@ -195,8 +203,7 @@ std::vector<std::string> LatticeModel::notes() const {
         "with order 2 the strain limit is one pass a substep, as with colours, and keeps momentum "
         "to some "
         "thousandths");
-  if (!is_explicit(method_) && !stencils_.empty())
-    note_sweeps(colour_sweeps(parts_.scene, stiffness_rate()), parts_.scene.solver, notes);
+  if (!is_explicit(method_) && !stencils_.empty()) note_sweeps(sweeps_, parts_.scene.solver, notes);
   const Membrane& m = parts_.cloth.membrane;
   if (!m.given() || is_membrane() || solves_membrane()) return notes;
   std::string note =

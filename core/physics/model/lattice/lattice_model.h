@@ -3,6 +3,7 @@
 #pragma once
 
 #include "physics/model/cloth_model.h"
+#include "physics/model/colour_sweeps.h"
 #include "physics/model/followed.h"
 #include "physics/model/lattice/membrane.h"
 #include "physics/model/lattice/stages.h"
@@ -21,6 +22,7 @@ class LatticeModel final : public ClothModel {
   History* history() override { return history_.get(); }
   void append_motion(Method method, StageList& list) override;
   void append_limits(StageList& list) override;
+  bool take_substep(double dt) override;
   double mass(int particle) const override;
 
   const SurfaceMesh& surface() const override;
@@ -52,6 +54,7 @@ class LatticeModel final : public ClothModel {
   void append_forces(StageList& list);
   void append_projections(StageList& list);
   double stiffness_rate() const;
+  ColourSweeps sweeps_due() const;
   std::vector<Joined> cut_constraints() const;  // that the cloth's cuts cross
   SurfaceMesh whole_surface() const;
   const BendLinks* bend_links() const { return tearing_ ? tearing_->bend_links() : nullptr; }
@@ -75,6 +78,8 @@ class LatticeModel final : public ClothModel {
   Lattice lattice_;
   LatticeParts parts_;
   Followed followed_;
+  double dt_ = 0;  // s, of substeps; 0: not known yet
+  ColourSweeps sweeps_{};
   std::unique_ptr<Multipliers> multipliers_, limit_forces_;
   std::unique_ptr<Rows> corrections_;
   std::unique_ptr<History> history_;

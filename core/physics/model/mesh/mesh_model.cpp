@@ -123,6 +123,7 @@ void MeshModel::append_projections(StageList& list) {
     list.skip("second order", "order is 1");
   corrections_.reset();
   if (solver.tethers) corrections_ = std::make_unique<Rows>(particles_.rows, particles_.stride);
+  colour_sweeps_ = sweeps_due();
   if (material_.membrane) strain_sweeps().append_places_before(list);
   list.stages.push_back(history_ ? make_predict_second_order(parts_, *history_, nullptr, nullptr)
                                  : make_predict(parts_, nullptr, corrections_.get(), nullptr));
@@ -141,7 +142,7 @@ void MeshModel::append_projections(StageList& list) {
   else if (solver.sweep == Sweep::line)
     append_strands(list);
   else
-    midst_.edges = edge_sweeps().append_edges(sweeps_asked(), history_.get(), list);
+    midst_.edges = edge_sweeps().append_edges(colour_sweeps_, history_.get(), list);
   if (material_.bends)
     sweeps().append_hinges(history_.get(), list);
   else
@@ -155,14 +156,19 @@ bool MeshModel::sweeps_by_colours() const {
 }
 
 // Over membranes, sweeps make no motion of the first order.
-ColourSweeps MeshModel::sweeps_asked() const {
+ColourSweeps MeshModel::sweeps_due() const {
   const Membrane& m = parts_.cloth.membrane;
   double stiffest = 0;
   if (!material_.membrane)
     stiffest = material_.stiffness * *std::ranges::max_element(edges_.triangles);
-  else if (history_)
+  else if (parts_.scene.solver.order == 2)
     stiffest = std::max({m.warp, m.weft, m.shear});
-  return colour_sweeps(parts_.scene, stiffest / *std::ranges::min_element(masses_));
+  return colour_sweeps(parts_.scene.solver, dt_, stiffest / *std::ranges::min_element(masses_));
+}
+
+bool MeshModel::take_substep(double dt) {
+  dt_ = dt;
+  return !is_explicit(method_) && sweeps_by_colours() && sweeps_due() != colour_sweeps_;
 }
 
 void MeshModel::append_strands(StageList& list) {
@@ -208,7 +214,7 @@ void MeshModel::append_membrane(StageList& list) {
   const Solver& solver = parts_.scene.solver;
   StrainSweeps& strains = strain_sweeps();
   if (sweeps_by_colours()) {
-    sweeps_->append_strains(sweeps_asked(), true, history_.get(), list);
+    sweeps_->append_strains(colour_sweeps_, true, history_.get(), list);
     midst_.triangles = strains.midst();
     return;
   }
@@ -260,7 +266,7 @@ std::vector<std::string> MeshModel::notes() const {
         "strands do not follow tears of a membrane: gauss_seidel sweeps run in place of line, "
         "which hold less for the same substeps");
   if (!is_explicit(method_) && sweeps_by_colours())
-    note_sweeps(sweeps_asked(), parts_.scene.solver, notes);
+    note_sweeps(colour_sweeps_, parts_.scene.solver, notes);
   const std::size_t loose = mesh_.edges.size();
   if (loose > 0 && !parts_.cloth.sewing)
     notes.push_back(std::to_string(loose) +

@@ -23,6 +23,7 @@ class MeshModel final : public ClothModel {
   History* history() override { return history_.get(); }
   void append_motion(Method method, StageList& list) override;
   void append_limits(StageList& list) override;
+  bool take_substep(double dt) override;
   double mass(int particle) const override { return masses_[std::size_t(particle)]; }
   const SurfaceMesh& surface() const override { return surface_; }
   const DrawnMesh* drawn_mesh() const override { return &drawn_; }
@@ -64,7 +65,7 @@ class MeshModel final : public ClothModel {
   void append_membrane(StageList& list);
   void append_strands(StageList& list);
   bool sweeps_by_colours() const;
-  ColourSweeps sweeps_asked() const;
+  ColourSweeps sweeps_due() const;
   MeshSweeps& sweeps();  // of bending, where there is any
   MeshSweeps& edge_sweeps();
   StrainSweeps& strain_sweeps();
@@ -91,6 +92,8 @@ class MeshModel final : public ClothModel {
   MeshEdges edges_;               // each once
   std::unique_ptr<GasLoad> gas_;  // null: the cloth has no pressure
   std::unique_ptr<MeshSweeps> sweeps_;
+  double dt_ = 0;  // s, of substeps; 0: not known yet
+  ColourSweeps colour_sweeps_{};
   std::vector<Strand> strands_;  // none until sweeps solve them
   std::unique_ptr<History> history_;
   std::unique_ptr<Rows> corrections_;         // of tethers

@@ -44,7 +44,8 @@ class MeshSweeps : private TornParts {
   void make_strains(const std::vector<RestTriangle>& triangles, bool keeps_stress);
 
   // `history`: of the second order, else null.
-  // Edges as compliant constraints; positions and velocities gain the corrections at the end. Returns where the last tells squared lengths, of each edge; none: nothing tears by strain.
+  // Edges as compliant constraints; positions and velocities gain the corrections at the end. Returns where the last
+  // tells squared lengths, of each edge; none: nothing tears by strain.
   std::vector<const float*> append_edges(ColourSweeps sweeps, History* history, StageList& list);
   void append_hinges(History* history, StageList& list);
   // The membrane of triangles, likewise; `fresh`: from no stress.
