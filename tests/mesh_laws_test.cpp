@@ -1,5 +1,5 @@
 // Cloth of triangle meshes against its truths: forces against the energy, kernels against double precision,
-// laws of motion, beams, strips and plates against their closed form.
+// laws of motion, strips and plates in a wind against their closed form.
 #include <gtest/gtest.h>
 
 #include "mesh_scenes.h"
@@ -124,50 +124,6 @@ TEST(MeshCloth, FallsAndWeighsWhatItsAreaDoes) {
   EXPECT_NEAR(report.momentum[1], -0.3 * 9.81 * 0.5, 1e-4);
   EXPECT_NEAR(report.energy.kinetic, 0.5 * 0.3 * std::pow(9.81 * 0.5, 2), 1e-3);
   EXPECT_LT(report.strain.max, 1e-4);
-}
-
-// A strip clamped at one end bends by q L⁴/8D. The clamp is two rows of vertices; it ends half way from the
-// second to where slopes are free.
-double tip_of_beam(const MadeUpMesh& like) {
-  const auto mesh = made_up(like);
-  Scene scene = scene_of(mesh);
-  Cloth& cloth = scene.cloths[0];
-  const double rigidity = 0.02, spacing = like.width / (like.nx - 1);
-  cloth.membrane = {300, 300, 0, 150, 0};
-  cloth.bending = rigidity;
-  cloth.drag = 7.6;             // twice the slowest mode
-  const double gravity = 0.08;  // a small bend
-  scene.gravity = {0, -gravity, 0};
-  for (std::size_t n = 0; n < mesh->vertices.size(); ++n)
-    if (mesh->vertices[n][0] < 1.01 * spacing) cloth.pins.push_back({int(n), 0, {}});
-  Simulation run(scene, {.threads = 1});
-  for (int n = 0; n < 250; ++n) run.advance_frame();
-  EXPECT_TRUE(run.status().ok) << run.status().text;
-  double tip = 0;
-  const auto x = positions_of(run);
-  for (std::size_t n = 0; n < x.size(); ++n)
-    if (mesh->vertices[n][0] > like.width - 1e-9) tip -= x[n][1] / like.ny;
-  const double length = like.width - spacing / 2;
-  return tip / (0.3 * gravity * std::pow(length, 4) / (8 * rigidity));
-}
-
-constexpr const char* kBeam = "cantilever of a mesh, drop of the tip";
-
-TEST(MeshCloth, BendsAsABeamDoes) {
-  const MadeUpMesh strip{.nx = 21, .ny = 7, .width = 0.5, .height = 0.15};
-  for (const Diagonals diagonals : {Diagonals::alike, Diagonals::crossed}) {
-    MadeUpMesh regular = strip;
-    regular.diagonals = diagonals;
-    const char* how = diagonals == Diagonals::alike ? "diagonals alike" : "diagonals crossed";
-    expect({kBeam, how, 1, 0.01, "q L⁴/(8 D)"}, tip_of_beam(regular));
-  }
-  MadeUpMesh shifted = strip;
-  for (const auto& [shift, bound] : {std::pair{0.1, 0.06}, {0.3, 0.15}}) {
-    shifted.shift = shift;
-    const std::string how = std::string("vertices off the grid by up to ") +
-                            (shift < 0.2 ? "0.1" : "0.3") + " spacings";
-    EXPECT_LT(show({kBeam, how, 1, 0.02, "q L⁴/(8 D)"}, tip_of_beam(shifted)), bound);
-  }
 }
 
 // A strip that hangs by its side is stretched by what is below, whatever its triangles.

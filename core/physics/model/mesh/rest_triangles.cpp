@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/model/mesh/plate_moments.h"
 #include "weft/vec3.h"
 
 namespace weft::physics {
@@ -26,10 +27,7 @@ Vec3 warp_of(const TriangleMesh& mesh, std::size_t t, const Vec3& p, const Vec3&
   return times(warp, 1 / length(warp));
 }
 
-// Of corner c seen from the side a, b: how far off it is, and where along the side.
-struct Foot {
-  double height, at;
-};
+// Of corner c seen from the side a, b.
 Foot foot_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 side = minus(b, a), way = minus(c, a);
   const double at = dot(way, side) / dot(side, side);
@@ -119,31 +117,29 @@ void curve(RestTriangle& r, std::size_t k, const Places& x, const Vec3& normal, 
   r.bow[k] = sine / (2 * r.area);
 }
 
-void set_hinges(RestTriangle& r, const Places& x, const Vec3& warp, const Vec3& weft,
-                const Vec3& normal, const Bending& bending, bool flat) {
-  double weight[3], n1[3], n2[3];  // of a side: w, and its normal along warp and weft
+Plate plate_of(RestTriangle& r, const Places& x, const std::array<Across, 3>& across,
+               const Vec3& warp, const Vec3& weft, const Vec3& normal, bool flat) {
+  Plate plate{r.corner, r.area, {}};
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 a = x[k], b = x[(k + 1) % 3];
     const Vec3 out = times(cross(minus(b, a), normal), 1 / r.rest[k]);
-    n1[k] = dot(out, warp);
-    n2[k] = dot(out, weft);
-    weight[k] = r.away[k] = r.away_at[k] = r.own[k] = r.own_at[k] = r.bow[k] = 0;
-    if (r.corner[3 + k] < 0) continue;
-    const Foot own = foot_of(a, b, x[(k + 2) % 3]), away = foot_of(a, b, x[3 + k]);
-    r.own[k] = 1 / own.height;
-    r.own_at[k] = own.at;
-    r.away[k] = 1 / away.height;
-    r.away_at[k] = away.at;
-    if (!flat) curve(r, k, x, normal, own, away);
-    weight[k] = own.height / (own.height + away.height) * r.rest[k] / r.area;
+    r.away[k] = r.away_at[k] = r.own[k] = r.own_at[k] = r.bow[k] = 0;
+    Hinge& h = plate.hinge[k];
+    h.length = r.rest[k];
+    h.n1 = dot(out, warp);
+    h.n2 = dot(out, weft);
+    if (across[k].vertex < 0) continue;
+    h.across = across[k].triangle;
+    h.side = int(across[k].side);
+    h.own = foot_of(a, b, x[(k + 2) % 3]);
+    h.away = foot_of(a, b, x[3 + k]);
+    r.own[k] = 1 / h.own.height;
+    r.own_at[k] = h.own.at;
+    r.away[k] = 1 / h.away.height;
+    r.away_at[k] = h.away.at;
+    if (!flat) curve(r, k, x, normal, h.own, h.away);
   }
-  for (std::size_t m = 0; m < 6; ++m) {
-    const std::size_t k = m % 3, l = m < 3 ? k : (k + 1) % 3;
-    r.moment[m] = r.area * weight[k] * weight[l] *
-                  (bending.warp * n1[k] * n1[k] * n1[l] * n1[l] +
-                   bending.weft * n2[k] * n2[k] * n2[l] * n2[l] +
-                   2 * bending.twist * n1[k] * n2[k] * n1[l] * n2[l]);
-  }
+  return plate;
 }
 
 // One triangle as it lies: energy, and the force on its six corners.
@@ -265,6 +261,8 @@ std::vector<RestTriangle> rest_triangles(const TriangleMesh& mesh, const RestPla
                                          const Bending& bending) {
   const auto across = across_of(mesh);
   std::vector<RestTriangle> all(mesh.triangles.size());
+  std::vector<Plate> plates;
+  plates.reserve(all.size());
   for (std::size_t t = 0; t < all.size(); ++t) {
     RestTriangle& r = all[t];
     const auto& [a, b, c] = mesh.triangles[t];
@@ -284,8 +282,12 @@ std::vector<RestTriangle> rest_triangles(const TriangleMesh& mesh, const RestPla
     const double d = pu * qv - qu * pv;
     r.du[0] = qv / d, r.du[1] = -pv / d;
     r.dv[0] = -qu / d, r.dv[1] = pu / d;
-    set_hinges(r, x, warp, weft, normal, bending, rest.flat || rest.uv_scale > 0);
+    plates.push_back(plate_of(r, x, across[t], warp, weft, normal, rest.flat || rest.uv_scale > 0));
   }
+  if (!bending.given()) return all;
+  const auto moments = plate_moments(plates, rest.x.size(), bending);
+  for (std::size_t t = 0; t < all.size(); ++t)
+    std::copy(moments[t].begin(), moments[t].end(), all[t].moment);
   return all;
 }
 

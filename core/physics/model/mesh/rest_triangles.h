@@ -1,12 +1,10 @@
 // The triangles of a mesh at rest: what energies, forces and kernels are made of, in double precision.
 //
-// Bending: the curvature of a triangle is that of the mean slopes at its sides, weighted by the distances
-// of the two triangles' corners there (Onate, Cervera 1993, "Derivation of thin plate bending elements with
-// one degree of freedom per node"): k = Σ w n nᵀ h over its sides, h the jump of slope, n the side's normal
-// in the triangle, w = l share / area. Held as vectors in space, jumps are linear in the positions, and the
-// energy is a quadratic form of them. Regular meshes converge with the square of the edge, whichever way
-// their diagonals go; on meshes that are wild plates are about a tenth too stiff. Damping acts on what jumps become along the
-// triangle's normal: cloth that turns as a whole is not braked.
+// Bending: the curvature of a triangle is that of the mean slopes at its sides (Onate, Cervera 1993, "Derivation
+// of thin plate bending elements with one degree of freedom per node"): k = Σ w n nᵀ h over its sides, h the jump
+// of slope, n the side's normal in the triangle, w = l share / area. Held as vectors in space, jumps are linear in
+// the positions, and the energy is a quadratic form of them, whose moments plate_moments.h has. Damping acts on
+// what jumps become along the triangle's normal: cloth that turns as a whole is not braked.
 //
 // Curved at rest: a jump counts from what it is at rest as seen from the triangle (Garg, Grinspun, Wardetzky,
 // Zorin 2007, "Cubic Shells"). What of it lies in the triangle's plane goes into `own`, so that it stays linear;
