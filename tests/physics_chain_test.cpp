@@ -126,7 +126,7 @@ class Bundle final : public ClothModel {
   double strain_in_line(const Rows&, double) const override { return 0; }
   double attachment_energy(const Rows&, double) const override { return 0; }
   double rounding_gain() const override { return 0; }
-  Spectrum spectrum(std::span<const float>) const override { return {}; }
+  Spectrum find_spectrum(std::span<const float>) const override { return {}; }
   bool folds_freely() const override { return false; }
   double stiffening(double stretch) const override { return stiffening_of_springs(stretch); }
   std::vector<Joined> constraints_near(const Vec3&, const Vec3&, double) const override {

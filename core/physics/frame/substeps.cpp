@@ -109,9 +109,10 @@ void note_rounding(const Cloths& cloths, const Solver& solver, Method method, do
   for (const auto& step : cloths) {
     const bool sweeps_keep = solver.order == 2 || !step->cloth().mesh.given();
     const auto keeps = [&] {
-      return is_explicit(method) ? dt < forces_keep_below(step->parts()) : sweeps_keep;
+      return is_explicit(method) ? dt < forces_keep_below(step->parts())
+                                 : sweeps_keep && Remainders::fine(dt);
     };
-    if (!Remainders::fine(dt) || !keeps()) farthest.look(step->particles());
+    if (!keeps()) farthest.look(step->particles());
   }
   if (const double slowest = farthest.unit() / 2 / dt; slowest >= kSlow)
     notes.push_back("substeps of " + number(dt) +

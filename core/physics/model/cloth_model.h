@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -125,10 +126,17 @@ class ClothModel {
   // above are without it.
   virtual const Load* load() const { return nullptr; }
 
-  // What limits explicit substeps: the spectrum of the cloth as it starts, with these inverse masses;
-  // and whether it can fold without stretching anything, onto a line where all its springs pull the
-  // same way.
-  virtual Spectrum spectrum(std::span<const float> inverse_masses) const = 0;
+  // What limits explicit substeps: the spectrum of the cloth as it starts, with these inverse masses, and the largest
+  // substep [s] by the one that was found last.
+  Spectrum spectrum(std::span<const float> inverse_masses) const {
+    found_ = find_spectrum(inverse_masses);
+    return *found_;
+  }
+  double largest_substep() const {
+    if (!found_) spectrum(particles().inverse_mass.span());
+    return found_->largest_substep();
+  }
+  // Whether it can fold without stretching anything, onto a line where all its springs pull the same way.
   virtual bool folds_freely() const = 0;
   // By how much ω² grows at most where constraints are `stretch` times as long as at rest.
   virtual double stiffening(double stretch) const = 0;
@@ -152,6 +160,10 @@ class ClothModel {
                                                double distance) const = 0;
 
   virtual std::size_t bytes() const = 0;
+
+ private:
+  virtual Spectrum find_spectrum(std::span<const float> inverse_masses) const = 0;
+  mutable std::optional<Spectrum> found_;
 };
 
 // The model that a scene asks for, with the particles as they start. `index`: of the cloth in the scene,

@@ -1,8 +1,6 @@
 // What rounding leaves (remainders.h).
 #include "physics/model/remainders.h"
 
-#include <algorithm>
-
 #include "physics/step/keeper.h"
 
 namespace weft::physics {
@@ -14,22 +12,13 @@ void make_room(Remainders& left, const Particles& particles) {
   left.v = Rows(particles.rows, particles.stride);
 }
 
-bool slows_down(const ClothParts& parts) {
-  const Cloth& c = parts.cloth;
-  const Kinds& springs = c.spring_damping;
-  const bool friction = parts.method == Method::spring_friction &&
-                        (springs.structural > 0 || springs.shear > 0 || springs.bend > 0);
-  return friction || c.drag > 0 || c.membrane.damping > 0 || c.bending.damping > 0;
-}
-
 }  // namespace
 
 double forces_keep_below(const ClothParts& parts) {
-  constexpr double kFarther = 0.5;                                    // of the stability limit
+  constexpr double kFine = 0.25;                                      // of the stability limit
   const bool automatic = parts.scene.time.substeps == kAutoSubsteps;  // as long as the limit allows
-  if (automatic || !slows_down(parts)) return 0;
-  const Spectrum spectrum = parts.model.spectrum(parts.particles.inverse_mass.span());
-  return std::min(Remainders::kFine, kFarther * spectrum.largest_substep());
+  if (automatic) return 0;
+  return kFine * parts.model.largest_substep();
 }
 
 void Remainders::prepare(bool keeps, const Particles& particles) {

@@ -2,6 +2,7 @@
 // (kernels/kept.h).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -10,8 +11,8 @@
 namespace weft::physics {
 
 struct Remainders {
-  // Whether substeps of dt [s] are fine. To keep what rounding leaves takes them a sixth longer; in others it is less
-  // than 1e-4 of the energy.
+  // Whether substeps of dt [s] are fine for sweeps. To keep what rounding leaves takes them a sixth longer; in others it
+  // is less than 1e-4 of the energy.
   static bool fine(double dt) { return dt < kFine; }
   static constexpr double kFine = 1e-4;  // s
   // Before substeps of these particles in which it is kept, or not.
@@ -27,34 +28,35 @@ struct Remainders {
   Rows x, v;  // m, m/s; there once they have been kept
 };
 
-// Forces keep what rounding leaves in substeps shorter than this [s]: fine ones that somebody asked for, of cloth from
-// which drag or damping takes energy; else 0. What loses none is not slow for long. Automatic substeps are near the
-// stability limit: there it takes a quarter longer, and forces that feel the rounding of positions in every substep would
-// shake the cloth twice as much.
+// Forces keep what rounding leaves in substeps shorter than this [s]: in fixed ones four times as short as stability
+// asks for, which somebody chose for exact paths. What is rounded off would be most of their error there, and grow as
+// they get shorter. In automatic ones, 0: near the stability limit the error of the step itself is far greater, and to
+// keep what is rounded off takes a tenth to a third longer.
 double forces_keep_below(const ClothParts& parts);
 
-// A stage that moves particles by forces, and what rounding leaves of that where the cloth slows down.
+// A stage that moves particles by forces, and what rounding leaves of that; `left` may be shared with stages that
+// change velocities before it does.
 template <class Base>
 class Leapfrog : public Base {
  public:
   template <class... Arguments>
-  explicit Leapfrog(const ClothParts& parts, Arguments&&... arguments)
-      : Base(std::forward<Arguments>(arguments)...), moved_(parts) {}
+  Leapfrog(const ClothParts& parts, std::shared_ptr<Remainders> left, Arguments&&... arguments)
+      : Base(std::forward<Arguments>(arguments)...), left_(std::move(left)), moved_(parts) {}
   bool moves_particles() const override { return true; }
   void prepare(double dt) override {
-    if (Remainders::fine(dt) && !below_) below_ = forces_keep_below(moved_);
-    left_.prepare(dt < below_.value_or(0), moved_.particles);
+    if (!below_) below_ = forces_keep_below(moved_);
+    left_->prepare(dt < *below_, moved_.particles);
   }
-  void restart() override { left_.clear(); }
-  void keep(Keeper& keeper) override { left_.keep(moved_.particles, keeper); }
-  std::size_t bytes() const override { return Base::bytes() + left_.bytes(); }
+  void restart() override { left_->clear(); }
+  void keep(Keeper& keeper) override { left_->keep(moved_.particles, keeper); }
+  std::size_t bytes() const override { return Base::bytes() + left_->bytes(); }
 
  protected:
-  Remainders left_;
+  const std::shared_ptr<Remainders> left_;
 
  private:
   ClothParts moved_;
-  std::optional<double> below_;  // s; known once substeps were fine
+  std::optional<double> below_;  // s; known once there was a substep
 };
 
 }  // namespace weft::physics

@@ -30,9 +30,10 @@ const float* left(const LatticeParts& parts, AlignedArray<float> BendLinks::*ter
 
 class BendingForce final : public RowStage {
  public:
-  explicit BendingForce(const LatticeParts& parts)
+  BendingForce(const LatticeParts& parts, std::shared_ptr<Remainders> left)
       : RowStage("bending", "curvature energy as a force", 2, terms(parts.lattice), "constraints"),
-        parts_(parts) {
+        parts_(parts),
+        left_(std::move(left)) {
     const BendingStiffness k = bending_stiffness(parts.cloth);
     stiffness_ = {float(k.along), float(k.across), float(k.twist)};
   }
@@ -44,7 +45,7 @@ class BendingForce final : public RowStage {
     r.rows = std::min(3, l.rows - j);
     for (int n = 0; n < r.rows; ++n) {
       r.x[n] = l.x.row(j + n);
-      r.v[n] = l.v.row(j + n);
+      r.v[n] = left_->kept ? left_->v.row(j + n) : l.v.row(j + n);
       r.w[n] = l.w(j + n);
     }
     r.k = stiffness_;
@@ -54,14 +55,16 @@ class BendingForce final : public RowStage {
     r.along = left(parts_, &BendLinks::along, at);
     r.across = left(parts_, &BendLinks::across, at);
     r.twist = left(parts_, &BendLinks::twist, at);
-    // The leapfrog step that follows takes drag off the velocity that it finds, but not off forces.
-    const double kept = 1 - s.kick * parts_.cloth.drag;
+    // The leapfrog step that follows takes drag off the velocity that it finds, but not off forces, nor off what is
+    // left of earlier steps: what is added to that is not rounded to the velocity's last place.
+    const double kept = left_->kept ? 1 : 1 - s.kick * parts_.cloth.drag;
     r.dt = float(kept > 0.01 ? s.kick / kept : s.kick);
     parts_.kernels.lattice.bend_row(r);
   }
 
  private:
   LatticeParts parts_;
+  const std::shared_ptr<Remainders> left_;
   BendStiffness stiffness_;
 };
 
@@ -225,9 +228,10 @@ class BendingConstraints final : public WholeStage {
 
 }  // namespace
 
-std::unique_ptr<RowStage> make_bending_force(const LatticeParts& parts) {
+std::unique_ptr<RowStage> make_bending_force(const LatticeParts& parts,
+                                             std::shared_ptr<Remainders> left) {
   if (!parts.cloth.bending.given()) return nullptr;
-  return std::make_unique<BendingForce>(parts);
+  return std::make_unique<BendingForce>(parts, std::move(left));
 }
 
 std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Rows& corrections) {

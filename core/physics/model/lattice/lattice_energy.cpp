@@ -255,7 +255,7 @@ double LatticeModel::strain_in_line(const Rows& x, double spread) const {
   return lines.greatest();
 }
 
-Spectrum LatticeModel::spectrum(std::span<const float> inverse_masses) const {
+Spectrum LatticeModel::find_spectrum(std::span<const float> inverse_masses) const {
   Lattice start = make_lattice(parts_.cloth, index_, seed_, false);
   std::copy(inverse_masses.begin(), inverse_masses.end(), start.inverse_mass.data());
   if (is_membrane()) return membrane_spectrum(parts_.cloth, membrane(), start);

@@ -80,10 +80,12 @@ void LatticeModel::append_forces(StageList& list) {
   parts_.overlong = overlong_.empty() ? nullptr : overlong_.data();
   list.skip("predict, sweeps, velocity", "springs are forces with this method");
   const bool bends = parts_.cloth.bending.given();
-  list.choose("bending", is_membrane() ? nullptr : make_bending_force(parts_),
+  const auto left = std::make_shared<Remainders>();
+  list.choose("bending", is_membrane() ? nullptr : make_bending_force(parts_, left),
               is_membrane() && bends ? "the membrane's stage bends, too" : "bending is 0");
-  list.stages.push_back(is_membrane() ? make_membrane(parts_)
-                                      : make_springs(parts_, method_ == Method::spring_friction));
+  list.stages.push_back(is_membrane()
+                            ? make_membrane(parts_)
+                            : make_springs(parts_, method_ == Method::spring_friction, left));
   list.choose("wind", make_wind(parts_, seed_), "drag and lift are 0");
   list.choose("keyed_pins", make_keyed_pins(parts_), "no pin moves");
 }

@@ -38,7 +38,7 @@ class LatticeModel final : public ClothModel {
   double strain_in_line(const Rows& x, double spread) const override;
   double attachment_energy(const Rows& x, double dt) const override;
   double rounding_gain() const override;
-  Spectrum spectrum(std::span<const float> inverse_masses) const override;
+  Spectrum find_spectrum(std::span<const float> inverse_masses) const override;
   double stiffening(double stretch) const override;
   bool folds_freely() const override;
   std::vector<std::string> notes() const override;

@@ -19,7 +19,7 @@ class MembraneStage final : public PlainLeapfrogStage {
                      ? " with damping"
                      : "") +
                 ", leapfrog step",
-            parts, bends(parts) ? 2 : 1),
+            parts, std::make_shared<Remainders>(), bends(parts) ? 2 : 1),
         share_(std::size_t(parts.lattice.stride)) {
     const MembraneCells cells(parts.cloth, parts.stencils, spring_repeats(parts.scene.solver));
     for (int j = 0; j < parts.lattice.rows; ++j) constants_.push_back(cells.constants(j));

@@ -60,8 +60,9 @@ class PlainLeapfrogStage : public Leapfrog<PlainRowsStage> {
  public:
   template <class... Arguments>
   PlainLeapfrogStage(const std::string& stage_name, const std::string& stage_detail,
-                     const LatticeParts& parts, Arguments... arguments)
-      : Leapfrog(parts, stage_name, stage_detail, parts, arguments...) {}
+                     const LatticeParts& parts, std::shared_ptr<Remainders> left,
+                     Arguments... arguments)
+      : Leapfrog(parts, std::move(left), stage_name, stage_detail, parts, arguments...) {}
 
  protected:
   // Calls run(rows) for every range of rows of one inverse mass.
@@ -74,7 +75,7 @@ class PlainLeapfrogStage : public Leapfrog<PlainRowsStage> {
       fill(r, first, last, s);
       r.alike = weights[first];
       r.advance = advance_of(parts_, s);
-      r.left = left_.row(0);
+      r.left = left_->row(0);
       run_rows(r);
       first = last;
     }

@@ -14,11 +14,11 @@ constexpr float kAlmost = 1 + 1e-6f;
 // The six stencils of a plain cloth in one kernel.
 class PlainSprings final : public PlainLeapfrogStage {
  public:
-  PlainSprings(const LatticeParts& parts, bool damped)
+  PlainSprings(const LatticeParts& parts, bool damped, std::shared_ptr<Remainders> left)
       : PlainLeapfrogStage("springs",
                            std::string("structural, shear and bend springs") +
                                (damped ? " with damping" : "") + ", leapfrog step",
-                           parts),
+                           parts, std::move(left)),
         damped_(damped),
         springs_(std::size_t(parts.lattice.rows) * kPlainStencils) {
     for (int j = 0; j < parts.lattice.rows; ++j)
@@ -49,8 +49,9 @@ class PlainSprings final : public PlainLeapfrogStage {
 // Any stencils, one kernel call each: levels, subsets.
 class StencilSprings final : public Leapfrog<RowStage> {
  public:
-  StencilSprings(const LatticeParts& parts, int reach, bool damped)
-      : Leapfrog(parts, "springs",
+  StencilSprings(const LatticeParts& parts, int reach, bool damped,
+                 std::shared_ptr<Remainders> left)
+      : Leapfrog(parts, std::move(left), "springs",
                  std::to_string(parts.stencils.size()) + " spring stencils" +
                      (damped ? " with damping" : "") + ", leapfrog step",
                  reach, parts.constraints(), "constraints"),
@@ -93,7 +94,7 @@ class StencilSprings final : public Leapfrog<RowStage> {
     a.w = l.w(j);
     a.f = force(j);
     a.advance = advance_of(parts_, s);
-    a.left = left_.row(j);
+    a.left = left_->row(j);
     parts_.kernels.particles.integrate(a);
   }
 
@@ -119,9 +120,10 @@ int greatest_reach(const LatticeParts& parts) {
   return reach;
 }
 
-std::unique_ptr<RowStage> make_springs(const LatticeParts& parts, bool damped) {
-  if (is_plain(parts)) return std::make_unique<PlainSprings>(parts, damped);
-  return std::make_unique<StencilSprings>(parts, greatest_reach(parts), damped);
+std::unique_ptr<RowStage> make_springs(const LatticeParts& parts, bool damped,
+                                       std::shared_ptr<Remainders> left) {
+  if (is_plain(parts)) return std::make_unique<PlainSprings>(parts, damped, std::move(left));
+  return std::make_unique<StencilSprings>(parts, greatest_reach(parts), damped, std::move(left));
 }
 
 }  // namespace weft::physics

@@ -31,7 +31,9 @@ struct LatticeParts : ClothParts {
 // The most rows that a constraint spans.
 int greatest_reach(const LatticeParts& parts);
 
-std::unique_ptr<RowStage> make_springs(const LatticeParts& parts, bool damped);
+// `left`: what rounding leaves, which springs and the bending before them share.
+std::unique_ptr<RowStage> make_springs(const LatticeParts& parts, bool damped,
+                                       std::shared_ptr<Remainders> left);
 std::unique_ptr<RowStage> make_membrane(const LatticeParts& parts);
 // m, past which a constraint tears.
 inline float tear_length(const Cloth& cloth, const Stencil& stencil) {
@@ -71,7 +73,8 @@ std::unique_ptr<RowStage> make_course_limit(const LatticeParts& parts);
 std::unique_ptr<RowStage> make_attachments(const LatticeParts& parts, Rows& corrections);
 // The curvature energy, as a force on the velocities, or as constraints, which gather corrections; null when the
 // cloth does not bend.
-std::unique_ptr<RowStage> make_bending_force(const LatticeParts& parts);
+std::unique_ptr<RowStage> make_bending_force(const LatticeParts& parts,
+                                             std::shared_ptr<Remainders> left);
 std::unique_ptr<Stage> make_bending(const LatticeParts& parts, Rows& corrections);
 
 // Where particles were before a substep of dt, as it is known after the stages of `predict`.

@@ -159,7 +159,7 @@ double MeshModel::rounding_gain() const {
 
 // Of M^-1/2 K M^-1/2, K as the difference of forces, which are as good as linear so near to rest; the
 // damping's is that of forces by velocities.
-Spectrum MeshModel::spectrum(std::span<const float> inverse_masses) const {
+Spectrum MeshModel::find_spectrum(std::span<const float> inverse_masses) const {
   const std::size_t count = start_.size();
   std::vector<double> root(count);
   for (std::size_t p = 0; p < count; ++p)

@@ -40,7 +40,7 @@ class MeshModel final : public ClothModel {
   double attachment_energy(const Rows& x, double dt) const override;
   double rounding_gain() const override;
   const Load* load() const override { return gas_.get(); }
-  Spectrum spectrum(std::span<const float> inverse_masses) const override;
+  Spectrum find_spectrum(std::span<const float> inverse_masses) const override;
   double stiffening(double stretch) const override;
   bool folds_freely() const override;
   std::vector<std::string> notes() const override;

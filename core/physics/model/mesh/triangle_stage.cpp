@@ -30,8 +30,8 @@ class TriangleStage final : public Leapfrog<RowStage>, private TornParts {
   TriangleStage(const ClothParts& parts, const MeshOrder& order,
                 const std::vector<RestTriangle>& triangles, const MeshMaterial& material,
                 MeshTearing* tearing)
-      : Leapfrog(parts, "triangles", words_of(material), material.bends ? 2 : 1,
-                 std::int64_t(triangles.size()), "triangles"),
+      : Leapfrog(parts, std::make_shared<Remainders>(), "triangles", words_of(material),
+                 material.bends ? 2 : 1, std::int64_t(triangles.size()), "triangles"),
         parts_(parts),
         triangles_(triangles),
         tearing_(tearing),
@@ -139,7 +139,7 @@ class TriangleStage final : public Leapfrog<RowStage>, private TornParts {
             damped_ ? records(velocity_, s) + at : nullptr,
             records(force_, s) + at,
             advance_of(parts_, s),
-            left_.row(j)};
+            left_->row(j)};
   }
 
   ClothParts parts_;
