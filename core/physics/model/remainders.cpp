@@ -1,6 +1,8 @@
 // What rounding leaves (remainders.h).
 #include "physics/model/remainders.h"
 
+#include <algorithm>
+
 #include "physics/step/keeper.h"
 
 namespace weft::physics {
@@ -15,10 +17,11 @@ void make_room(Remainders& left, const Particles& particles) {
 }  // namespace
 
 double forces_keep_below(const ClothParts& parts) {
-  constexpr double kFine = 0.25;                                      // of the stability limit
-  const bool automatic = parts.scene.time.substeps == kAutoSubsteps;  // as long as the limit allows
-  if (automatic) return 0;
-  return kFine * parts.model.largest_substep();
+  constexpr double kShare = 0.25;  // of the stability limit
+  const Scene& scene = parts.scene;
+  if (scene.time.substeps == kAutoSubsteps) return 0;
+  const double below = kShare * parts.model.largest_substep();
+  return scene.solver.full_first_kick ? std::min(below, Remainders::kFine) : below;
 }
 
 void Remainders::prepare(bool keeps, const Particles& particles) {

@@ -31,7 +31,8 @@ struct Remainders {
 // Forces keep what rounding leaves in substeps shorter than this [s]: in fixed ones four times as short as stability
 // asks for, which somebody chose for exact paths. What is rounded off would be most of their error there, and grow as
 // they get shorter. In automatic ones, 0: near the stability limit the error of the step itself is far greater, and to
-// keep what is rounded off takes a tenth to a third longer.
+// keep what is rounded off takes a tenth to a third longer. Steps that are the course's (full_first_kick) come from its
+// scenes, not from a choice, and are to end where the course does: they keep it where they are fine for sweeps, too.
 double forces_keep_below(const ClothParts& parts);
 
 // A stage that moves particles by forces, and what rounding leaves of that; `left` may be shared with stages that

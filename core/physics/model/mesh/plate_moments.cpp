@@ -11,24 +11,25 @@ namespace {
 using Vector3 = Eigen::Vector3d;
 using Matrix3 = Eigen::Matrix3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Corners = Eigen::Matrix<double, 6, 3>;  // of a triangle and those across its sides
 using Vector9 = Eigen::Matrix<double, 9, 1>;  // of a vertex: three balances, six energies
 
-const double kRoot2 = std::sqrt(2.0);
+constexpr double kHalfRoot = 0.70710678118654752;  // 1/√2
 
 // Symmetric tensors as vectors: the product of two is that of the tensors.
 Vector3 dyad(double a1, double a2, double b1, double b2) {
-  return {a1 * b1, a2 * b2, (a1 * b2 + a2 * b1) / kRoot2};
+  return {a1 * b1, a2 * b2, (a1 * b2 + a2 * b1) * kHalfRoot};
 }
 Vector6 packed(const Matrix3& m) {
   Vector6 v;
-  v << m(0, 0), m(1, 1), m(2, 2), (m(0, 1) + m(1, 0)) / kRoot2, (m(1, 2) + m(2, 1)) / kRoot2,
-      (m(2, 0) + m(0, 2)) / kRoot2;
+  v << m(0, 0), m(1, 1), m(2, 2), (m(0, 1) + m(1, 0)) * kHalfRoot, (m(1, 2) + m(2, 1)) * kHalfRoot,
+      (m(2, 0) + m(0, 2)) * kHalfRoot;
   return v;
 }
 Matrix3 unpacked(const Vector6& v) {
+  const double a = v[3] * kHalfRoot, b = v[4] * kHalfRoot, c = v[5] * kHalfRoot;
   Matrix3 m;
-  m << v[0], v[3] / kRoot2, v[5] / kRoot2, v[3] / kRoot2, v[1], v[4] / kRoot2, v[5] / kRoot2,
-      v[4] / kRoot2, v[2];
+  m << v[0], a, c, a, v[1], b, c, b, v[2];
   return m;
 }
 
@@ -50,9 +51,10 @@ double share_of_far(const Vector3& own, const Vector3& away) {
 struct Element {
   Matrix3 curvature = Matrix3::Zero();  // B; of jumps
   // In the metric of the rigidities:
-  Matrix3 seen = Matrix3::Zero();                                          // R
-  Matrix3 wanted = Matrix3::Identity();                                    // W
-  Eigen::Matrix<double, 6, 3> pull = Eigen::Matrix<double, 6, 3>::Zero();  // F
+  Matrix3 seen = Matrix3::Zero();        // R
+  Matrix3 wanted = Matrix3::Identity();  // W
+  Corners pull = Corners::Zero();        // F
+  double unit = 0;                       // m; of its unknowns
 };
 
 Element element_of(const Plate& plate, const Vector3& metric) {
@@ -83,10 +85,13 @@ Element element_of(const Plate& plate, const Vector3& metric) {
   const Matrix3 scaled = metric.asDiagonal() * e.curvature;
   e.seen = scaled * jumps * metric.cwiseInverse().asDiagonal();
   e.pull = plate.area * (scaled * corners).transpose();
+  // As much for a large triangle as for many small ones, and for slivers, which see curvature many times over, no more
+  // than for others.
+  e.unit = std::sqrt(plate.area * std::max(1.0, e.seen.squaredNorm() / 3));
   return e;
 }
 
-// The equations of all vertices for by how much C of all triangles is more than 1, in `unit`s.
+// The equations of all vertices for by how much C of all triangles is more than 1, in their units.
 class PatchTest {
  public:
   using Unknown = std::vector<Vector6>;
@@ -94,61 +99,59 @@ class PatchTest {
 
   PatchTest(const std::vector<Plate>& plates, const std::vector<Element>& elements,
             std::size_t vertices)
-      : plates_(plates), elements_(elements), scale_(vertices, Scale{0, 0}) {
-    for (std::size_t t = 0; t < plates_.size(); ++t)
+      : plates_(plates), elements_(elements), vertices_(vertices) {
+    const std::vector<Scale> scale = scales();
+    for (std::size_t t = 0; t < plates.size(); ++t) {
+      Row r{elements[t].pull / elements[t].unit, {}};
       each_corner(t, [&](int c, std::size_t v) {
-        scale_[v].balance += elements_[t].pull.row(c).squaredNorm() / plates_[t].area;
-        if (c < 3) scale_[v].energy += plates_[t].area;
+        r.pull.row(c) *= scale[v].balance;
+        if (c < 3) r.energy[c] = plates[t].area * scale[v].energy / elements[t].unit;
       });
-    for (Scale& s : scale_) {
-      s.balance = s.balance > 0 ? 1 / std::sqrt(s.balance) : 0;
-      s.energy = s.energy > 0 ? kEnergy / std::sqrt(s.energy) : 0;
+      rows_.push_back(r);
     }
-    leave_out_turns();
   }
 
   // What is amiss with C = 1.
   Residual of_one() const {
     return residual([&](std::size_t t) {
-      const Matrix3& seen = elements_[t].seen;
-      return Amiss{elements_[t].wanted - seen, elements_[t].wanted - seen.transpose() * seen};
+      const Element& e = elements_[t];
+      return Amiss{e.unit * (e.wanted - e.seen), e.unit * (e.wanted - e.seen.transpose() * e.seen)};
     });
   }
   // What C that is more than 1 by x changes.
   Residual times(const Unknown& x) const {
     return residual([&](std::size_t t) {
-      const Matrix3 moment = unpacked(x[t]) * elements_[t].seen / unit(t);
-      return Amiss{moment, elements_[t].seen.transpose() * moment};
+      const Matrix3& seen = elements_[t].seen;
+      const Matrix3 moment = unpacked(x[t]) * seen;
+      return Amiss{moment, seen.transpose() * moment};
     });
   }
-  Unknown transposed_times(const Residual& r) const {
-    Unknown x(plates_.size());
-    for (std::size_t t = 0; t < plates_.size(); ++t) {
+  Unknown transposed_times(const Residual& amiss) const {
+    Unknown x(rows_.size());
+    for (std::size_t t = 0; t < rows_.size(); ++t) {
       const Matrix3& seen = elements_[t].seen;
-      Matrix3 pulls = Matrix3::Zero(), energies = Matrix3::Zero();
+      Corners at = Corners::Zero();
+      Vector6 energies = Vector6::Zero();
       each_corner(t, [&](int c, std::size_t v) {
-        pulls +=
-            scale_[v].balance * elements_[t].pull.row(c).transpose() * r[v].head<3>().transpose();
-        if (c < 3) energies += plates_[t].area * scale_[v].energy * unpacked(r[v].tail<6>());
+        at.row(c) = amiss[v].head<3>().transpose();
+        if (c < 3) energies += rows_[t].energy[c] * amiss[v].tail<6>();
       });
-      x[t] = packed((pulls + seen * energies) * seen.transpose()) / unit(t);
+      const Matrix3 pulls = rows_[t].pull.transpose() * at + seen * unpacked(energies);
+      x[t] = packed(pulls * seen.transpose());
     }
     return x;
   }
 
-  // What an unknown is of C: as much for a large triangle as for many small ones, and for slivers, which see
-  // curvature many times over, no more than for others.
-  double unit(std::size_t t) const {
-    return std::sqrt(plates_[t].area * std::max(1.0, elements_[t].seen.squaredNorm() / 3));
-  }
-
  private:
-  static constexpr double kEnergy = 0.5;  // how much an energy counts against a balance
   struct Amiss {
     Matrix3 moment, energy;
   };
   struct Scale {
-    double balance, energy;  // 1 over the norm of a vertex's equations; 0: left out
+    double balance = 0, energy = 0;  // 1 over the norm of a vertex's equations; 0: left out
+  };
+  struct Row {
+    Corners pull;      // as of the triangle, for a unit and weighted as the vertices' equations are
+    double energy[3];  // likewise, of its own corners
   };
 
   template <typename F>
@@ -159,20 +162,37 @@ class PatchTest {
 
   template <typename F>
   Residual residual(F&& amiss) const {
-    Residual r(scale_.size(), Vector9::Zero());
-    for (std::size_t t = 0; t < plates_.size(); ++t) {
+    Residual all(vertices_, Vector9::Zero());
+    for (std::size_t t = 0; t < rows_.size(); ++t) {
       const Amiss a = amiss(t);
-      const Vector6 energies = plates_[t].area * packed(a.energy);
+      const Corners pulls = rows_[t].pull * a.moment;
+      const Vector6 energy = packed(a.energy);
       each_corner(t, [&](int c, std::size_t v) {
-        r[v].head<3>() += scale_[v].balance * (elements_[t].pull.row(c) * a.moment).transpose();
-        if (c < 3) r[v].tail<6>() += scale_[v].energy * energies;
+        all[v].head<3>() += pulls.row(c).transpose();
+        if (c < 3) all[v].tail<6>() += rows_[t].energy[c] * energy;
       });
     }
-    return r;
+    return all;
+  }
+
+  std::vector<Scale> scales() const {
+    constexpr double kEnergy = 0.5;  // how much an energy counts against a balance
+    std::vector<Scale> scale(vertices_);
+    for (std::size_t t = 0; t < plates_.size(); ++t)
+      each_corner(t, [&](int c, std::size_t v) {
+        scale[v].balance += elements_[t].pull.row(c).squaredNorm() / plates_[t].area;
+        if (c < 3) scale[v].energy += plates_[t].area;
+      });
+    for (Scale& s : scale) {
+      s.balance = s.balance > 0 ? 1 / std::sqrt(s.balance) : 0;
+      s.energy = s.energy > 0 ? kEnergy / std::sqrt(s.energy) : 0;
+    }
+    leave_out_turns(scale);
+    return scale;
   }
 
   // Where warp turns from triangle to triangle, as at seams of a pattern, no curvature is constant.
-  void leave_out_turns() {
+  void leave_out_turns(std::vector<Scale>& scale) const {
     constexpr double kAlike = 0.9;  // cosine
     for (const Plate& p : plates_)
       for (std::size_t k = 0; k < 3; ++k) {
@@ -181,13 +201,14 @@ class PatchTest {
         const Hinge& back = plates_[std::size_t(h.across)].hinge[h.side];
         if (h.n1 * back.n1 + h.n2 * back.n2 < -kAlike) continue;
         for (const std::size_t c : {k, (k + 1) % 3, (k + 2) % 3, 3 + k})
-          scale_[std::size_t(p.corner[c])] = {0, 0};
+          scale[std::size_t(p.corner[c])] = {};
       }
   }
 
   const std::vector<Plate>& plates_;
   const std::vector<Element>& elements_;
-  std::vector<Scale> scale_;
+  std::size_t vertices_;
+  std::vector<Row> rows_;
 };
 
 template <typename V>
@@ -203,8 +224,10 @@ void add(std::vector<V>& to, double share, const std::vector<V>& more) {
 }
 
 // Conjugate gradients for least squares (Hestenes, Stiefel 1952).
-PatchTest::Unknown nearest_to_one(const PatchTest& test, const std::vector<Plate>& plates) {
+PatchTest::Unknown nearest_to_one(const std::vector<Plate>& plates,
+                                  const std::vector<Element>& elements, std::size_t vertices) {
   constexpr int kSteps = 24;
+  const PatchTest test(plates, elements, vertices);
   PatchTest::Unknown x(plates.size(), Vector6::Zero());
   PatchTest::Residual r = test.of_one();
   PatchTest::Unknown gradient = test.transposed_times(r), way = gradient;
@@ -243,11 +266,10 @@ std::vector<std::array<double, 6>> plate_moments(const std::vector<Plate>& plate
   std::vector<Element> elements;
   elements.reserve(plates.size());
   for (const Plate& plate : plates) elements.push_back(element_of(plate, metric));
-  const PatchTest test(plates, elements, vertices);
-  const PatchTest::Unknown more = nearest_to_one(test, plates);
+  const PatchTest::Unknown more = nearest_to_one(plates, elements, vertices);
   std::vector<std::array<double, 6>> moments(plates.size());
   for (std::size_t t = 0; t < plates.size(); ++t) {
-    const Matrix3 c = bounded(Matrix3::Identity() + unpacked(more[t]) / test.unit(t));
+    const Matrix3 c = bounded(Matrix3::Identity() + unpacked(more[t]) / elements[t].unit);
     const Matrix3 b = root.asDiagonal() * elements[t].curvature;
     const Matrix3 form = plates[t].area * b.transpose() * c * b;
     moments[t] = {form(0, 0), form(1, 1), form(2, 2), form(0, 1), form(1, 2), form(2, 0)};

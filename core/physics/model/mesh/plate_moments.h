@@ -33,9 +33,8 @@ struct Hinge {
   Foot own, away;
   double length = 0;      // m, of the side
   double n1 = 0, n2 = 0;  // its normal, out of the triangle, along warp and weft
-  int across =
-      -1;  // the triangle there; -1: none, and of the above `length` and the normal alone count
-  int side = 0;  // which of its sides this is
+  int across = -1;        // the triangle there; -1: none, and neither `own` nor `away` is known
+  int side = 0;           // which of that triangle's sides this is
 };
 
 struct Plate {

@@ -117,8 +117,9 @@ void curve(RestTriangle& r, std::size_t k, const Places& x, const Vec3& normal, 
   r.bow[k] = sine / (2 * r.area);
 }
 
-Plate plate_of(RestTriangle& r, const Places& x, const std::array<Across, 3>& across,
-               const Vec3& warp, const Vec3& weft, const Vec3& normal, bool flat) {
+// Sets the hinges of a triangle, and returns what their moments are found from.
+Plate set_hinges(RestTriangle& r, const Places& x, const std::array<Across, 3>& across,
+                 const Vec3& warp, const Vec3& weft, const Vec3& normal, bool flat) {
   Plate plate{r.corner, r.area, {}};
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 a = x[k], b = x[(k + 1) % 3];
@@ -282,7 +283,8 @@ std::vector<RestTriangle> rest_triangles(const TriangleMesh& mesh, const RestPla
     const double d = pu * qv - qu * pv;
     r.du[0] = qv / d, r.du[1] = -pv / d;
     r.dv[0] = -qu / d, r.dv[1] = pu / d;
-    plates.push_back(plate_of(r, x, across[t], warp, weft, normal, rest.flat || rest.uv_scale > 0));
+    plates.push_back(
+        set_hinges(r, x, across[t], warp, weft, normal, rest.flat || rest.uv_scale > 0));
   }
   if (!bending.given()) return all;
   const auto moments = plate_moments(plates, rest.x.size(), bending);
